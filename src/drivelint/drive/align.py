@@ -16,10 +16,7 @@ from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
-    Rows = NDArray[np.intp]
+    from drivelint.arrays import Times
 
 LONGEST_PERIOD_NS: Final = 250_000_000
 """An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""

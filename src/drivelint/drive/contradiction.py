@@ -31,12 +31,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask
     from drivelint.drive.actors import Actors
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
-    Numbers = NDArray[np.float64]
 
 MISMATCH_M: Final = 1.0
 MISMATCH_SHARE: Final = 0.15
@@ -153,7 +152,7 @@ def _frozen(states: States, step: Steps) -> Mask:
         # what the velocity did between two samples is not known
         slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
 
-    def contradict(way: Numbers, told: Numbers, either: Numbers) -> Mask:
+    def contradict(way: Floats, told: Floats, either: Floats) -> Mask:
         fastest = np.maximum(np.hypot(*way), np.hypot(*told))
         wrong: Mask = np.hypot(*(way - told)) > MISMATCH_M + MISMATCH_SHARE * fastest + either
         return wrong
@@ -169,7 +168,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
-    def between(values: Numbers) -> Numbers:
+    def between(values: Floats) -> Floats:
         sums = np.insert(np.cumsum(values, axis=-1), 0, 0.0, axis=-1)
         return sums[..., last] - sums[..., first]
 
@@ -177,7 +176,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     return frozen
 
 
-def _drifts(rest: Numbers, step: Steps) -> bool:
+def _drifts(rest: Floats, step: Steps) -> bool:
     """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
@@ -185,9 +184,7 @@ def _drifts(rest: Numbers, step: Steps) -> bool:
     return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
 
 
-def _around(
-    states: States, pieces: NDArray[np.integer], rows: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
     """Return for each of these rows the first and the last row of its piece within half a second of it."""
     key = pieces.astype(np.int64) * (int(np.ptp(states.t_ns)) + int(4e9)) + (states.t_ns - states.t_ns.min())
     half = int(WINDOW_S * 1e9)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Floats, Mask
     from drivelint.drive.actors import Actors
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
@@ -151,7 +152,7 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
         raise TraceError(f"{path}: {errors[0].message}: {remedy}")
 
 
-def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[QualityFinding]:
+def _lights(states: States, egos: list[str], is_ego: Mask) -> list[QualityFinding]:
     findings = []
     for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)
@@ -168,7 +169,7 @@ def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[
 
 
 def _data_log(
-    identity: Identity, recording: Recording, states: States, is_ego: NDArray[np.bool_], options: IngestOptions
+    identity: Identity, recording: Recording, states: States, is_ego: Mask, options: IngestOptions
 ) -> pa.Table:
     start = int(states.t_ns.min())
     offset = recording.map_offset or (None, None)
@@ -248,10 +249,10 @@ def _schema(name: str) -> pa.Schema:
     return pa.schema(TRACE_SCHEMAS[name].items())
 
 
-def _nullable(values: NDArray[np.float64]) -> pa.Array:
+def _nullable(values: Floats) -> pa.Array:
     return pa.array(values, from_pandas=True)
 
 
-def _words(codes: NDArray[np.int32] | NDArray[np.int8], words: tuple[str, ...]) -> pa.Array:
+def _words(codes: NDArray[np.int32] | Codes, words: tuple[str, ...]) -> pa.Array:
     """Spell out codes as strings, -1 as NULL."""
     return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(words, _S)).cast(_S)

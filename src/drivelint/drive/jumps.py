@@ -21,11 +21,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Mask, Times
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
-    Numbers = NDArray[np.float64]
 
 JUMP_M: Final = 3.0
 JUMP_MPS2: Final = 10.0
@@ -51,9 +50,9 @@ class RejectedPositions:
     """Positions from the log that are rejected, as parallel arrays; `actor_ids` are those of the finished drive."""
 
     actor_ids: NDArray[np.str_]
-    t_ns: NDArray[np.int64]
-    x_m: Numbers
-    y_m: Numbers
+    t_ns: Times
+    x_m: Floats
+    y_m: Floats
 
     @classmethod
     def from_rows(cls, states: States, rows: Mask) -> RejectedPositions:
@@ -240,7 +239,7 @@ def without_removed_actors(
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 
-def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], other: tuple[int, int]) -> bool:
+def _together(states: States, place: Floats, one: tuple[int, int], other: tuple[int, int]) -> bool:
     """Say whether both rows (first, end) are of one place and share some time."""
     (a, a_end), (b, b_end) = one, other
     apart = np.hypot(*(place[:, a] - place[:, b]))

@@ -11,8 +11,7 @@ from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Indices, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
@@ -39,9 +38,7 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
     return _velocity(states, step, starts, most_replaced_share) + _acceleration(states, starts)
 
 
-def _velocity(
-    states: States, step: Steps, starts: NDArray[np.intp], most_replaced_share: float
-) -> list[QualityFinding]:
+def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share: float) -> list[QualityFinding]:
     numbers = states.numbers
     vx, vy = numbers["vx_mps"], numbers["vy_mps"]
     absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
@@ -73,7 +70,7 @@ def _velocity(
     return findings
 
 
-def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
+def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
     """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
     text = (
         "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
@@ -85,7 +82,7 @@ def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     return found
 
 
-def _astray(states: States, step: Steps, most_replaced_share: float) -> NDArray[np.bool_]:
+def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
@@ -130,7 +127,7 @@ def _suspicious(states: States, k: int) -> bool:
     return bool((3 * bad > n).any())
 
 
-def _acceleration(states: States, starts: NDArray[np.intp]) -> list[QualityFinding]:
+def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
     """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     known = ~(np.isnan(ax) & np.isnan(ay))

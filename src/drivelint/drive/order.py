@@ -12,6 +12,7 @@ from drivelint.drive.trace import STATE_COLUMNS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.drive.trace import QualityFinding, States
 
 MAX_GAP_PERIODS = 2.5
@@ -37,7 +38,7 @@ def sorted_states(states: States) -> States:
     return ordered
 
 
-def _rising(t_ns: NDArray[np.int64]) -> bool:
+def _rising(t_ns: Times) -> bool:
     return bool(np.all(t_ns[1:] >= t_ns[:-1]))
 
 
@@ -73,12 +74,12 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     ]
 
 
-def _any(rows: list[NDArray[np.bool_]]) -> NDArray[np.bool_]:
-    found: NDArray[np.bool_] = np.any(rows, axis=0)
+def _any(rows: list[Mask]) -> Mask:
+    found: Mask = np.any(rows, axis=0)
     return found
 
 
-def changed_columns(states: States) -> dict[str, NDArray[np.bool_]]:
+def changed_columns(states: States) -> dict[str, Mask]:
     """Return for each column the rows whose value differs from the row before; unknown counts as a value."""
     found = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
@@ -97,9 +98,9 @@ class Steps:
     `MAX_GAP_PERIODS` periods; `period_ns` the median step of all actors (0: no actor has two states).
     """
 
-    same: NDArray[np.bool_]
-    dt_s: NDArray[np.float64]
-    continuous: NDArray[np.bool_]
+    same: Mask
+    dt_s: Floats
+    continuous: Mask
     period_ns: int
 
 
@@ -110,14 +111,14 @@ def steps(states: States) -> Steps:
     return steps_between(states.t_ns, states.actor, int(np.median(dt[same])) if same.any() else 0)
 
 
-def steps_between(t_ns: NDArray[np.int64], actor: NDArray[np.int32], period_ns: int) -> Steps:
+def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Steps:
     """Measure the steps between these samples (n, in order) of a log of that period."""
     same = actor[1:] == actor[:-1]
     dt = np.diff(t_ns)
     return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
 
 
-def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
+def time_derivative(values: Floats, step: Steps) -> Floats:
     """Return the time derivative: central where both neighbours are continuous, else one-sided, else NaN."""
     n = len(values)
     rise, span = np.zeros(n), np.zeros(n)
@@ -132,7 +133,7 @@ def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.floa
     return result
 
 
-def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
+def known_motion(states: States, step: Steps) -> Mask:
     """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
     known = step.continuous.copy()
     for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
@@ -141,16 +142,16 @@ def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
     return known
 
 
-def integral_per_step(rate: NDArray[np.float64], step: Steps, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
     """Return how far a rate (n) leads within each step (n - 1), by the mean of its ends; 0 where that is not `known`."""
     return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
 
 
-def track_starts(actor: NDArray[np.int32]) -> NDArray[np.intp]:
+def track_starts(actor: NDArray[np.int32]) -> Indices:
     """Return the first row of each actor's track (`actor`: which one, in order); none where there are no rows."""
     return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])
 
 
-def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def wrapped(angle: Floats) -> Floats:
     """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
     return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))

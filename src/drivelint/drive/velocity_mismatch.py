@@ -14,12 +14,10 @@ from drivelint.drive.order import integral_per_step, known_motion
 from drivelint.drive.velocity import Tracklets, sample_noise
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
 
 STRETCH_S: Final = 0.5
 """Over so long a time the mean velocity is compared with the way, over two steps at least."""
@@ -77,7 +75,7 @@ def mismatched_samples(states: States, step: Steps) -> Mask:
     return found & ~many[states.actor]
 
 
-def _most(values: NDArray[np.float64], k: int) -> NDArray[np.float64]:
+def _most(values: Floats, k: int) -> Floats:
     """Return the largest of every k neighbouring values (m - k + 1 of m)."""
-    most: NDArray[np.float64] = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
+    most: Floats = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
     return most

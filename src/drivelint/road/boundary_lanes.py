@@ -19,13 +19,11 @@ from drivelint.road.tables import Rows, crossing_row, from_columns, from_rows, m
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
 _WIDEST_M = 60.0  # wider is a mistake in the bounds

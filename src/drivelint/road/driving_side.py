@@ -14,9 +14,8 @@ import shapely
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
+    from drivelint.arrays import Floats, Indices
 
-    Floats = NDArray[np.float64]
 
 SAME_CARRIAGEWAY_M: Final = 2.0  # so far apart two directions of one carriageway may be painted, as in lane_beside.sql
 CENTRAL_RESERVATION_M: Final = 15.0  # and the two carriageways of a road
@@ -47,8 +46,8 @@ class _Pieces(NamedTuple):
     """The straight pieces of all courses, (m,): of which lane, from which point of `course` to the next, how long, and their direction."""
 
     course: OneWayLane  # all of them, one after the other
-    lane: NDArray[np.intp]
-    k: NDArray[np.intp]
+    lane: Indices
+    k: Indices
     length: Floats
     ux: Floats
     uy: Floats
@@ -98,9 +97,7 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 
-def _gap_to_opposing(
-    pieces: _Pieces, tree: shapely.STRtree, chosen: NDArray[np.intp], side: float, reach_m: float
-) -> Floats:
+def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, side: float, reach_m: float) -> Floats:
     """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
     c, k = pieces.course, pieces.k[chosen]
     x, y, z, half = ((a[k] + a[k + 1]) / 2 for a in (c.x, c.y, c.z, c.half_width))

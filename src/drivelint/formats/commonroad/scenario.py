@@ -23,11 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes, Floats
     from drivelint.formats.probe import Probe
 
-    Floats = NDArray[np.float64]
 
 formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
 takes_mapping: Final = False
@@ -167,7 +165,7 @@ def _size(obstacle: etree._Element) -> tuple[float, float]:
     return diameter, diameter
 
 
-def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
+def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Codes]:
     words = [_CLASSES.get((obstacle.findtext("type") or "").strip()) for obstacle in obstacles]
     classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)

@@ -25,12 +25,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from lxml import etree
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 _LISTS = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
 _LIGHT = "1000001"

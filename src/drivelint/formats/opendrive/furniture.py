@@ -12,7 +12,7 @@ from drivelint.formats.opendrive.signals import signal_rows
 from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.network import Network
     from drivelint.road.quality import MapQuality

@@ -12,7 +12,7 @@ from drivelint.formats.opendrive.network import DRIVABLE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.network import Lane, LaneSection, Road
     from drivelint.road.boundary_lanes import LaneGeometry
 

@@ -15,9 +15,7 @@ from drivelint.formats.opendrive.xml import MalformedError
 from drivelint.road.boundary_lanes import LaneGeometry
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats, Mask
     from drivelint.formats.opendrive.direction import Direction
     from drivelint.formats.opendrive.network import Lane, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
@@ -160,7 +158,7 @@ class _StripBuilder:
             line=geometry, road_s=s[order], z=z[order], t=t[order],
         )  # fmt: skip
 
-    def _check_fold(self, lane: Lane, folded: NDArray[np.bool_], forward: Floats) -> None:
+    def _check_fold(self, lane: Lane, folded: Mask, forward: Floats) -> None:
         if folded.any():
             name = lanelet_id(self._key(lane))
             severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"

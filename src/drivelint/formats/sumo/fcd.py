@@ -24,11 +24,9 @@ from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes, Floats
     from drivelint.formats.probe import Probe
 
-    Floats = NDArray[np.float64]
 
 formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
 takes_mapping: Final = True
@@ -165,7 +163,7 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
     return recording
 
 
-def _lights(signals: Floats) -> dict[str, NDArray[np.int8]]:
+def _lights(signals: Floats) -> dict[str, Codes]:
     known = ~np.isnan(signals)
     bits = np.nan_to_num(signals).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes
     from drivelint.formats.probe import Probe
 
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
@@ -166,7 +165,7 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     return states.take(~lost), egos, [QualityFinding("dropped_row", "error", message, int(lost.sum()))]
 
 
-def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
+def _codes(path: Path, column: pa.Array, name: str) -> Codes:
     words = _WORDS[name]
     encoded = pc.dictionary_encode(column)
     table = []

@@ -10,8 +10,7 @@ from drivelint.drive.order import steps, time_derivative, wrapped
 from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, States
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.formats.tables.mapping import Mapping
 
 _SOURCE = {
@@ -51,9 +50,7 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
     }
 
 
-def _turned(
-    forward: NDArray[np.float64], left: NDArray[np.float64], yaw: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _turned(forward: Floats, left: Floats, yaw: Floats) -> tuple[Floats, Floats]:
     """Rotate a vector from the vehicle's axes into the world's."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     return forward * cos - left * sin, forward * sin + left * cos
@@ -74,7 +71,7 @@ def _to_centre(states: States, mapping: Mapping) -> None:
         log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
 
 
-def _yaw_rate(states: States) -> NDArray[np.float64]:
+def _yaw_rate(states: States) -> Floats:
     """Differentiate the heading along each actor's track, rows in any order."""
     order = np.lexsort((states.t_ns, states.actor))
     track = states.take(order)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Floats, Mask, Times
     from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
 
@@ -163,7 +164,7 @@ class _Body:
             strict_units=True,
         )
 
-    def _rows(self, k: str, n: int, t_ns: NDArray[np.int64], keep: NDArray[np.bool_]) -> States:
+    def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)
         for name, spec in mappings.fields(self.mapping).items():
             if name in FIELD_QUANTITIES:
@@ -176,9 +177,7 @@ class _Body:
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
-    def _values(
-        self, name: str, spec: Field, k: str, n: int, keep: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def _values(self, name: str, spec: Field, k: str, n: int, keep: Mask) -> tuple[Floats, Mask]:
         """Return SI values, unknown as NaN, and where the log itself says NaN or infinity (an empty cell does not)."""
         units = UNITS[FIELD_QUANTITIES[name]]
         factor = units[spec.unit] if spec.unit is not None else 1.0
@@ -195,7 +194,7 @@ class _Body:
             self._refuse_degrees(column, values)
         return (values * factor if factor != 1.0 else values), odd
 
-    def _refuse_degrees(self, column: str, values: NDArray[np.float64]) -> None:
+    def _refuse_degrees(self, column: str, values: Floats) -> None:
         """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
@@ -204,7 +203,7 @@ class _Body:
                 'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
+    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> Codes:
         """Translate texts to indices into `allowed`: each distinct text once."""
         texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
@@ -242,7 +241,7 @@ class _Body:
         self.findings.append(QualityFinding("ego_assumed", "info", message, actor_id=first))
         return [first]
 
-    def _blank(self, columns: list[str], n: int) -> NDArray[np.bool_]:
+    def _blank(self, columns: list[str], n: int) -> Mask:
         """Say which rows hold nothing in any mapped column."""
         blank = np.ones(n, np.bool_)
         for column in columns:
@@ -250,7 +249,7 @@ class _Body:
                 blank &= ~self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
         return blank
 
-    def _report_rows(self, rows: NDArray[np.bool_], why: str, check: str) -> None:
+    def _report_rows(self, rows: Mask, why: str, check: str) -> None:
         n = int(rows.sum())
         if n:
             follows = "not judged" if check == "dropped_row" else "those values are unknown"
