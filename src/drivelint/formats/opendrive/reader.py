@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
-from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture
+from drivelint.formats.opendrive.lanelet import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
