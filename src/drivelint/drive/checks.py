@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, sums_over, ways_over, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
@@ -157,24 +157,12 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
     Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
     no jump or hole lies between.
     """
-    numbers, n = states.numbers, len(states)
-    told_mps = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    told_mps = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
     known = known_motion(states, step) & ~jump[1:]
-    first = np.arange(max(0, n - n_steps))
-    last = first + n_steps
-    unknown = np.r_[0, np.cumsum(~known)]
-    usable: Mask = unknown[first] == unknown[last]
-    span_s = (states.t_ns[last] - states.t_ns[first]) * 1e-9
+    went, led, usable, span_s = ways_over(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-
-    def led(rate: Floats) -> Floats:
-        total = np.r_[0.0, np.cumsum(integral_per_step(rate, step, known))]
-        mean: Floats = (total[last] - total[first]) / span_s
-        return mean
-
-    way = [(numbers[name][last] - numbers[name][first]) / span_s for name in ("x_m", "y_m")]
-    error = np.hypot(way[0] - led(numbers["vx_mps"]), way[1] - led(numbers["vy_mps"]))
-    return error, led(told_mps), np.hypot(*way), usable
+    told = sums_over(integral_per_step(told_mps, step, known), n_steps) / span_s
+    return np.hypot(*(went / span_s - led / span_s)), told, np.hypot(*(went / span_s)), usable
 
 
 def _cause(ratio: float) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import integral_per_step, known_motion
+from drivelint.drive.order import known_motion, ways_over
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -88,18 +88,11 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
         return wrong
-    t_ns, numbers = states.t_ns, states.numbers
-    off, moved, told = (np.zeros(n - k) for _ in range(3))
-    usable = known_motion(states, step)
-    unusable = np.r_[0, np.cumsum(~usable)]
-    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
-        way = np.r_[0.0, np.cumsum(integral_per_step(numbers[rate_of], step, usable))]
-        went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
-        off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
-    span = (t_ns[k:] - t_ns[:-k]) * 1e-9
+    went, led, whole, span = ways_over(states, step, known_motion(states, step), k)
+    off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     with np.errstate(invalid="ignore"):
         fastest = np.maximum(moved, told)
-        moving = (unusable[k:] == unusable[:-k]) & (fastest > MISMATCH_MPS * span)
+        moving = whole & (fastest > MISMATCH_MPS * span)
         # positions that stand still do not tell how somebody moves: see `contradiction`
         bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))

@@ -147,6 +147,25 @@ def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
     return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
 
 
+def ways_over(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
+    """Compare how far positions go and velocities lead over every `k` steps of a track.
+
+    Returns by first row (n - k): both ways (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
+    """
+    numbers = states.numbers
+    went = np.stack([numbers[name][k:] - numbers[name][:-k] for name in ("x_m", "y_m")])
+    led = np.stack([sums_over(integral_per_step(numbers[name], step, known), k) for name in ("vx_mps", "vy_mps")])
+    whole: Mask = sums_over(~known, k) == 0
+    return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
+
+
+def sums_over(values: Floats | Mask, k: int) -> Floats:
+    """Return the sum of every k neighbouring values (m - k + 1 of m)."""
+    total = np.r_[0.0, np.cumsum(values)]
+    sums: Floats = total[k:] - total[:-k]
+    return sums
+
+
 def track_starts(actor: NDArray[np.int32]) -> Indices:
     """Return the first row of each actor's track (`actor`: which one, in order); none where there are no rows."""
     return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])

@@ -211,6 +211,21 @@ class States:
             self.not_finite[rows],
         )
 
+    @classmethod
+    def joined(cls, parts: Sequence[States]) -> States:
+        """Return the rows of all parts, which have the same ids and columns."""
+        first = parts[0]
+        if len(parts) == 1:
+            return first
+        return cls(
+            first.ids,
+            np.concatenate([part.actor for part in parts]),
+            np.concatenate([part.t_ns for part in parts]),
+            {name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers},
+            {name: np.concatenate([part.codes[name] for part in parts]) for name in first.codes},
+            np.concatenate([part.not_finite for part in parts]),
+        )
+
     def findings(self, rows: Mask, check_id: str, severity: Severity, text: str) -> list[QualityFinding]:
         """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}."""
         n = int(rows.sum())

@@ -21,8 +21,6 @@ from drivelint.phrases import hint
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from drivelint.arrays import Codes, Floats, Mask, Times
     from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
@@ -153,7 +151,8 @@ class _Body:
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._rows(k, n, t_ns, keep))
         ids = pc.dictionary_encode(pa.concat_arrays(texts))
-        states = _joined(ids.dictionary.to_pylist(), ids.indices.to_numpy(), parts)
+        states = States.joined(parts)
+        states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
         to_map_frame(states, self.mapping)
         return Recording(
             format="",
@@ -271,17 +270,3 @@ def _word(text: str, spec: WordMapping) -> str | None:
     if text in spec.values:
         return spec.values[text]
     return next((pattern.word for pattern in spec.patterns if re.search(pattern.match, text)), spec.default)
-
-
-def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> States:
-    if len(parts) == 1:
-        parts[0].ids, parts[0].actor = ids, actor
-        return parts[0]
-    return States(
-        ids,
-        actor,
-        np.concatenate([part.t_ns for part in parts]),
-        {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers},
-        {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes},
-        np.concatenate([part.not_finite for part in parts]),
-    )
