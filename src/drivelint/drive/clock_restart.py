@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import UNKNOWN_CODE, changed_columns
+from drivelint.drive.order import UNKNOWN_CODE, changed_columns, repetitions
 from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
@@ -86,9 +86,7 @@ def _agreed(states: States, rows: Mask) -> Mask:
     chosen = np.flatnonzero(rows)
     chosen = chosen[np.lexsort((states.t_ns[chosen], states.actor[chosen]))]
     ordered = states.take(chosen)
-    again = np.zeros(len(chosen), np.bool_)
-    again[1:] = (ordered.actor[1:] == ordered.actor[:-1]) & (ordered.t_ns[1:] == ordered.t_ns[:-1])
-    of = np.cumsum(~again) - 1
+    again, of = repetitions(ordered)
     several = np.bincount(of) > 1
     other = again & np.any(list(changed_columns(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0

@@ -6,7 +6,7 @@ origin until the log ends. Two bodies are never in one place, so their tracks en
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -60,11 +60,6 @@ class RejectedPositions:
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
 
-    def with_more(self, more: RejectedPositions) -> RejectedPositions:
-        """Return these places and those."""
-        pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
-        return RejectedPositions(*map(np.concatenate, pairs))
-
 
 @dataclass(frozen=True)
 class SplitTracks:
@@ -93,15 +88,16 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
         text = COUNT_PREFIX + "the position jumps: they are unknown around it"
         findings = states.findings(unknown, "teleport", "warning", text)
         alias = _renamed(states, pieces, kept, findings)
-    refused = RejectedPositions.from_rows(states, unknown)
+    recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
         findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
-        refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
-    return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
+    return (
+        SplitTracks(findings, alias, RejectedPositions.from_rows(recorded, unknown | beside)) if findings else NO_SPLIT
+    )
 
 
 def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMNS) -> None:

@@ -47,11 +47,9 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
     An actor that is in two places, or has two headings or velocities, is present and has none.
     """
-    repeated = np.zeros(len(states), np.bool_)
-    repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
+    repeated, of = repetitions(states)
     if not repeated.any():
         return states, []
-    of = np.cumsum(~repeated) - 1
     kept = states.take(~repeated)
     differ = {
         name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
@@ -72,6 +70,13 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
         *states.findings(differing, "duplicate_state", "error", differ_text),
         *states.findings(repeated & ~differing, "duplicate_state", "info", same_text),
     ]
+
+
+def repetitions(states: States) -> tuple[Mask, Indices]:
+    """Return the rows (states in order) of the actor and time of the row before, and each row's number without them."""
+    repeated = np.zeros(len(states), np.bool_)
+    repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
+    return repeated, np.cumsum(~repeated) - 1
 
 
 def _any(rows: list[Mask]) -> Mask:

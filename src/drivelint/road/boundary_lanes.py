@@ -132,10 +132,9 @@ class LaneGeometry:
         """The ground between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
-    def one_way_lane(self, z: Floats) -> driving_side.OneWayLane:
-        """Return the lane as one that is driven one way; `z`: its heights (m), NaN: not known."""
-        (x, y), (tx, ty) = self.centre.T, self.tangent.T
-        return driving_side.OneWayLane(x, y, z, tx, ty, self.half_width)
+    def course(self, z: Floats) -> Floats:
+        """Return the lane as `driving_side` takes it, (n, 4); `z`: its heights (m), NaN: not known."""
+        return np.column_stack([self.centre, z, self.half_width])
 
     def station(self, place: Floats) -> float:
         """Return how far along the centre line (m) a place (2,) lies."""
@@ -356,13 +355,8 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    return driving_side.side_driven_on(
-        [
-            lane.line.one_way_lane(np.full(len(lane.line.s), np.nan))
-            for lane in one_way.values()
-            if lane.junction_id is None
-        ]
-    )
+    outside = [lane.line for lane in one_way.values() if lane.junction_id is None]
+    return driving_side.side_driven_on([line.course(np.full(len(line.s), np.nan)) for line in outside])
 
 
 def crossings(walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:

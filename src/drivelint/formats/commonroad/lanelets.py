@@ -19,7 +19,7 @@ from drivelint.road.boundary_lanes import (
     map_from_bounds,
     side_driven_on,
 )
-from drivelint.road.handedness import choose_side
+from drivelint.road.driving_side import choose_side
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:

@@ -15,8 +15,7 @@ from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
 from drivelint.road.boundary_lanes import lane_points
-from drivelint.road.driving_side import side_driven_on
-from drivelint.road.handedness import opposite_side
+from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
 
@@ -66,7 +65,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            lane.line.one_way_lane(lane.z)
+            lane.line.course(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]
