@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from drivelint.arrays import spelled
 from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
@@ -31,9 +32,7 @@ from drivelint.sql.store import arrow_schemas, owned_table
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from drivelint.arrays import Codes, Floats, Mask
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
 TRACE_TABLES = (
@@ -104,11 +103,11 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             "is_ego": [name in egos for name in actors.ids],
         },
         "actor_state": {
-            "actor_id": _words(states.actor, tuple(states.ids)),
+            "actor_id": spelled(states.actor, states.ids),
             "t_ns": states.t_ns,
             **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
-            "indicator": _words(states.codes.get("indicator", unknown), INDICATORS),
-            "brake_light": _words(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
+            "indicator": spelled(states.codes.get("indicator", unknown), INDICATORS),
+            "brake_light": spelled(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
         },
         "signal_state": _distinct(recording.signals, "signal_id", "t_ns", "state"),
         "declared_event": _distinct(
@@ -209,10 +208,3 @@ def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
 
 def _nullable(values: Floats) -> pa.Array:
     return pa.array(values, from_pandas=True)
-
-
-def _words(codes: NDArray[np.int32] | Codes, words: tuple[str, ...]) -> pa.Array:
-    """Spell out codes as strings, -1 as NULL."""
-    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(words, pa.string())).cast(
-        pa.string()
-    )

@@ -12,8 +12,9 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
+from drivelint.arrays import spelled
 from drivelint.road import driving_side
-from drivelint.road.tables import Rows, crossing_row, map_tables, repeated
+from drivelint.road.tables import Rows, crossing_row, map_tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -333,7 +334,9 @@ def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
         "road_s_m": np.concatenate([lane.road_s for lane in lanes]),
         "z_m": pa.array(np.concatenate([lane.z for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
-        "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
+        "lanelet_id": spelled(
+            np.repeat(np.arange(len(lanes), dtype=np.int32), counts), [lane.lanelet_id for lane in lanes]
+        ),
     }
     for attribute, x, y in (
         ("centre", "x_m", "y_m"),

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.road.geo_reference import GeoFrame, why_unusable
-from drivelint.road.map_reader import MapTables, environment_id
+from drivelint.road.map_reader import MapTables
 from drivelint.sql.store import owned_table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from drivelint.road.map_reader import MapOptions, MapSource
     from drivelint.road.quality import MapQuality
@@ -46,10 +47,17 @@ def map_tables(
 ) -> MapTables:
     """Return the map: `content`, rows or columns by table, with `environment` and `map_quality`.
 
+    Its id is `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`, the same on every machine; a question mark: the side is
+    a guess.
+
     `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth;
-    `lanes_reversed`: see `environment_id`.
+    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
     """
-    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default", lanes_reversed=lanes_reversed)
+    x, y = (float(v) + 0.0 for v in request.offset)
+    shift = f"{x:+}{y:+}" if x or y else ""
+    # a side that is only the standard's default is marked: the traces of another drive may tell it for sure
+    marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
+    name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
     tables = {table: owned_table("map", table, name, rows) for table, rows in content.items()}
     trouble = _geo_trouble(geo, tables["lane_point"], request) if geo else None
     if geo and trouble:
@@ -71,11 +79,3 @@ def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | 
     """Return why the frame gives no positions on the earth, judged in the middle of the lanes."""
     middle = [sum(pc.min_max(points[axis]).as_py().values()) / 2.0 for axis in ("x_m", "y_m")]
     return why_unusable(geo, middle[0] - request.offset[0], middle[1] - request.offset[1])
-
-
-def repeated(names: Sequence[str], counts: Sequence[int]) -> pa.Array:
-    """Return each name as often as its count says, as an Arrow string array."""
-    import numpy as np
-
-    indices = pa.array(np.repeat(np.arange(len(names), dtype=np.int32), counts))
-    return pa.DictionaryArray.from_arrays(indices, pa.array(names, type=pa.string())).cast(pa.string())

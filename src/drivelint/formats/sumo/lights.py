@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
+from drivelint.arrays import spelled
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
@@ -104,8 +105,6 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
 
 def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:
     """Return the rows of one light with `n` connections: `times` (t,) in seconds, `codes` (t * n,) of SIGNAL_STATES, -1: not known."""
-    number = pa.array(np.tile(np.arange(n, dtype=np.int32), len(times)))
-    names = pa.DictionaryArray.from_arrays(number, pa.array([f"{light}_{k}" for k in range(n)]))
-    states = pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(list(SIGNAL_STATES)))
+    names = spelled(np.tile(np.arange(n, dtype=np.int32), len(times)), [f"{light}_{k}" for k in range(n)])
     t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
-    return pa.table({"signal_id": names.cast(pa.string()), "t_ns": t_ns, "state": states.cast(pa.string())})
+    return pa.table({"signal_id": names, "t_ns": t_ns, "state": spelled(codes, SIGNAL_STATES)})

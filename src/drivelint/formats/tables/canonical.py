@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import coded, spelled
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
     BRAKE_LIGHTS,
@@ -167,14 +168,13 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
 
 def _codes(path: Path, column: pa.Array, name: str) -> Codes:
     words = _WORDS[name]
-    encoded = pc.dictionary_encode(column)
-    table = []
-    for word in encoded.dictionary.to_pylist():
+
+    def code_of(word: str) -> int:
         if word.casefold() not in words:
             raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
-        table.append(words.index(word.casefold()))
-    lookup = np.array([*table, -1], np.int8)
-    return np.asarray(lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)], np.int8)
+        return words.index(word.casefold())
+
+    return coded(column, code_of)
 
 
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> pa.Table | None:
@@ -186,11 +186,9 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()
     found = {}
     for field in (arrow_schemas("model")[path.stem].field(name) for name in (*required, *optional)):
         if field.name in table.schema.names:
-            found[field.name] = column = _column(path, table, field.name, field.type)
-            if words := _WORDS.get(field.name):
-                codes = _codes(path, column, field.name)
-                spelled = pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(words))
-                found[field.name] = spelled.cast(pa.string())
+            column = _column(path, table, field.name, field.type)
+            words = _WORDS.get(field.name)
+            found[field.name] = column if words is None else spelled(_codes(path, column, field.name), words)
     return pa.table(found)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import coded
 from drivelint.drive.trace import ACTOR_CLASSES, LOSS_CHECKS, MOTOR_VEHICLES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
@@ -207,10 +208,12 @@ class _Body:
         texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
-        encoded = pc.dictionary_encode(texts[0])
-        words = [_word(text, spec) for text in encoded.dictionary.to_pylist()]
-        table = np.array([allowed.index(word) if word is not None else -1 for word in words] + [-1], np.int8)
-        return np.asarray(table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)], np.int8)
+
+        def code_of(text: str) -> int:
+            word = _word(text, spec)
+            return -1 if word is None else allowed.index(word)
+
+        return coded(texts[0], code_of)
 
     def _ids(self, k: str, n: int) -> pa.Array:
         spec = mappings.as_field(self.mapping.columns.actor_id)
