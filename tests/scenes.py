@@ -18,7 +18,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint import catalogue
-from drivelint.drive.finish import TRACE_SCHEMAS
+from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive
 from drivelint.engine.derive import derive
@@ -257,10 +257,7 @@ def drive(
         }
         for a in actors
     ]  # fmt: skip
-    tables = {
-        name: pa.table({c: [] for c in columns}, schema=pa.schema(list(columns.items())))
-        for name, columns in TRACE_SCHEMAS.items()
-    }
+    tables = {name: store.arrow_schemas("model")[name].empty_table() for name in TRACE_TABLES}
     tables["data_log"] = pa.Table.from_pylist([log], schema=tables["data_log"].schema)
     tables["actor"] = pa.Table.from_pylist(who, schema=tables["actor"].schema)
     tables["actor_state"] = pa.table(states, schema=tables["actor_state"].schema)

@@ -10,7 +10,7 @@ import pytest
 from shapely import affinity
 from shapely.geometry import LineString, Point, box
 
-from drivelint.road.tables import from_rows
+from drivelint.sql.store import owned_table
 from tests import blinding
 from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 
@@ -67,7 +67,7 @@ def test_what_says_the_limit_or_that_there_is_none() -> None:
         way.environment,
         tables={
             **way.environment.tables,
-            "speed_limit": from_rows("speed_limit", way.environment.environment_id, limits),
+            "speed_limit": owned_table("map", "speed_limit", way.environment.environment_id, limits),
         },
     )
     t = times(7.0)

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on, tables
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, lane_points, side_driven_on
 from drivelint.road.quality import MapQuality
 
 
@@ -78,8 +78,9 @@ def test_what_lies_side_by_side_is_one_road() -> None:
         "20": ("r20", -1, 1),
     }
     assert side_driven_on(lanes) == "rht"
-    rows = tables("e", lanes)["lane_point"].to_pylist()
-    assert [row["road_s_m"] for row in rows if row["lanelet_id"] == "13"] == pytest.approx([10, 20 / 3, 10 / 3, 0])
+    points = lane_points(lanes)
+    last = np.array(points["lanelet_id"]) == "13"
+    assert points["road_s_m"][last].tolist() == pytest.approx([10, 20 / 3, 10 / 3, 0])
 
 
 def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None:

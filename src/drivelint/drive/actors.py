@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pyarrow as pa
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats
     from drivelint.drive.trace import States
 
 LARGEST_SIZE_SPREAD_M = 0.05
@@ -29,7 +29,7 @@ class Actors:
 
     ids: list[str]
     classes: list[str | None]
-    sizes: dict[str, NDArray[np.float64]]
+    sizes: dict[str, Floats]
 
 
 def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:

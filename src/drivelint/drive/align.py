@@ -16,10 +16,7 @@ from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
-    Rows = NDArray[np.intp]
+    from drivelint.arrays import Times
 
 LONGEST_PERIOD_NS: Final = 250_000_000
 """An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""
@@ -60,7 +57,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)
-    return sorted_states(_joined([states.take(kept), *added])), [finding]
+    return sorted_states(States.joined([states.take(kept), *added])), [finding]
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
@@ -107,15 +104,3 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
         numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])
     codes = {name: values[rows] for name, values in states.codes.items()}
     return States(states.ids, states.actor[rows], steps, numbers, codes, states.not_finite[rows])
-
-
-def _joined(parts: list[States]) -> States:
-    first = parts[0]
-    return States(
-        first.ids,
-        np.concatenate([part.actor for part in parts]),
-        np.concatenate([part.t_ns for part in parts]),
-        {name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers},
-        {name: np.concatenate([part.codes[name] for part in parts]) for name in first.codes},
-        np.concatenate([part.not_finite for part in parts]),
-    )

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, sums_over, ways_over, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.actors import Actors
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
@@ -110,7 +109,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     return findings + states.findings(hole, "track_gap", "info", text)
 
 
-def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
+def _jumps(states: States, step: Steps) -> Mask:
     speed = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
     # where neither speed is known, none says that it is a jump
     reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
@@ -121,7 +120,7 @@ def _jumps(states: States, step: Steps) -> NDArray[np.bool_]:
     return jump
 
 
-def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[QualityFinding]:
+def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     """Compare each step in position with the mean of the velocities at its ends.
 
     Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
@@ -152,32 +151,18 @@ def _velocity(states: States, step: Steps, jump: NDArray[np.bool_]) -> list[Qual
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
-def _against_positions(
-    states: States, step: Steps, jump: NDArray[np.bool_], n_steps: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
     """Compare the way over every `n_steps` steps of a track with the way that the velocities lead, in m/s.
 
     Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
     no jump or hole lies between.
     """
-    numbers, n = states.numbers, len(states)
-    told_mps = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
+    told_mps = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
     known = known_motion(states, step) & ~jump[1:]
-    first = np.arange(max(0, n - n_steps))
-    last = first + n_steps
-    unknown = np.r_[0, np.cumsum(~known)]
-    usable: NDArray[np.bool_] = unknown[first] == unknown[last]
-    span_s = (states.t_ns[last] - states.t_ns[first]) * 1e-9
+    went, led, usable, span_s = ways_over(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-
-    def led(rate: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.r_[0.0, np.cumsum(integral_per_step(rate, step, known))]
-        mean: NDArray[np.float64] = (total[last] - total[first]) / span_s
-        return mean
-
-    way = [(numbers[name][last] - numbers[name][first]) / span_s for name in ("x_m", "y_m")]
-    error = np.hypot(way[0] - led(numbers["vx_mps"]), way[1] - led(numbers["vy_mps"]))
-    return error, led(told_mps), np.hypot(*way), usable
+    told = sums_over(integral_per_step(told_mps, step, known), n_steps) / span_s
+    return np.hypot(*(went / span_s - led / span_s)), told, np.hypot(*(went / span_s)), usable
 
 
 def _cause(ratio: float) -> str:

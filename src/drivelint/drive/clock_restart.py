@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import UNKNOWN_CODE, changed_columns
+from drivelint.drive.order import UNKNOWN_CODE, changed_columns, repetitions
 from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Times = NDArray[np.int64]
+    from drivelint.arrays import Indices, Mask, Times
 
 LEAST_RUN_STATES: Final = 10
 """So many states of an actor in a row are a run of the clock; less is a message that came late."""
@@ -57,7 +55,7 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
     by = np.lexsort((run, states.actor))
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]
-    tracks: dict[int, list[NDArray[np.intp]]] = {}
+    tracks: dict[int, list[Indices]] = {}
     for i in np.flatnonzero(end - begin >= LEAST_RUN_STATES):
         tracks.setdefault(int(states.actor[by[begin[i]]]), []).append(by[begin[i] : end[i]])
     spans: dict[tuple[int, int], tuple[int, int]] = {}
@@ -80,7 +78,7 @@ def _among(one: Times, other: Times) -> int:
     return int(inside.sum())
 
 
-def _agreed(states: States, rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _agreed(states: States, rows: Mask) -> Mask:
     """Say which of the chosen rows are there more than once for their actor and time, and say the same each time."""
     agreed = np.zeros(len(rows), np.bool_)
     if not rows.any():
@@ -88,9 +86,7 @@ def _agreed(states: States, rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
     chosen = np.flatnonzero(rows)
     chosen = chosen[np.lexsort((states.t_ns[chosen], states.actor[chosen]))]
     ordered = states.take(chosen)
-    again = np.zeros(len(chosen), np.bool_)
-    again[1:] = (ordered.actor[1:] == ordered.actor[:-1]) & (ordered.t_ns[1:] == ordered.t_ns[:-1])
-    of = np.cumsum(~again) - 1
+    again, of = repetitions(ordered)
     several = np.bincount(of) > 1
     other = again & np.any(list(changed_columns(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0

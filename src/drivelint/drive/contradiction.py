@@ -2,6 +2,7 @@
 
 Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
 moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
+Where over half a second both lead on and differ, the position is believed and the velocity is unknown.
 A heading that turns round from one sample to the next while the motion goes on is turned back; one across the motion is unknown.
 A place that is not believed and lies upon another actor is said: whoever bounds how near the two came must know.
 """
@@ -21,9 +22,9 @@ from drivelint.drive.jumps import (
     SplitTracks,
     set_unknown,
 )
-from drivelint.drive.order import integral_per_step, known_motion, wrapped
+from drivelint.drive.order import integral_per_step, known_motion, ways_over, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
-from drivelint.drive.velocity_mismatch import mismatched_samples
+from drivelint.drive.velocity import Tracklets, sample_noise
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -31,12 +32,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask
     from drivelint.drive.actors import Actors
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
-    Numbers = NDArray[np.float64]
 
 MISMATCH_M: Final = 1.0
 MISMATCH_SHARE: Final = 0.15
@@ -62,6 +62,17 @@ SPIN_RAD: Final = np.deg2rad(45.0)
 """No heading turns round between two samples; and no vehicle spins further than this, which is 450 degrees/s at 10 Hz."""
 DIRECTED_CLASSES: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
+STRETCH_S: Final = 0.5
+"""Over so long a time the mean velocity is compared with the way, over two steps at least."""
+STRETCH_MISMATCH_MPS: Final = 0.8
+STRETCH_MISMATCH_SHARE: Final = 0.05
+"""A turning vehicle's rear axle is 0.7 m/s off its middle (1.4 m, 0.5 rad/s), a speedometer 5 %, a filter that is late 0.8 m/s."""
+SIGMAS: Final = 4.0
+"""And so many standard deviations of the positions' noise."""
+SINGLE_STEP_SHARE: Final = 0.75
+"""A single step that makes up more of the difference is a step of the positions, of which the velocity knows nothing."""
+WHOLE_TRACK_SHARE: Final = 0.5
+"""Of a track that contradicts its velocities for longer than this not a stretch is wrong, but what is recorded (see `checks`)."""
 LARGEST_HALF_BOX_M: Final = 6.0
 """No box reaches further than this from its middle, where its size is not known."""
 
@@ -84,7 +95,7 @@ def resolve(
         text = COUNT_PREFIX + "position and velocity contradict each other: they are unknown"
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
-        astray = mismatched_samples(states, step)
+        astray = _mismatched(states, step)
         text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
@@ -143,17 +154,11 @@ def _frozen(states: States, step: Steps) -> Mask:
     A sample is one if both steps beside it do, or one of them by far, or if half a second before and after it they lead elsewhere
     without such steps.
     """
-    numbers, n = states.numbers, len(states)
+    n = len(states)
     usable = known_motion(states, step)
-    went, led, slack = np.zeros((2, n - 1)), np.zeros((2, n - 1)), np.zeros(n - 1)
-    for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
-        v = numbers[rate_of]
-        went[i] = np.where(usable, np.diff(numbers[place]), 0.0)
-        led[i] = integral_per_step(v, step, usable)
-        # what the velocity did between two samples is not known
-        slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
+    went, led, slack = _step_by_step(states, step, usable)
 
-    def contradict(way: Numbers, told: Numbers, either: Numbers) -> Mask:
+    def contradict(way: Floats, told: Floats, either: Floats) -> Mask:
         fastest = np.maximum(np.hypot(*way), np.hypot(*told))
         wrong: Mask = np.hypot(*(way - told)) > MISMATCH_M + MISMATCH_SHARE * fastest + either
         return wrong
@@ -169,7 +174,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
-    def between(values: Numbers) -> Numbers:
+    def between(values: Floats) -> Floats:
         sums = np.insert(np.cumsum(values, axis=-1), 0, 0.0, axis=-1)
         return sums[..., last] - sums[..., first]
 
@@ -177,7 +182,19 @@ def _frozen(states: States, step: Steps) -> Mask:
     return frozen
 
 
-def _drifts(rest: Numbers, step: Steps) -> bool:
+def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
+    """Return how far positions go and velocities lead in each step (2, n - 1), and how far off the velocity's way may be."""
+    went, led, slack = np.zeros((2, len(usable))), np.zeros((2, len(usable))), np.zeros(len(usable))
+    for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
+        v = states.numbers[rate_of]
+        went[i] = np.where(usable, np.diff(states.numbers[place]), 0.0)
+        led[i] = integral_per_step(v, step, usable)
+        # what the velocity did between two samples is not known
+        slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
+    return went, led, slack
+
+
+def _drifts(rest: Floats, step: Steps) -> bool:
     """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
@@ -185,9 +202,48 @@ def _drifts(rest: Numbers, step: Steps) -> bool:
     return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
 
 
-def _around(
-    states: States, pieces: NDArray[np.integer], rows: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _mismatched(states: States, step: Steps) -> Mask:
+    """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
+    n, numbers = len(states), states.numbers
+    found = np.zeros(n, np.bool_)
+    k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
+    if n <= k:
+        return found
+    usable = known_motion(states, step)
+    went, led, slack = _step_by_step(states, step, usable)
+    alone = np.hypot(*(went - led))
+    went, led, whole, span = ways_over(states, step, usable, k)
+    span = np.where(whole, span, np.nan)
+    went, led = went / span, led / span
+    off, fastest = np.hypot(*(went - led)), np.hypot(*np.maximum(np.abs(went), np.abs(led)))
+    allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _most(slack, k) / span
+    with np.errstate(invalid="ignore"):
+        wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
+    if not wrong.any():
+        return found
+    runs = Tracklets.from_samples(states.t_ns, numbers["x_m"], numbers["y_m"], step)
+    sigma = sample_noise(numbers["x_m"], numbers["y_m"], runs, states.actor)
+    with np.errstate(invalid="ignore"):
+        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
+    rows = np.flatnonzero(wrong)
+    edges = np.zeros(n + 1, np.int64)
+    np.add.at(edges, rows, 1)
+    np.add.at(edges, rows + k + 1, -1)
+    found = np.cumsum(edges[:-1]) > 0
+    wrong_by_actor, all_by_actor = (
+        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[found], states.actor)
+    )
+    many = wrong_by_actor > WHOLE_TRACK_SHARE * all_by_actor
+    return found & ~many[states.actor]
+
+
+def _most(values: Floats, k: int) -> Floats:
+    """Return the largest of every k neighbouring values (m - k + 1 of m)."""
+    most: Floats = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
+    return most
+
+
+def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
     """Return for each of these rows the first and the last row of its piece within half a second of it."""
     key = pieces.astype(np.int64) * (int(np.ptp(states.t_ns)) + int(4e9)) + (states.t_ns - states.t_ns.min())
     half = int(WINDOW_S * 1e9)

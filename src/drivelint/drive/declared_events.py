@@ -8,6 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import spelled
+
 if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
@@ -64,9 +66,9 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     lamps = pa.table(
         {
             "t_ns": pa.array(states.t_ns[rows], pa.int64()),
-            "actor_id": pa.array([states.ids[i] for i in states.actor[rows]], pa.string()),
-            "event": pa.array([HEADLIGHTS] * len(rows), pa.string()),
-            "value": pa.array([None if code < 0 else HEADLIGHT_STATES[code] for code in codes[rows]], pa.string()),
+            "actor_id": spelled(states.actor[rows], states.ids),
+            "event": pa.repeat(pa.scalar(HEADLIGHTS), len(rows)),
+            "value": spelled(codes[rows], HEADLIGHT_STATES),
         }
     )
     return lamps if events is None else pa.concat_tables([events.select(lamps.column_names), lamps])

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 
+from drivelint.arrays import spelled
 from drivelint.drive import actors as actor_rows
 from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
 from drivelint.drive.motion import complete_velocities
-from drivelint.drive.order import sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
 from drivelint.drive.trace import (
     BRAKE_LIGHTS,
     INDICATORS,
@@ -26,38 +27,18 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.phrases import listed
+from drivelint.sql.store import arrow_schemas, owned_table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from drivelint.drive.actors import Actors
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
-_S, _F, _I, _B = pa.string(), pa.float64(), pa.int64(), pa.bool_()
-TRACE_SCHEMAS: dict[str, dict[str, pa.DataType]] = {
-    "data_log": {
-        "drive_id": _S, "file_name": _S, "sha256": _S, "format": _S, "environment_id": _S,
-        "t_start_ns": _I, "t_end_ns": _I, "utc_start_ns": _I, "n_states": _I, "sensor_range_m": _F,
-        "map_offset_x_m": _F, "map_offset_y_m": _F,
-        "has_indicator": _B, "has_brake_light": _B, "has_acceleration": _B,
-        "geo_reference": _S, "geo_x_m": _F, "geo_y_m": _F, "geo_yaw_rad": _F, "lon": _F, "lat": _F, "in_sight": _B,
-    },
-    "actor": {"drive_id": _S, "actor_id": _S, "actor_class": _S, **dict.fromkeys(SIZE_COLUMNS, _F), "is_ego": _B},
-    "actor_state": {
-        "drive_id": _S, "actor_id": _S, "t_ns": _I, **dict.fromkeys(STATE_COLUMNS, _F), "indicator": _S, "brake_light": _S,
-    },
-    "signal_state": {"drive_id": _S, "signal_id": _S, "t_ns": _I, "state": _S},
-    "declared_event": {"drive_id": _S, "actor_id": _S, "t_ns": _I, "event": _S, "value": _S},
-    "drive_condition": {"drive_id": _S, "condition": _S, "value": _S, "source": _S},
-    "quality": {
-        "drive_id": _S, "check_id": _S, "severity": _S, "actor_id": _S, "n": _I, "t_first_ns": _I, "message": _S,
-    },
-}  # fmt: skip
-"""Column names and types of the tables of `schemas/model.sql`, in its order."""
-_KEYS = {"signal_state": ("signal_id", "t_ns", "state"), "declared_event": ("t_ns", "actor_id", "event", "value")}
+TRACE_TABLES = (
+    "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality",
+)  # fmt: skip
+"""The tables of `schemas/model.sql` that a trace has, in its order."""
 
 
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
@@ -111,15 +92,34 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         *_lights(states, egos, is_ego),
     ]
     drive = identity.drive_id
-    tables = {
-        "data_log": _data_log(identity, recording, states, is_ego, options),
-        "actor": _actor_table(drive, actors, egos),
-        "actor_state": _state_table(drive, states),
-        "signal_state": _extra(drive, "signal_state", recording.signals),
-        "declared_event": _extra(drive, "declared_event", with_headlight_events(recording.events, states)),
-        "drive_condition": _conditions(drive, recording.conditions, dict(options.conditions)),
-        "quality": _quality(drive, findings),
+    unknown = np.full(len(states), UNKNOWN_CODE)
+    given = dict(options.conditions)  # what the user gives counts more than what the log says
+    content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
+        "data_log": [_log_row(identity, recording, states, is_ego, options)],
+        "actor": {
+            "actor_id": actors.ids,
+            "actor_class": actors.classes,
+            **{name: _nullable(actors.sizes[name]) for name in SIZE_COLUMNS},
+            "is_ego": [name in egos for name in actors.ids],
+        },
+        "actor_state": {
+            "actor_id": spelled(states.actor, states.ids),
+            "t_ns": states.t_ns,
+            **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
+            "indicator": spelled(states.codes.get("indicator", unknown), INDICATORS),
+            "brake_light": spelled(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
+        },
+        "signal_state": _distinct(recording.signals, "signal_id", "t_ns", "state"),
+        "declared_event": _distinct(
+            with_headlight_events(recording.events, states), "t_ns", "actor_id", "event", "value"
+        ),
+        "drive_condition": [
+            {"condition": name, "value": value, "source": "env" if name in given else "trace"}
+            for name, value in sorted({**recording.conditions, **given}.items())
+        ],
     }
+    tables = {name: owned_table("model", name, drive, rows) for name, rows in content.items()}
+    tables["quality"] = _quality(drive, findings)
     return Trace(
         drive,
         path,
@@ -151,7 +151,7 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
         raise TraceError(f"{path}: {errors[0].message}: {remedy}")
 
 
-def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[QualityFinding]:
+def _lights(states: States, egos: list[str], is_ego: Mask) -> list[QualityFinding]:
     findings = []
     for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)
@@ -167,14 +167,14 @@ def _lights(states: States, egos: list[str], is_ego: NDArray[np.bool_]) -> list[
     return findings
 
 
-def _data_log(
-    identity: Identity, recording: Recording, states: States, is_ego: NDArray[np.bool_], options: IngestOptions
-) -> pa.Table:
+def _log_row(
+    identity: Identity, recording: Recording, states: States, is_ego: Mask, options: IngestOptions
+) -> dict[str, Any]:
     start = int(states.t_ns.min())
     offset = recording.map_offset or (None, None)
     known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
-    row = {
-        "drive_id": identity.drive_id,
+    return {
+        **dict.fromkeys(arrow_schemas("model")["data_log"].names),
         "file_name": identity.file_name,
         "sha256": identity.sha256,
         "format": recording.format,
@@ -190,68 +190,21 @@ def _data_log(
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
     }
-    return pa.Table.from_pylist([row], schema=_schema("data_log"))
 
 
-def _actor_table(drive: str, actors: Actors, egos: list[str]) -> pa.Table:
-    columns = {
-        "drive_id": [drive] * len(actors.ids),
-        "actor_id": actors.ids,
-        "actor_class": actors.classes,
-        **{name: _nullable(actors.sizes[name]) for name in SIZE_COLUMNS},
-        "is_ego": [name in egos for name in actors.ids],
-    }
-    return pa.table(columns, schema=_schema("actor"))
-
-
-def _state_table(drive: str, states: States) -> pa.Table:
-    unknown = np.full(len(states), -1, np.int8)
-    columns = {
-        "drive_id": pa.repeat(pa.scalar(drive, _S), len(states)),
-        "actor_id": _words(states.actor, tuple(states.ids)),
-        "t_ns": states.t_ns,
-        **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
-        "indicator": _words(states.codes.get("indicator", unknown), INDICATORS),
-        "brake_light": _words(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
-    }
-    return pa.table(columns, schema=_schema("actor_state"))
-
-
-def _extra(drive: str, name: str, table: pa.Table | None) -> pa.Table:
-    """Bring a reader's signal states or events into the contract's columns and order, equal rows once."""
-    schema = _schema(name)
-    if table is None:
-        return schema.empty_table()
-    keys = _KEYS[name]
-    rows = table.select(keys).group_by(list(keys), use_threads=False).aggregate([])
-    rows = rows.sort_by([(key, "ascending") for key in keys])
-    drives = pa.repeat(pa.scalar(drive, _S), rows.num_rows)
-    return pa.table({"drive_id": drives, **{key: rows[key] for key in keys}}, schema=schema)
-
-
-def _conditions(drive: str, trace: Mapping[str, str], env: Mapping[str, str]) -> pa.Table:
-    """Bring together what the log says and what the user gives, which counts more; one row per condition."""
-    rows = [
-        {"drive_id": drive, "condition": name, "value": value, "source": "env" if name in env else "trace"}
-        for name, value in sorted({**trace, **env}.items())
-    ]
-    return pa.Table.from_pylist(rows, schema=_schema("drive_condition"))
+def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
+    """Return these columns of a reader's table in the order of the keys, equal rows once."""
+    if rows is None:
+        return dict.fromkeys(keys, ())
+    distinct = rows.select(keys).group_by(list(keys), use_threads=False).aggregate([])
+    return dict(zip(keys, distinct.sort_by([(key, "ascending") for key in keys]).select(keys).columns, strict=True))
 
 
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return pa.Table.from_pylist([{"drive_id": drive, **vars(row)} for row in rows], schema=_schema("quality"))
+    return owned_table("model", "quality", drive, [vars(row) for row in rows])
 
 
-def _schema(name: str) -> pa.Schema:
-    return pa.schema(TRACE_SCHEMAS[name].items())
-
-
-def _nullable(values: NDArray[np.float64]) -> pa.Array:
+def _nullable(values: Floats) -> pa.Array:
     return pa.array(values, from_pandas=True)
-
-
-def _words(codes: NDArray[np.int32] | NDArray[np.int8], words: tuple[str, ...]) -> pa.Array:
-    """Spell out codes as strings, -1 as NULL."""
-    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(words, _S)).cast(_S)

@@ -6,7 +6,7 @@ origin until the log ends. Two bodies are never in one place, so their tracks en
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -21,11 +21,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Mask, Times
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
-    Numbers = NDArray[np.float64]
 
 JUMP_M: Final = 3.0
 JUMP_MPS2: Final = 10.0
@@ -51,20 +50,15 @@ class RejectedPositions:
     """Positions from the log that are rejected, as parallel arrays; `actor_ids` are those of the finished drive."""
 
     actor_ids: NDArray[np.str_]
-    t_ns: NDArray[np.int64]
-    x_m: Numbers
-    y_m: Numbers
+    t_ns: Times
+    x_m: Floats
+    y_m: Floats
 
     @classmethod
     def from_rows(cls, states: States, rows: Mask) -> RejectedPositions:
         """Take the places of these rows."""
         names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
         return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
-
-    def with_more(self, more: RejectedPositions) -> RejectedPositions:
-        """Return these places and those."""
-        pairs = ((getattr(self, name), getattr(more, name)) for name in ("actor_ids", "t_ns", "x_m", "y_m"))
-        return RejectedPositions(*map(np.concatenate, pairs))
 
 
 @dataclass(frozen=True)
@@ -94,15 +88,16 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
         text = COUNT_PREFIX + "the position jumps: they are unknown around it"
         findings = states.findings(unknown, "teleport", "warning", text)
         alias = _renamed(states, pieces, kept, findings)
-    refused = RejectedPositions.from_rows(states, unknown)
+    recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     if beside.any():
         text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
         findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
-        refused = refused.with_more(RejectedPositions.from_rows(states, beside))
         set_unknown(states, beside)
-    return SplitTracks(findings, alias, refused) if findings else NO_SPLIT
+    return (
+        SplitTracks(findings, alias, RejectedPositions.from_rows(recorded, unknown | beside)) if findings else NO_SPLIT
+    )
 
 
 def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMNS) -> None:
@@ -240,7 +235,7 @@ def without_removed_actors(
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 
-def _together(states: States, place: NDArray[np.float64], one: tuple[int, int], other: tuple[int, int]) -> bool:
+def _together(states: States, place: Floats, one: tuple[int, int], other: tuple[int, int]) -> bool:
     """Say whether both rows (first, end) are of one place and share some time."""
     (a, a_end), (b, b_end) = one, other
     apart = np.hypot(*(place[:, a] - place[:, b]))

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import integral_per_step, known_motion
+from drivelint.drive.order import known_motion, ways_over
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Indices, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
@@ -39,9 +38,7 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
     return _velocity(states, step, starts, most_replaced_share) + _acceleration(states, starts)
 
 
-def _velocity(
-    states: States, step: Steps, starts: NDArray[np.intp], most_replaced_share: float
-) -> list[QualityFinding]:
+def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share: float) -> list[QualityFinding]:
     numbers = states.numbers
     vx, vy = numbers["vx_mps"], numbers["vy_mps"]
     absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
@@ -73,7 +70,7 @@ def _velocity(
     return findings
 
 
-def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
+def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
     """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
     text = (
         "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
@@ -85,24 +82,17 @@ def _filtered(states: States, rows: NDArray[np.bool_]) -> list[QualityFinding]:
     return found
 
 
-def _astray(states: States, step: Steps, most_replaced_share: float) -> NDArray[np.bool_]:
+def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
         return wrong
-    t_ns, numbers = states.t_ns, states.numbers
-    off, moved, told = (np.zeros(n - k) for _ in range(3))
-    usable = known_motion(states, step)
-    unusable = np.r_[0, np.cumsum(~usable)]
-    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
-        way = np.r_[0.0, np.cumsum(integral_per_step(numbers[rate_of], step, usable))]
-        went, led = numbers[place][k:] - numbers[place][:-k], way[k:] - way[:-k]
-        off, moved, told = np.hypot(off, went - led), np.hypot(moved, went), np.hypot(told, led)
-    span = (t_ns[k:] - t_ns[:-k]) * 1e-9
+    went, led, whole, span = ways_over(states, step, known_motion(states, step), k)
+    off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     with np.errstate(invalid="ignore"):
         fastest = np.maximum(moved, told)
-        moving = (unusable[k:] == unusable[:-k]) & (fastest > MISMATCH_MPS * span)
+        moving = whole & (fastest > MISMATCH_MPS * span)
         # positions that stand still do not tell how somebody moves: see `contradiction`
         bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
@@ -130,7 +120,7 @@ def _suspicious(states: States, k: int) -> bool:
     return bool((3 * bad > n).any())
 
 
-def _acceleration(states: States, starts: NDArray[np.intp]) -> list[QualityFinding]:
+def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
     """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     known = ~(np.isnan(ax) & np.isnan(ay))

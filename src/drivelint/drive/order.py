@@ -12,6 +12,7 @@ from drivelint.drive.trace import STATE_COLUMNS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.drive.trace import QualityFinding, States
 
 MAX_GAP_PERIODS = 2.5
@@ -37,7 +38,7 @@ def sorted_states(states: States) -> States:
     return ordered
 
 
-def _rising(t_ns: NDArray[np.int64]) -> bool:
+def _rising(t_ns: Times) -> bool:
     return bool(np.all(t_ns[1:] >= t_ns[:-1]))
 
 
@@ -46,11 +47,9 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
     An actor that is in two places, or has two headings or velocities, is present and has none.
     """
-    repeated = np.zeros(len(states), np.bool_)
-    repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
+    repeated, of = repetitions(states)
     if not repeated.any():
         return states, []
-    of = np.cumsum(~repeated) - 1
     kept = states.take(~repeated)
     differ = {
         name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
@@ -73,12 +72,19 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     ]
 
 
-def _any(rows: list[NDArray[np.bool_]]) -> NDArray[np.bool_]:
-    found: NDArray[np.bool_] = np.any(rows, axis=0)
+def repetitions(states: States) -> tuple[Mask, Indices]:
+    """Return the rows (states in order) of the actor and time of the row before, and each row's number without them."""
+    repeated = np.zeros(len(states), np.bool_)
+    repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
+    return repeated, np.cumsum(~repeated) - 1
+
+
+def _any(rows: list[Mask]) -> Mask:
+    found: Mask = np.any(rows, axis=0)
     return found
 
 
-def changed_columns(states: States) -> dict[str, NDArray[np.bool_]]:
+def changed_columns(states: States) -> dict[str, Mask]:
     """Return for each column the rows whose value differs from the row before; unknown counts as a value."""
     found = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
@@ -97,9 +103,9 @@ class Steps:
     `MAX_GAP_PERIODS` periods; `period_ns` the median step of all actors (0: no actor has two states).
     """
 
-    same: NDArray[np.bool_]
-    dt_s: NDArray[np.float64]
-    continuous: NDArray[np.bool_]
+    same: Mask
+    dt_s: Floats
+    continuous: Mask
     period_ns: int
 
 
@@ -110,14 +116,14 @@ def steps(states: States) -> Steps:
     return steps_between(states.t_ns, states.actor, int(np.median(dt[same])) if same.any() else 0)
 
 
-def steps_between(t_ns: NDArray[np.int64], actor: NDArray[np.int32], period_ns: int) -> Steps:
+def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Steps:
     """Measure the steps between these samples (n, in order) of a log of that period."""
     same = actor[1:] == actor[:-1]
     dt = np.diff(t_ns)
     return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
 
 
-def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.float64]:
+def time_derivative(values: Floats, step: Steps) -> Floats:
     """Return the time derivative: central where both neighbours are continuous, else one-sided, else NaN."""
     n = len(values)
     rise, span = np.zeros(n), np.zeros(n)
@@ -132,7 +138,7 @@ def time_derivative(values: NDArray[np.float64], step: Steps) -> NDArray[np.floa
     return result
 
 
-def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
+def known_motion(states: States, step: Steps) -> Mask:
     """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
     known = step.continuous.copy()
     for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
@@ -141,16 +147,35 @@ def known_motion(states: States, step: Steps) -> NDArray[np.bool_]:
     return known
 
 
-def integral_per_step(rate: NDArray[np.float64], step: Steps, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
     """Return how far a rate (n) leads within each step (n - 1), by the mean of its ends; 0 where that is not `known`."""
     return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
 
 
-def track_starts(actor: NDArray[np.int32]) -> NDArray[np.intp]:
+def ways_over(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
+    """Compare how far positions go and velocities lead over every `k` steps of a track.
+
+    Returns by first row (n - k): both ways (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
+    """
+    numbers = states.numbers
+    went = np.stack([numbers[name][k:] - numbers[name][:-k] for name in ("x_m", "y_m")])
+    led = np.stack([sums_over(integral_per_step(numbers[name], step, known), k) for name in ("vx_mps", "vy_mps")])
+    whole: Mask = sums_over(~known, k) == 0
+    return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
+
+
+def sums_over(values: Floats | Mask, k: int) -> Floats:
+    """Return the sum of every k neighbouring values (m - k + 1 of m)."""
+    total = np.r_[0.0, np.cumsum(values)]
+    sums: Floats = total[k:] - total[:-k]
+    return sums
+
+
+def track_starts(actor: NDArray[np.int32]) -> Indices:
     """Return the first row of each actor's track (`actor`: which one, in order); none where there are no rows."""
     return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])
 
 
-def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def wrapped(angle: Floats) -> Floats:
     """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
     return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))

@@ -14,13 +14,10 @@ from drivelint.drive.order import track_starts
 from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, sample_noise
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    Mask = NDArray[np.bool_]
-    Numbers = NDArray[np.float64]
 
 TYRE_MPS2: Final = 12.0
 """Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
@@ -59,7 +56,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     return beside | _stepped(moves, told, sigma, sigma, beside)
 
 
-def _told(states: States, place: Numbers) -> Mask:
+def _told(states: States, place: Floats) -> Mask:
     """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
@@ -73,16 +70,16 @@ def _told(states: States, place: Numbers) -> Mask:
 class _Motion(NamedTuple):
     """Steps between neighbouring samples (n - 1): their mean velocity (2, n - 1) and time; not finite where there is none."""
 
-    v: Numbers
-    dt_s: Numbers
+    v: Floats
+    dt_s: Floats
 
     @classmethod
-    def of(cls, place: Numbers, step: Steps) -> _Motion:
+    def of(cls, place: Floats, step: Steps) -> _Motion:
         dt = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
         return cls(np.diff(place, axis=1) / dt, dt)
 
 
-def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: Numbers) -> Mask:
+def _beside(place: Floats, moves: _Motion, told: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
     n = place.shape[1]
     found = np.zeros(n, np.bool_)
@@ -109,7 +106,7 @@ def _beside(place: Numbers, moves: _Motion, told: Mask, sigma: Numbers, error: N
     return found
 
 
-def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside: Mask) -> Mask:
+def _stepped(moves: _Motion, told: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
     """Return the ends of steps that both neighbours contradict by the same way, where no velocity is recorded."""
     n = len(told)
     found = np.zeros(n, np.bool_)
@@ -136,12 +133,12 @@ def _stepped(moves: _Motion, told: Mask, sigma: Numbers, error: Numbers, beside:
     return found
 
 
-def _can(one: Numbers, other: Numbers, time_s: Numbers, error_mps: Numbers) -> Mask:
+def _can(one: Floats, other: Floats, time_s: Floats, error_mps: Floats) -> Mask:
     """Say whether somebody can have gone from one velocity to the other in that time."""
     can: Mask = np.hypot(*(one - other)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
 
 
-def _least_m(dt_s: Numbers) -> Numbers:
-    least: Numbers = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_VELOCITY_M)
+def _least_m(dt_s: Floats) -> Floats:
+    least: Floats = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_VELOCITY_M)
     return least

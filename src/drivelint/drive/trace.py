@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Floats, Indices, Mask, Times
+
 Severity = Literal["info", "warning", "error"]
 
 STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
@@ -123,7 +125,7 @@ class DriveInput:
 class FrameTimes(NamedTuple):
     """The times of a log's frames in the order of the file: the time in the message and the time in the container."""
 
-    t_ns: NDArray[np.int64]
+    t_ns: Times
     log_ns: NDArray[np.uint64]
 
 
@@ -190,15 +192,15 @@ class States:
 
     ids: list[str]
     actor: NDArray[np.int32]
-    t_ns: NDArray[np.int64]
-    numbers: dict[str, NDArray[np.float64]]
-    codes: dict[str, NDArray[np.int8]]
-    not_finite: NDArray[np.bool_]
+    t_ns: Times
+    numbers: dict[str, Floats]
+    codes: dict[str, Codes]
+    not_finite: Mask
 
     def __len__(self) -> int:
         return len(self.t_ns)
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> States:
+    def take(self, rows: Indices | Mask) -> States:
         """Return the chosen rows (indices or a mask), ids unchanged."""
         return States(
             self.ids,
@@ -209,7 +211,22 @@ class States:
             self.not_finite[rows],
         )
 
-    def findings(self, rows: NDArray[np.bool_], check_id: str, severity: Severity, text: str) -> list[QualityFinding]:
+    @classmethod
+    def joined(cls, parts: Sequence[States]) -> States:
+        """Return the rows of all parts, which have the same ids and columns."""
+        first = parts[0]
+        if len(parts) == 1:
+            return first
+        return cls(
+            first.ids,
+            np.concatenate([part.actor for part in parts]),
+            np.concatenate([part.t_ns for part in parts]),
+            {name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers},
+            {name: np.concatenate([part.codes[name] for part in parts]) for name in first.codes},
+            np.concatenate([part.not_finite for part in parts]),
+        )
+
+    def findings(self, rows: Mask, check_id: str, severity: Severity, text: str) -> list[QualityFinding]:
         """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}."""
         n = int(rows.sum())
         if not n:

@@ -17,9 +17,9 @@ from drivelint.drive.order import steps_between, time_derivative
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.drive.order import Steps
 
-    Floats = NDArray[np.float64]
 
 LARGEST_ERROR_MPS: Final = 0.25
 """Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
@@ -38,12 +38,10 @@ class DerivedVelocity(NamedTuple):
 
     vx: Floats
     vy: Floats
-    filtered: NDArray[np.bool_]
+    filtered: Mask
 
 
-def derive_velocities(
-    t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps
-) -> DerivedVelocity:
+def derive_velocities(t_ns: Times, actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps) -> DerivedVelocity:
     """Derive velocities from positions (n, in order, metres; `actor`: which one, 0..)."""
     vx, vy = time_derivative(x, step), time_derivative(y, step)
     filtered = np.zeros(len(x), np.bool_)
@@ -58,7 +56,7 @@ def derive_velocities(
 
 
 def _filtered(  # noqa: PLR0917
-    t_ns: NDArray[np.int64], actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
+    t_ns: Times, actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
 ) -> DerivedVelocity:
     """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
     vx, vy = central
@@ -84,13 +82,13 @@ def _filtered(  # noqa: PLR0917
 class Tracklets(NamedTuple):
     """For each state the first and last row of its gapless stretch of one actor, and the time since that first row."""
 
-    first: NDArray[np.intp]
-    last: NDArray[np.intp]
-    key: NDArray[np.int64]
+    first: Indices
+    last: Indices
+    key: Times
     t_s: Floats
 
     @classmethod
-    def from_samples(cls, t_ns: NDArray[np.int64], x: Floats, y: Floats, step: Steps) -> Tracklets:
+    def from_samples(cls, t_ns: Times, x: Floats, y: Floats, step: Steps) -> Tracklets:
         """Part the states (n, in order) where there is a hole, or no place."""
         usable = np.isfinite(x) & np.isfinite(y)
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])

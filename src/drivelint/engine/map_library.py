@@ -27,7 +27,7 @@ from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.phrases import listed
 from drivelint.road import geo_reference
-from drivelint.road.handedness import correction_hint, opposite_side
+from drivelint.road.driving_side import correction_hint, opposite_side
 from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:

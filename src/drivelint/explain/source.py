@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import duckdb
 import pyarrow.compute as pc
 
-from drivelint.drive.finish import TRACE_SCHEMAS
+from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
@@ -17,7 +17,6 @@ from drivelint.errors import DriveLintError, UsageError
 from drivelint.explain.sandbox import renamed, with_column
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
-from drivelint.road.tables import schemas
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
-        tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_SCHEMAS}
+        tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
         actors = tables["actor"]
@@ -79,7 +78,11 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
-            road = {name: _rows(con, name, "environment_id", place) for name in schemas() if name not in _OTHER}
+            road = {
+                name: _rows(con, name, "environment_id", place)
+                for name in store.arrow_schemas("map")
+                if name not in _OTHER
+            }
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
     return Drive(Trace(drive_id, file, tables, None, None, []), environment)

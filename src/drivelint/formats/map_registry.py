@@ -79,7 +79,8 @@ def load_map(
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
         raise _too_large(source.name, len(source.content))
-    request = MapOptions((float(offset[0]), float(offset[1])), handedness, voted_handedness, origin)
+    side = None if handedness == "auto" else handedness
+    request = MapOptions((float(offset[0]), float(offset[1])), side, voted_handedness, origin)
     tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
     return tables
 

@@ -12,20 +12,18 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
+from drivelint.arrays import spelled
 from drivelint.road import driving_side
-from drivelint.road.map_reader import environment_id
-from drivelint.road.tables import Rows, crossing_row, from_columns, from_rows, map_tables, repeated
+from drivelint.road.tables import Rows, crossing_row, map_tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
@@ -135,10 +133,9 @@ class LaneGeometry:
         """The ground between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
-    def one_way_lane(self, z: Floats) -> driving_side.OneWayLane:
-        """Return the lane as one that is driven one way; `z`: its heights (m), NaN: not known."""
-        (x, y), (tx, ty) = self.centre.T, self.tangent.T
-        return driving_side.OneWayLane(x, y, z, tx, ty, self.half_width)
+    def course(self, z: Floats) -> Floats:
+        """Return the lane as `driving_side` takes it, (n, 4); `z`: its heights (m), NaN: not known."""
+        return np.column_stack([self.centre, z, self.half_width])
 
     def station(self, place: Floats) -> float:
         """Return how far along the centre line (m) a place (2,) lies."""
@@ -270,9 +267,21 @@ def map_from_bounds(
     geo: GeoFrame | None = None,
 ) -> MapTables:
     """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
-    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default")
-    content = {**tables(name, lanes), "road_object": [], **furniture}
-    return map_tables(name, source, request, content, quality, kind=kind, side=side, geo=geo)
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    content: dict[str, Rows | dict[str, Any]] = {
+        "lanelet": [_lanelet(lane) for lane in lanes],
+        "lane_point": lane_points(lanes),
+        "lane_link": [
+            {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn}
+            for lane in lanes
+            for to in sorted(set(lane.successors))
+        ],
+        "lane_boundary": [row for lane in lanes for row in _boundaries(lane)],
+        "speed_limit": [row for lane in lanes for row in _limits(lane)],
+        "road_object": [],
+        **furniture,
+    }
+    return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo)
 
 
 def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:
@@ -282,23 +291,6 @@ def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dic
         "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else float(lane.line.s[-1]) - s_m,
         "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
     }  # fmt: skip
-
-
-def tables(name: str, lanes: Sequence[BoundedLane]) -> dict[str, pa.Table]:
-    """Return lanelet, lane_point, lane_link, lane_boundary and speed_limit of lanes from `build_lanes`."""
-    by_id = {lane.lanelet_id: lane for lane in lanes}
-    links = [
-        {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn}
-        for lane in lanes
-        for to in sorted(set(lane.successors))
-    ]
-    return {
-        "lanelet": from_rows("lanelet", name, [_lanelet(lane) for lane in lanes]),
-        "lane_point": lane_points(name, lanes),
-        "lane_link": from_rows("lane_link", name, links),
-        "lane_boundary": from_rows("lane_boundary", name, [row for lane in lanes for row in _boundaries(lane)]),
-        "speed_limit": from_rows("speed_limit", name, [row for lane in lanes for row in _limits(lane)]),
-    }
 
 
 def _lanelet(lane: BoundedLane) -> dict[str, Any]:
@@ -330,8 +322,11 @@ def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def lane_points(name: str, lanes: Sequence[Any]) -> pa.Table:
-    """Return `lane_point`. Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: not known)."""
+def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
+    """Return the columns of `lane_point`.
+
+    Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: not known).
+    """
     counts = [len(lane.line.s) for lane in lanes]
     columns: dict[str, Any] = {
         "s_m": np.concatenate([lane.line.s for lane in lanes]),
@@ -339,7 +334,9 @@ def lane_points(name: str, lanes: Sequence[Any]) -> pa.Table:
         "road_s_m": np.concatenate([lane.road_s for lane in lanes]),
         "z_m": pa.array(np.concatenate([lane.z for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
-        "lanelet_id": repeated([lane.lanelet_id for lane in lanes], counts),
+        "lanelet_id": spelled(
+            np.repeat(np.arange(len(lanes), dtype=np.int32), counts), [lane.lanelet_id for lane in lanes]
+        ),
     }
     for attribute, x, y in (
         ("centre", "x_m", "y_m"),
@@ -348,7 +345,7 @@ def lane_points(name: str, lanes: Sequence[Any]) -> pa.Table:
         ("right", "right_x_m", "right_y_m"),
     ):
         columns[x], columns[y] = np.vstack([getattr(lane.line, attribute) for lane in lanes]).T
-    return from_columns("lane_point", name, columns, sum(counts))
+    return columns
 
 
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
@@ -361,13 +358,8 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     right = sum(lane.right_against is True and lane.right_id in one_way for lane in one_way.values())
     if left != right:
         return "rht" if left > right else "lht"
-    return driving_side.side_driven_on(
-        [
-            lane.line.one_way_lane(np.full(len(lane.line.s), np.nan))
-            for lane in one_way.values()
-            if lane.junction_id is None
-        ]
-    )
+    outside = [lane.line for lane in one_way.values() if lane.junction_id is None]
+    return driving_side.side_driven_on([line.course(np.full(len(line.s), np.nan)) for line in outside])
 
 
 def crossings(walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:

@@ -1,4 +1,4 @@
-"""Finds the side driven on from lanes that run beside each other in opposite directions.
+"""Finds the side driven on from lanes that run beside each other in opposite directions, and chooses among what says it.
 
 In right-hand traffic whoever comes towards a driver passes on the left, on a road with both directions as on two roads of one direction
 each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not tell which side is driven on.
@@ -12,11 +12,11 @@ import numpy as np
 import shapely
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
+    from drivelint.arrays import Floats, Indices
+    from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 SAME_CARRIAGEWAY_M: Final = 2.0  # so far apart two directions of one carriageway may be painted, as in lane_beside.sql
 CENTRAL_RESERVATION_M: Final = 15.0  # and the two carriageways of a road
@@ -29,40 +29,27 @@ _WIDEST_HALF_M: Final = 4.0
 _PROBES: Final = 20_000  # stations looked at, evenly spread
 
 
-class OneWayLane(NamedTuple):
-    """The middle of a lane that is driven one way, outside junctions, as arrays (n,) in metres.
-
-    `tx`, `ty`: the unit tangent; `z` NaN: not known.
-    """
-
-    x: Floats
-    y: Floats
-    z: Floats
-    tx: Floats
-    ty: Floats
-    half_width: Floats
-
-
 class _Pieces(NamedTuple):
-    """The straight pieces of all courses, (m,): of which lane, from which point of `course` to the next, how long, and their direction."""
+    """The straight pieces of all courses, (m,): of which lane, where they begin and end (m, 4), how long, and their direction."""
 
-    course: OneWayLane  # all of them, one after the other
-    lane: NDArray[np.intp]
-    k: NDArray[np.intp]
+    lane: Indices
+    begin: Floats
+    end: Floats
     length: Floats
     ux: Floats
     uy: Floats
 
 
-def side_driven_on(courses: Sequence[OneWayLane]) -> str | None:
+def side_driven_on(courses: Sequence[Floats]) -> str | None:
     """Return lht or rht by the lanes that run beside each other in opposite directions; None: there are none, or they disagree.
 
-    Those that touch count before those across a central reservation.
+    `courses`: the lanes that are driven one way, outside junctions, as arrays (n, 4) in metres: x and y of the middle, its height (NaN:
+    not known) and half the width. Those that touch count before those across a central reservation.
     """
     if len(courses) < 2:
         return None
     pieces = _pieces(courses)
-    if not len(pieces.k):
+    if not len(pieces.lane):
         return None
     for reach_m in (SAME_CARRIAGEWAY_M, CENTRAL_RESERVATION_M):
         left, right = _opposing(pieces, reach_m)
@@ -72,16 +59,14 @@ def side_driven_on(courses: Sequence[OneWayLane]) -> str | None:
     return None
 
 
-def _pieces(courses: Sequence[OneWayLane]) -> _Pieces:
-    lane = np.repeat(np.arange(len(courses)), [len(c.x) for c in courses])
-    c = OneWayLane(*(np.concatenate(columns) for columns in zip(*courses, strict=True)))
+def _pieces(courses: Sequence[Floats]) -> _Pieces:
+    lane = np.repeat(np.arange(len(courses)), [len(c) for c in courses])
+    points = np.concatenate(courses)
     k = np.flatnonzero(lane[:-1] == lane[1:])
-    dx, dy = c.x[k + 1] - c.x[k], c.y[k + 1] - c.y[k]
+    dx, dy = points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]
     length = np.hypot(dx, dy)
-    kept = length > 0
-    return _Pieces(
-        c, lane[k[kept]], k[kept], *(a[kept] / length[kept] ** n for a, n in ((length, 0), (dx, 1), (dy, 1)))
-    )
+    k, dx, dy, length = k[length > 0], dx[length > 0], dy[length > 0], length[length > 0]
+    return _Pieces(lane[k], points[k], points[k + 1], length, dx / length, dy / length)
 
 
 def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
@@ -89,21 +74,17 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
 
     Where both sides have one, the nearer counts.
     """
-    chosen = np.unique(np.linspace(0, len(pieces.k) - 1, min(_PROBES, len(pieces.k))).astype(np.intp))
-    c, k = pieces.course, pieces.k
-    ends = (np.stack([a[k], a[k + 1]], axis=1) for a in (c.x, c.y))
-    tree = shapely.STRtree(shapely.linestrings(*ends))
+    n = len(pieces.lane)
+    chosen = np.unique(np.linspace(0, n - 1, min(_PROBES, n)).astype(np.intp))
+    tree = shapely.STRtree(shapely.linestrings(np.stack([pieces.begin[:, :2], pieces.end[:, :2]], axis=1)))
     left, right = (_gap_to_opposing(pieces, tree, chosen, side, reach_m) for side in (1.0, -1.0))
     length = pieces.length[chosen]
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 
-def _gap_to_opposing(
-    pieces: _Pieces, tree: shapely.STRtree, chosen: NDArray[np.intp], side: float, reach_m: float
-) -> Floats:
+def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, side: float, reach_m: float) -> Floats:
     """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
-    c, k = pieces.course, pieces.k[chosen]
-    x, y, z, half = ((a[k] + a[k + 1]) / 2 for a in (c.x, c.y, c.z, c.half_width))
+    x, y, z, half = ((pieces.begin + pieces.end) / 2)[chosen].T
     ux, uy = pieces.ux[chosen], pieces.uy[chosen]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
@@ -114,12 +95,12 @@ def _gap_to_opposing(
     parallel = np.abs(along) > _ALONG
     probe, other, along = probe[parallel], other[parallel], along[parallel]
     # where the line across meets the other's middle
-    there = pieces.k[other]
-    dx, dy = c.x[there] - x[probe], c.y[there] - y[probe]
+    other_x, other_y, other_z, other_half = pieces.begin[other].T
+    dx, dy = other_x - x[probe], other_y - y[probe]
     cross = ux[probe] * pieces.uy[other] - uy[probe] * pieces.ux[other]
     off = dy * ux[probe] - dx * uy[probe] - (dx * ux[probe] + dy * uy[probe]) * cross / along
-    gap = side * off - half[probe] - c.half_width[there]
-    on_level = ~(np.abs(z[probe] - c.z[there]) >= _LEVEL_M)  # a height that is not known is any
+    gap = side * off - half[probe] - other_half
+    on_level = ~(np.abs(z[probe] - other_z) >= _LEVEL_M)  # a height that is not known is any
     fits = (gap > -_OVERLAP_M) & (gap <= reach_m) & on_level
     probe, gap, along = probe[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probe))
@@ -127,3 +108,34 @@ def _gap_to_opposing(
     found = np.full(len(chosen), np.inf)
     found[probe[nearest]] = np.where(along[nearest] < 0, gap[nearest], np.inf)
     return found
+
+
+def opposite_side(side: str) -> str:
+    """Return rht for lht, and lht for rht."""
+    return "lht" if side == "rht" else "rht"
+
+
+def correction_hint(side: str, source: str) -> str:
+    """Return what the user must do for the opposite side; `source`: what chose `side`, such as option, attribute or lanes."""
+    return (
+        f"leave the option out, or give {opposite_side(side)}"
+        if source == "option"
+        else f"give --handedness {opposite_side(side)}"
+    )
+
+
+def choose_side(
+    statements: Iterable[tuple[str, str | None]], quality: MapQuality, where: str = "the map"
+) -> tuple[str, str]:
+    """Return the side driven on and what says so: the first of (source, side) that has a side; report that others disagree."""
+    said = [(source, side) for source, side in statements if side is not None]
+    if not said:
+        message = f"nothing in {where} says which side is driven on: right-hand traffic is a guess; give --handedness"
+        quality.add("handedness_default", "warning", None, message)
+        return "rht", "default"
+    source, side = said[0]
+    if len({side for _, side in said}) > 1:
+        opinions = ", ".join(f"{source}: {side}" for source, side in said)
+        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
+        quality.add("handedness_disagrees", "warning", None, message)
+    return side, source

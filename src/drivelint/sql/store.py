@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 
@@ -15,7 +15,7 @@ from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     import pyarrow as pa
 
@@ -30,6 +30,7 @@ _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
+_TYPE = re.compile(r"^    (\w+) ([A-Z]+)(\[\])?", re.MULTILINE)
 
 
 def quoted(text: object) -> str:
@@ -142,6 +143,35 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+
+
+@cache
+def arrow_schemas(file: str) -> dict[str, pa.Schema]:
+    """Return table -> Arrow schema for every table of `schemas/<file>.sql`, in file order."""
+    import pyarrow as pa
+
+    types = {
+        "VARCHAR": pa.string(), "DOUBLE": pa.float64(), "BOOLEAN": pa.bool_(), "INTEGER": pa.int32(), "BIGINT": pa.int64(),
+    }  # fmt: skip
+    return {
+        name: pa.schema([(c, pa.list_(types[kind]) if many else types[kind]) for c, kind, many in _TYPE.findall(body)])
+        for name, body in _TABLE.findall(_declarations(file))
+    }
+
+
+def owned_table(file: str, name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
+    """Return a table of `schemas/<file>.sql` from rows, or from columns, that lack its first column: whose drive or map it is.
+
+    Errors: `KeyError` for any other column that is missing.
+    """
+    import pyarrow as pa
+
+    first, *others = arrow_schemas(file)[name]
+    columns = {
+        f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in others
+    }
+    table = pa.table(columns, schema=pa.schema(others))
+    return table.add_column(0, first, pa.repeat(pa.scalar(owner), table.num_rows))
 
 
 @cache

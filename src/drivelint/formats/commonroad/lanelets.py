@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
-from drivelint.formats.commonroad.signs import Signs, points, read_signs, referenced_ids, signal_rows, stop_line_rows
+from drivelint.formats.commonroad.signs import (
+    Signs,
+    points,
+    read_signs,
+    referenced_ids,
+    signal_rows,
+    stop_line_stations,
+)
 from drivelint.road.boundary_lanes import (
     BoundedLane,
     both_marks,
@@ -19,8 +26,9 @@ from drivelint.road.boundary_lanes import (
     map_from_bounds,
     side_driven_on,
 )
-from drivelint.road.handedness import choose_side
+from drivelint.road.driving_side import choose_side
 from drivelint.road.quality import MapQuality
+from drivelint.road.tables import stop_line_row
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,9 +80,12 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     country = _country(root)
     by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", by_country)], quality)
+    lines = stop_line_stations(root, lanes, request.offset)
     furniture = {
-        "traffic_signal": signal_rows(root, signs, lanes, request.offset),
-        "stop_line": stop_line_rows(root, lanes, request.offset),
+        "traffic_signal": signal_rows(root, signs, lanes, request.offset, lines),
+        "stop_line": [
+            stop_line_row(stop, name, s) for stop, name, s in sorted((f"{n}.stop", n, s) for n, s in lines.items())
+        ],
         "crossing": crossings(walks, lanes, request.offset),
     }
     return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side)

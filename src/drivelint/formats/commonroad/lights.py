@@ -13,8 +13,8 @@ from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
     from lxml import etree
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
 _STATES = {"red": "red", "redYellow": "red_amber", "yellow": "amber", "green": "green", "inactive": "off"}
 _LEAST_STEPS = 0.5  # a phase is a whole number of steps: a shorter one is a mistake
 
@@ -31,7 +31,7 @@ def signal_states(
     `first` and `last` are the log's time steps, of `step_s` seconds each. A row stands at the log's first step and at every change.
     """
     ids: list[str] = []
-    times: list[NDArray[np.int64]] = []
+    times: list[Times] = []
     states: list[str | None] = []
     findings = []
     for light in root.findall("trafficLight"):
@@ -60,7 +60,7 @@ def signal_states(
     ), findings
 
 
-def _unrolled(light: etree._Element, first: float, last: float) -> tuple[NDArray[np.float64], list[str | None]]:
+def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats, list[str | None]]:
     """Return the time steps at which a light's state is known or changes, and its states.
 
     The cycle begins at step `timeOffset` and goes on without end in both directions. A light that is not active is off.

@@ -6,11 +6,9 @@ A scenario has no ego but the start of a planning problem: say who it is with --
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from lxml import etree
 
 from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
@@ -23,11 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from lxml import etree
 
+    from drivelint.arrays import Codes, Floats
     from drivelint.formats.probe import Probe
 
-    Floats = NDArray[np.float64]
 
 formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
 takes_mapping: Final = False
@@ -39,12 +37,9 @@ _CLASSES = {
 }  # fmt: skip
 _FIELDS = {
     "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
-    "a": "acceleration/exact", "slip": "slipAngle/exact",
+    "a": "acceleration/exact", "slip": "slipAngle/exact", "step": "time/exact",
 }  # fmt: skip
 """What is read of a state; a value given as an interval is not known."""
-_TIME = "time/exact"
-_STATES = "(initialState|trajectory/state)"
-_TEXTS = {place: etree.XPath(f"{_STATES}/{place}/text()", smart_strings=False) for place in (*_FIELDS.values(), _TIME)}
 
 
 def accepts(probe: Probe) -> bool:
@@ -101,42 +96,21 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-@cache
-def _lacking(places: tuple[str, ...]) -> etree.XPath:
-    """Return the question whether some state lacks one of these places."""
-    return etree.XPath(f"boolean({_STATES}[{' or '.join(f'not({place}/text())' for place in places)}])")
-
-
-def _numbers(obstacle: etree._Element, states: list[etree._Element]) -> dict[str, Floats]:
-    """Return every field of the states, NaN where it is not said: all at once where each state says it once or none does."""
-    texts = {place: list(read(obstacle)) for place, read in _TEXTS.items()}  # type: ignore[arg-type]
-    said = tuple(place for place, found in texts.items() if found)
-    if all(len(texts[place]) == len(states) for place in said) and not (said and _lacking(said)(obstacle)):
-        nothing = np.full(len(states), np.nan)
-        try:
-            return {
-                p: np.array(found, dtype=np.str_).astype(np.float64) if found else nothing for p, found in texts.items()
-            }
-        except ValueError:
-            pass  # one of them is no number: which, is seen below
-    return {
-        place: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64) for place in texts
-    }
-
-
 def _states(
     path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
 ) -> dict[str, Floats]:
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
     states = [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
-    found = _numbers(obstacle, states)
+    columns = {
+        name: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64)
+        for name, place in _FIELDS.items()
+    }
     trajectory = obstacle.find("trajectory")
     more = None if trajectory is None else trajectories.get(trajectory)
     if more is not None:
         nothing = np.full(len(next(iter(more.values()))), np.nan)
-        found = {place: np.concatenate([values, more.get(place, nothing)]) for place, values in found.items()}
-    columns = {name: found[place] for name, place in _FIELDS.items()}
-    columns["step"] = np.trunc(found[_TIME])
+        columns = {n: np.concatenate([values, more.get(_FIELDS[n], nothing)]) for n, values in columns.items()}
+    columns["step"] = np.trunc(columns["step"])
     if not np.isfinite(columns["step"]).all():
         raise TraceError(
             f"{path}: obstacle {obstacle.get('id')}, line {obstacle.sourceline}: a state without an exact time"
@@ -167,7 +141,7 @@ def _size(obstacle: etree._Element) -> tuple[float, float]:
     return diameter, diameter
 
 
-def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, NDArray[np.int8]]:
+def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Codes]:
     words = [_CLASSES.get((obstacle.findtext("type") or "").strip()) for obstacle in obstacles]
     classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)

@@ -19,18 +19,17 @@ import shapely
 from drivelint.formats import safe_xml
 from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.signcodes import kind_of, turns_of_direction
-from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from lxml import etree
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
     from drivelint.road.quality import MapQuality
+    from drivelint.road.tables import Rows
 
-    Floats = NDArray[np.float64]
 
 _LISTS = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
 _LIGHT = "1000001"
@@ -156,13 +155,18 @@ def _own_refs(element: etree._Element) -> list[str]:
     return referenced_ids(element, "trafficSignRef") + referenced_ids(element, "trafficLightRef")
 
 
-def signal_rows(root: etree._Element, signs: Signs, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
-    """Return rows of `traffic_signal`: one for each sign or light and lanelet that refers to it.
+def signal_rows(
+    root: etree._Element,
+    signs: Signs,
+    lanes: Sequence[BoundedLane],
+    offset: tuple[float, float],
+    lines: Mapping[str, float],
+) -> Rows:
+    """Return rows of `traffic_signal`: one for each sign or light and lanelet that refers to it; `lines`: stations of stop lines.
 
     A light, stop sign or give-way sign stands at the lanelet's stop line if that refers to it, a light always there or, without a line, at
     the lanelet's end: its own place may be beyond the junction.
     """
-    lines = _lines(root, lanes, offset)
     by_id = {lane.lanelet_id: lane for lane in lanes}
     holds: dict[str, list[tuple[BoundedLane, float | None]]] = {}
     for lanelet in root.findall("lanelet"):
@@ -206,7 +210,9 @@ def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_
     return end if kind in _AT_THE_END else 0.0
 
 
-def _lines(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> dict[str, float]:
+def stop_line_stations(
+    root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]
+) -> dict[str, float]:
     """Return the station of each lanelet's stop line: that of its points, else the lanelet's end."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     found = {}
@@ -218,12 +224,6 @@ def _lines(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[flo
         s = shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(place + offset))
         found[lane.lanelet_id] = float(np.mean(s)) if len(place) else float(lane.line.s[-1])
     return found
-
-
-def stop_line_rows(root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
-    """Return rows of `stop_line`, one for each lanelet that has one."""
-    rows = [stop_line_row(f"{name}.stop", name, s) for name, s in _lines(root, lanes, offset).items()]
-    return sorted(rows, key=lambda r: str(r["stop_line_id"]))
 
 
 def points(parent: etree._Element | None) -> Floats:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
 _TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
 _STATE: Final = re.compile(rb"<state>.*?</state>", re.DOTALL)
 _COMMENT: Final = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
@@ -20,7 +19,7 @@ class Trajectories(NamedTuple):
     """A file without its trajectories, and the numbers of each trajectory by element path."""
 
     rest: bytes
-    columns: list[dict[str, NDArray[np.float64]]]
+    columns: list[dict[str, Floats]]
 
 
 def extract_trajectories(content: bytes) -> Trajectories | None:

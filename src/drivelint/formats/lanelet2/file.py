@@ -14,12 +14,10 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.map_reader import MapOptions, MapSource
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 _EARTH_M = 6_378_137.0
 

@@ -17,11 +17,9 @@ from drivelint.road.tables import Rows, stop_line_row
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
 
 STOP_LINE_GAP_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
 _SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in de274-60

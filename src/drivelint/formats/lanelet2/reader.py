@@ -12,8 +12,8 @@ from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
+from drivelint.road.driving_side import choose_side
 from drivelint.road.geo_reference import tangent_plane
-from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from drivelint.formats.opendrive.xml import MalformedError
 
 if TYPE_CHECKING:
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.network import Lane, LaneSection, Road
     from drivelint.formats.opendrive.planview import ReferenceLine
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drivelint.formats.opendrive.xml import number
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
-Floats = NDArray[np.float64]
+    from drivelint.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.formats.opendrive.network import DRIVABLE
 from drivelint.phrases import plural
-from drivelint.road.handedness import correction_hint, opposite_side
+from drivelint.road.driving_side import correction_hint, opposite_side
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

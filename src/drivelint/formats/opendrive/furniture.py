@@ -12,7 +12,7 @@ from drivelint.formats.opendrive.signals import signal_rows
 from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.network import Network
     from drivelint.road.quality import MapQuality
@@ -37,28 +37,35 @@ def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], q
 
 def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality) -> tuple[Rows, Rows]:
     """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
-    flat = [p for p in objects if p.kind in {"stop_line", "crossing"} and p.outline is not None and len(p.outline) > 1]
+    flat = [
+        (p, p.outline)
+        for p in objects
+        if p.kind in {"stop_line", "crossing"} and p.outline is not None and len(p.outline) > 1
+    ]
     if not flat:
         return [], []
     tree = shapely.STRtree([_area(lane) for lane in lanes])
-    stop_lines: Rows = []
-    crossings: Rows = []
-    for placed in flat:
+    found: dict[str, Rows] = {"stop_line": [], "crossing": []}
+    for placed, corners in flat:
         rows = []
-        shape = _shape(placed)
+        shape = _shape(corners)
         for i in sorted(int(i) for i in tree.query(shape)):
-            lane = lanes[i]
             common = shapely.intersection(shape, tree.geometries[i])
-            if not common.is_empty:
-                rows += (
-                    _stop_line(placed, lane, common) if placed.kind == "stop_line" else _crossing(placed, lane, common)
-                )
+            if common.is_empty:
+                continue
+            points = shapely.get_coordinates(common)
+            centre = shapely.LineString(lanes[i].line.centre)
+            s = np.atleast_1d(shapely.line_locate_point(centre, shapely.points(points)))
+            if placed.kind == "crossing" and float(shapely.area(common)) >= MIN_CROSSING_AREA_M2:
+                rows.append(crossing_row(placed.object_id, lanes[i].lanelet_id, s, _crossing_kind(placed)))
+            if placed.kind == "stop_line" and _lies_across(lanes[i], corners, points, float(np.mean(s))):
+                rows.append(stop_line_row(placed.object_id, lanes[i].lanelet_id, float(s.min())))
         if not rows:
             name = f"{placed.kind} {placed.object_id} of road {placed.road.road_id}"
             message = f"{name} lies across no lane that vehicles drive on"
             quality.add("object_without_lane", "info", placed.road.road_id, message)
-        (stop_lines if placed.kind == "stop_line" else crossings).extend(rows)
-    return stop_lines, crossings
+        found[placed.kind] += rows
+    return found["stop_line"], found["crossing"]
 
 
 def _area(lane: Lanelet) -> shapely.Geometry:
@@ -66,10 +73,8 @@ def _area(lane: Lanelet) -> shapely.Geometry:
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
-def _shape(placed: PlacedObject) -> shapely.Geometry:
-    """Return the object's area; a line that was drawn without a width stays a line."""
-    assert placed.outline is not None  # noqa: S101 - the caller's filter
-    corners = placed.outline
+def _shape(corners: Floats) -> shapely.Geometry:
+    """Return the area of an outline; a line that was drawn without a width stays a line."""
     if len(corners) > 2:
         polygon = shapely.Polygon(corners)
         if polygon.area > 0.005 * polygon.length**2:  # a square has 0.0625; 0.2 m by 3.5 m has 0.013
@@ -79,34 +84,18 @@ def _shape(placed: PlacedObject) -> shapely.Geometry:
     return shapely.LineString([corners.mean(axis=0) + r * axis for r in (reach.min(), reach.max())])
 
 
-def _stations(lane: Lanelet, points: Floats) -> tuple[Floats, Floats, float]:
-    """Return station and offset (left positive) of points on a lanelet, and the lane's width there."""
+def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) -> bool:
+    """Say whether a line is across a lane, far enough; `points`: what of it is on the lane, `middle`: the mean station of them (m)."""
     line = lane.line
-    s = np.atleast_1d(shapely.line_locate_point(shapely.LineString(line.centre), shapely.points(points)))
-    middle = float(np.mean(s))
     columns = (*line.centre.T, *line.tangent.T, line.half_width)
     x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)
     norm = max(float(np.hypot(tx, ty)), 1e-9)
-    d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm
-    return s, d, 2.0 * half
+    d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm  # left positive
+    axis = np.linalg.svd(corners - corners.mean(axis=0))[2][0]
+    across = abs(float(axis[0] * ty - axis[1] * tx)) / norm
+    return not (d.max() - d.min() < MIN_STOP_LINE_SHARE * 2.0 * half or across < np.sin(MIN_STOP_LINE_ANGLE_RAD))
 
 
-def _stop_line(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
-    assert placed.outline is not None  # noqa: S101 - the caller's filter
-    s, d, width = _stations(lane, shapely.get_coordinates(common))
-    axis = np.linalg.svd(placed.outline - placed.outline.mean(axis=0))[2][0]
-    middle = float(np.mean(s))
-    tx, ty = (float(np.interp(middle, lane.line.s, column)) for column in lane.line.tangent.T)
-    across = abs(float(axis[0] * ty - axis[1] * tx)) / max(float(np.hypot(tx, ty)), 1e-9)
-    if float(d.max() - d.min()) < MIN_STOP_LINE_SHARE * width or across < np.sin(MIN_STOP_LINE_ANGLE_RAD):
-        return []
-    return [stop_line_row(placed.object_id, lane.lanelet_id, float(s.min()))]
-
-
-def _crossing(placed: PlacedObject, lane: Lanelet, common: shapely.Geometry) -> Rows:
-    if float(shapely.area(common)) < MIN_CROSSING_AREA_M2:
-        return []
-    s, _, _ = _stations(lane, shapely.get_coordinates(common))
+def _crossing_kind(placed: PlacedObject) -> str | None:
     said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
-    kind = "zebra" if "zebra" in said else "signalled" if "signal" in said else None
-    return [crossing_row(placed.object_id, lane.lanelet_id, s, kind)]
+    return "zebra" if "zebra" in said else "signalled" if "signal" in said else None

@@ -1,4 +1,4 @@
-"""One lane of one lane section, evaluated."""
+"""One lane of one lane section, evaluated, and what holds along it: road type, speed limits, road marks."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.formats.opendrive.network import DRIVABLE, RoadMark, record_spans
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from drivelint.formats.opendrive.cubic import Floats
-    from drivelint.formats.opendrive.network import Lane, LaneSection, Road
+    from drivelint.arrays import Floats
+    from drivelint.formats.opendrive.network import Lane, LaneSection, Road, SpeedLimit
     from drivelint.road.boundary_lanes import LaneGeometry
+    from drivelint.road.tables import Rows
 
 LaneKey = tuple[str, int, int]  # road, section, lane number
 
@@ -77,3 +78,69 @@ class Lanelet:
         """Return the mean distance between the bounds (m)."""
         ds, half = np.diff(self.line.s), self.line.half_width
         return float(((half[:-1] + half[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0
+
+
+def road_type(lanelet: Lanelet) -> str | None:
+    """Return the road type that holds over most of the lanelet; None: the map does not say."""
+    road = lanelet.road
+    held: dict[str | None, float] = {}
+    for i, a, b in record_spans((s for s, _ in road.types), lanelet.strip.start_m, lanelet.strip.end_m):
+        kind = road.types[i][1] if i >= 0 else None
+        held[kind] = held.get(kind, 0.0) + b - a
+    best = max(held.items(), key=lambda item: (item[1], item[0] or ""), default=(None, 0.0))[0]
+    return None if best == "unknown" else best
+
+
+def speed_rows(lanelet: Lanelet) -> Rows:
+    """Return rows of `speed_limit`: the lane's own records, else the road type's; none where neither says."""
+    rows: Rows = []
+    start, end = lanelet.strip.start_m, lanelet.strip.end_m
+    for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
+        if i >= 0 and lanelet.lane.speeds[i].known:
+            rows += _speed_row(lanelet, a, b, lanelet.lane.speeds[i], "lane")
+            continue
+        for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
+            if j >= 0 and lanelet.road.speeds[j].known:
+                rows += _speed_row(lanelet, c, d, lanelet.road.speeds[j], "road_type")
+    return sorted(rows, key=lambda row: float(row["s_start_m"]))
+
+
+def _speed_row(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, source: str) -> Rows:
+    limit, said = speed.limit_mps, source if speed.readable else "unread"
+    return [
+        {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
+        for _, a, b in lanelet.lanelet_spans([(0, start, end)])
+    ]
+
+
+def boundary_rows(lanelet: Lanelet) -> Rows:
+    """Return rows of `lane_boundary`: both sides, all along; the marking is NULL where the map does not say.
+
+    A lane's mark lies on its outer edge, lane 0's on the centre line; double lines are named with the line nearer to
+    this lanelet first (OpenDRIVE names the inner one first, on the centre line the left one).
+    """
+    lane_no, along = lanelet.lane.number, lanelet.along
+    inside = [lane for lane in lanelet.strip.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)]
+    inner = max(inside, key=lambda lane: abs(lane.number)).marks if inside else lanelet.strip.centre_marks
+    # seen from a lane, the centre line's left-to-right order is its own on the left of the road
+    swap_inner = bool(inside) or lane_no < 0
+    outer_side, inner_side = ("left", "right") if (lane_no > 0) == (along > 0) else ("right", "left")
+    rows = _mark_rows(lanelet, outer_side, lanelet.lane.marks, swap=False)
+    rows += _mark_rows(lanelet, inner_side, inner, swap=swap_inner)
+    return sorted(rows, key=lambda row: (str(row["side"]), float(row["s_start_m"])))
+
+
+_SWAPPED = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
+
+
+def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> Rows:
+    rows = []
+    spans = record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
+    for i, a, b in lanelet.lanelet_spans(spans):
+        mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
+        marking = _SWAPPED.get(mark.marking or "", mark.marking) if swap else mark.marking
+        rows.append({
+            "lanelet_id": lanelet.lanelet_id, "side": side, "s_start_m": a, "s_end_m": b,
+            "marking": marking, "color": mark.color, "lane_change": mark.lane_change,
+        })  # fmt: skip
+    return rows

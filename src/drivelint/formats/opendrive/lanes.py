@@ -15,9 +15,7 @@ from drivelint.formats.opendrive.xml import MalformedError
 from drivelint.road.boundary_lanes import LaneGeometry
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.direction import Direction
     from drivelint.formats.opendrive.network import Lane, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
@@ -141,7 +139,14 @@ class _StripBuilder:
         if still.any():  # the centre line turns on the spot: its chords have a direction all the same
             tx, ty = np.where(still, np.gradient(x), tx), np.where(still, np.gradient(y), ty)
             norm = np.maximum(np.hypot(tx, ty), 1e-12)
-        self._check_fold(lane, np.any(line.curvature * edges.t[[i, j]] > 1.0, axis=0, keepdims=True)[0], forward)
+        folded = np.any(line.curvature * edges.t[[i, j]] > 1.0, axis=0)
+        if folded.any():
+            name = lanelet_id(self._key(lane))
+            severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"
+            message = (
+                f"an edge of lane {name} folds back on itself: the bend is tighter than the edge is far from its line"
+            )
+            self.quality.add("folded_lane", severity, name, message, int(folded.sum()))
         z = self.road.elevation.evaluate(s, s)[0] if len(self.road.elevation.start) else np.full_like(s, np.nan)
         order = slice(None, None, along)
         left, right = (i, j) if along > 0 else (j, i)
@@ -159,15 +164,6 @@ class _StripBuilder:
             self._key(lane), lane, self.road, self.strip, along, bidirectional,
             line=geometry, road_s=s[order], z=z[order], t=t[order],
         )  # fmt: skip
-
-    def _check_fold(self, lane: Lane, folded: NDArray[np.bool_], forward: Floats) -> None:
-        if folded.any():
-            name = lanelet_id(self._key(lane))
-            severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"
-            message = (
-                f"an edge of lane {name} folds back on itself: the bend is tighter than the edge is far from its line"
-            )
-            self.quality.add("folded_lane", severity, name, message, int(folded.sum()))
 
     def _key(self, lane: Lane) -> LaneKey:
         return (self.road.road_id, self.strip.section, lane.number)

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from drivelint.formats.opendrive.cubic import Cubics, cubics
 from drivelint.formats.opendrive.planview import PlanView, planview
 from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
 
 MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
@@ -110,6 +113,16 @@ class Road:
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
         """Return the strips that hold lanes of that side, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
+
+    def place(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
+        """Return x, y (m) and the road's heading (rad) at road coordinates, each (n,); `s` is held within the road."""
+        inside = np.clip(s, 0.0, self.length_m)
+        order = np.argsort(inside, kind="stable")
+        at = np.clip(inside[order], 0.0, max(self.length_m - 1e-6, 0.0))
+        line = self.plan.evaluate(inside[order], at)
+        back = np.argsort(order, kind="stable")
+        x, y = (line.x - line.sin * t[order])[back] + offset[0], (line.y + line.cos * t[order])[back] + offset[1]
+        return x, y, np.arctan2(line.sin, line.cos)[back]
 
 
 @dataclass(frozen=True)

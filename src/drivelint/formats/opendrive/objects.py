@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.formats.opendrive.placement import place
 from drivelint.formats.opendrive.xml import MalformedError, number, required_attribute
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.opendrive.network import Network, Road
     from drivelint.road.quality import MapQuality
 
@@ -116,7 +115,7 @@ def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) ->
 def _instances(
     road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
 ) -> Iterator[PlacedObject]:
-    x, y, heading = place(road, s, t, offset)
+    x, y, heading = road.place(s, t, offset)
     local, on_road = _local_outline(element), _corners(element, "cornerRoad", ("s", "t"))
     turned = heading + number(element, "hdg", 0.0)
     for i in range(len(s)):
@@ -124,7 +123,7 @@ def _instances(
         if on_road is not None:
             shift = np.array([s[i] - number(element, "s"), t[i] - number(element, "t", 0.0)]) if numbered else 0.0
             corners = on_road + shift
-            outline = np.column_stack(place(road, corners[:, 0], corners[:, 1], offset)[:2])
+            outline = np.column_stack(road.place(corners[:, 0], corners[:, 1], offset)[:2])
         elif local is not None:
             cos, sin = np.cos(turned[i]), np.sin(turned[i])
             outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
@@ -144,8 +143,8 @@ def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: t
     half = np.interp(along, [0.0, 1.0], [number(repeat, "widthStart", width), number(repeat, "widthEnd", width)]) / 2
     half = np.maximum(half, 0.5 * _BAND_WIDTH_M)
     s = np.minimum(start + along * length, road.length_m)
-    right, left = (np.column_stack(place(road, s, t + side, offset)[:2]) for side in (-half, half))
-    x, y, _ = place(road, s[:1], t[:1], offset)
+    right, left = (np.column_stack(road.place(s, t + side, offset)[:2]) for side in (-half, half))
+    x, y, _ = road.place(s[:1], t[:1], offset)
     outline = np.concatenate([right, left[::-1]])
     return PlacedObject(
         road, element, required_attribute(element, "id"), float(s[0]), float(x[0]), float(y[0]), outline

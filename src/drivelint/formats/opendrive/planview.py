@@ -17,7 +17,8 @@ from drivelint.formats.opendrive.xml import MalformedError, number
 if TYPE_CHECKING:
     from lxml import etree
 
-    from drivelint.formats.opendrive.cubic import Floats
+    from drivelint.arrays import Floats
+
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _BLOCK = 2**20  # nodes at a time: bounds the memory that a long spiral takes

@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
-from drivelint.formats.opendrive.attributes import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture
+from drivelint.formats.opendrive.lanelet import boundary_rows, road_type, speed_rows
 from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
 from drivelint.formats.opendrive.signlimits import sign_limits
 from drivelint.road.boundary_lanes import lane_points
-from drivelint.road.driving_side import side_driven_on
-from drivelint.road.handedness import opposite_side
-from drivelint.road.map_reader import environment_id
+from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
 
@@ -27,6 +25,7 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.lanes import BuiltLanes
     from drivelint.formats.opendrive.network import Network
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+    from drivelint.road.tables import Rows
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
@@ -40,21 +39,22 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     joined = links(net, lanes, quality)
     side = direction.handedness, direction.source
     turned = direction.forward != (direction.handedness == "rht")
-    name = environment_id(source, request.offset, side[0], guessed=side[1] == "default", lanes_reversed=turned)
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
     recorded = [row for lane in built for row in speed_rows(lane)]
     beside = furniture(net, built, request.offset, quality)
     signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
-    content = {
+    content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet_row(lane) for lane in built],
-        "lane_point": lane_points(name, built),
+        "lane_point": lane_points(built),
         "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in joined],
         "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
         "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
         **beside,
     }
-    tables = map_tables(name, source, request, content, quality, kind="opendrive", side=side, geo=net.geo)
+    tables = map_tables(
+        source, request, content, quality, kind="opendrive", side=side, geo=net.geo, lanes_reversed=turned
+    )
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 
 
@@ -65,7 +65,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            lane.line.one_way_lane(lane.z)
+            lane.line.course(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]

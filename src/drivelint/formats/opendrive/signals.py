@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.placement import place
 from drivelint.formats.opendrive.xml import MalformedError, integer, number
 from drivelint.road.signcodes import kind_of, turns_of
 from drivelint.road.tables import Rows, stop_line_row
@@ -166,7 +165,7 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
     inertial = signal.find("positionInertial")
     if inertial is not None:
         return number(inertial, "x") + offset[0], number(inertial, "y") + offset[1]
-    x, y, _ = place(road, np.array([number(signal, "s")]), np.array([number(signal, "t", 0.0)]), offset)
+    x, y, _ = road.place(np.array([number(signal, "s")]), np.array([number(signal, "t", 0.0)]), offset)
     return float(x[0]), float(y[0])
 
 

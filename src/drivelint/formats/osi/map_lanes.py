@@ -18,7 +18,7 @@ from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi import schema as osi_schema
 from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
-from drivelint.road.handedness import choose_side
+from drivelint.road.driving_side import choose_side
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ A position is the middle of the front bumper, an angle runs clockwise from north
 
 from __future__ import annotations
 
+import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -19,16 +19,14 @@ import pyarrow.csv as pa_csv
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import safe_xml
-from drivelint.formats.sumo import lights as sumo_lights
+from drivelint.formats.sumo.lights import add_light_states
 from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes, Floats
     from drivelint.formats.probe import Probe
 
-    Floats = NDArray[np.float64]
 
 formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
 takes_mapping: Final = True
@@ -36,31 +34,30 @@ HEAD_BYTES = 65536
 _COLUMNS = ("timestep_time", "vehicle_id", "vehicle_x", "vehicle_y", "vehicle_angle")
 _FIELDS = ("id", "x", "y", "angle", "type", "speed", "signals", "acceleration")
 _BESIDE = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
-_CLASSES = {
-    "passenger": "car", "private": "car", "taxi": "car", "evehicle": "car", "hov": "car", "custom1": "vehicle",
-    "custom2": "vehicle", "delivery": "van", "emergency": "vehicle", "authority": "vehicle", "army": "vehicle",
-    "vip": "car", "truck": "truck", "trailer": "truck", "bus": "bus", "coach": "bus", "motorcycle": "motorcycle",
-    "moped": "motorcycle", "bicycle": "bicycle", "scooter": "bicycle", "pedestrian": "pedestrian", "wheelchair": "pedestrian",
-}  # fmt: skip
-_SIZES = {
-    "passenger": (5.0, 1.8), "private": (5.0, 1.8), "taxi": (5.0, 1.8), "hov": (5.0, 1.8), "evehicle": (5.0, 1.8),
-    "delivery": (6.5, 2.16), "emergency": (6.5, 2.16), "truck": (7.1, 2.4), "trailer": (16.5, 2.55), "bus": (12.0, 2.5),
-    "coach": (14.0, 2.6), "motorcycle": (2.2, 0.9), "moped": (2.1, 0.8), "bicycle": (1.6, 0.65), "pedestrian": (0.215, 0.478),
+
+
+class VehicleType(NamedTuple):
+    """What a vType says: our class, length and width in metres; NaN: not known."""
+
+    actor_class: str | None = None
+    length_m: float = math.nan
+    width_m: float = math.nan
+
+
+_OF_CLASS = {
+    **dict.fromkeys(("passenger", "private", "taxi", "evehicle", "hov"), VehicleType("car", 5.0, 1.8)),
+    "vip": VehicleType("car"), "delivery": VehicleType("van", 6.5, 2.16), "emergency": VehicleType("vehicle", 6.5, 2.16),
+    "truck": VehicleType("truck", 7.1, 2.4), "trailer": VehicleType("truck", 16.5, 2.55), "bus": VehicleType("bus", 12.0, 2.5),
+    "coach": VehicleType("bus", 14.0, 2.6), "motorcycle": VehicleType("motorcycle", 2.2, 0.9),
+    "moped": VehicleType("motorcycle", 2.1, 0.8), "bicycle": VehicleType("bicycle", 1.6, 0.65), "scooter": VehicleType("bicycle"),
+    "pedestrian": VehicleType("pedestrian", 0.215, 0.478), "wheelchair": VehicleType("pedestrian"),
 }  # fmt: skip
 """SUMO's own sizes by vClass, where a vType says none (sumo.dlr.de, Vehicle Type Parameter Defaults)."""
 _DEFAULTS = {
-    "DEFAULT_VEHTYPE": "passenger", "DEFAULT_PEDTYPE": "pedestrian", "DEFAULT_BIKETYPE": "bicycle", "DEFAULT_TAXITYPE": "taxi",
+    "DEFAULT_VEHTYPE": _OF_CLASS["passenger"], "DEFAULT_PEDTYPE": _OF_CLASS["pedestrian"],
+    "DEFAULT_BIKETYPE": _OF_CLASS["bicycle"], "DEFAULT_TAXITYPE": _OF_CLASS["taxi"],
 }  # fmt: skip
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
-
-
-@dataclass(frozen=True)
-class VehicleType:
-    """What a vType says: our class, length and width in metres; NaN: not known."""
-
-    actor_class: str | None
-    length_m: float
-    width_m: float
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
@@ -99,10 +96,8 @@ def read(probe: Probe) -> Recording:
         raise TraceError(f"{path}: no vehicle in this log")
     types, notes = _types(path, probe.options.mapping)
     recording = _recording(table, types)
-    lights = sumo_lights.read_light_states(path, _is_log)
-    recording.signals = lights.signals
-    recording.notes += [*notes, *lights.notes]
-    recording.findings += lights.findings
+    recording.notes += notes
+    add_light_states(recording, path, _is_log)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
@@ -131,7 +126,7 @@ def _is_csv(head: bytes) -> bool:
 def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
     ids = pc.dictionary_encode(_text(table, "id")).combine_chunks()
     kinds = pc.dictionary_encode(pc.fill_null(_text(table, "type"), "")).combine_chunks()
-    said = [types.get(name) or _by_default(name) for name in kinds.dictionary.to_pylist()]
+    said = [types.get(name) or _DEFAULTS.get(name, VehicleType()) for name in kinds.dictionary.to_pylist()]
     code = kinds.indices.to_numpy()
     length, width = (np.array([getattr(t, side) for t in said], np.float64)[code] for side in ("length_m", "width_m"))
     yaw = np.pi / 2 - np.radians(_floats(table, "angle"))
@@ -165,7 +160,7 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
     return recording
 
 
-def _lights(signals: Floats) -> dict[str, NDArray[np.int8]]:
+def _lights(signals: Floats) -> dict[str, Codes]:
     known = ~np.isnan(signals)
     bits = np.nan_to_num(signals).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)
@@ -174,15 +169,6 @@ def _lights(signals: Floats) -> dict[str, NDArray[np.int8]]:
     indicator[(bits & _RIGHT > 0) & (bits & _LEFT > 0)] = INDICATORS.index("hazard")
     brake = np.where(bits & _BRAKE > 0, BRAKE_LIGHTS.index("on"), BRAKE_LIGHTS.index("off")).astype(np.int8)
     return {"indicator": np.where(known, indicator, np.int8(-1)), "brake_light": np.where(known, brake, np.int8(-1))}
-
-
-def _by_default(name: str) -> VehicleType:
-    kind = _DEFAULTS.get(name)
-    return _of_class(kind) if kind else VehicleType(None, np.nan, np.nan)
-
-
-def _of_class(kind: str) -> VehicleType:
-    return VehicleType(_CLASSES.get(kind, "vehicle"), *_SIZES.get(kind, (np.nan, np.nan)))
 
 
 def _types(path: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
@@ -214,7 +200,7 @@ def _read_types(file: Path) -> dict[str, VehicleType]:
     root = safe_xml.parse(content, f"--mapping {file}:", UsageError)
     found = {}
     for element in root.iter("vType"):
-        default = _of_class(element.get("vClass", "passenger"))
+        default = _OF_CLASS.get(element.get("vClass", "passenger"), VehicleType("vehicle"))
         found[element.get("id", "")] = VehicleType(
             default.actor_class,
             _positive(element.get("length"), default.length_m),

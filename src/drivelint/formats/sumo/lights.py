@@ -7,11 +7,12 @@ Source: SUMO's documentation of "Simulation/Output/Traffic Lights" and "Simulati
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow as pa
 
+from drivelint.arrays import spelled
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
+    from drivelint.drive.trace import Recording
+
 _BESIDE: Final = "*tls*.xml"
 _HEAD_BYTES: Final = 65536
 _LETTERS: Final = {
@@ -31,16 +34,8 @@ _LETTERS: Final = {
 """s, green for those who turn right after a stop, is none of our words: not known."""
 
 
-class LightStates(NamedTuple):
-    """The states of traffic lights, and the notes and findings about them."""
-
-    signals: pa.Table | None
-    notes: list[str]
-    findings: list[QualityFinding]
-
-
-def read_light_states(log: Path, is_log: Callable[[Path], bool]) -> LightStates:
-    """Read the states that belong to a log.
+def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], bool]) -> None:
+    """Add the states that belong to a log.
 
     They are in a file named as the log is up to the first dot, or in the only one in a folder with this log alone; `is_log` says
     whether a file is one. Of others there is a note.
@@ -53,14 +48,13 @@ def read_light_states(log: Path, is_log: Callable[[Path], bool]) -> LightStates:
         and not any(is_log(file) for file in log.parent.iterdir() if file.is_file() and file != log)
     ):
         named = files
-    if len(named) != 1:
-        if not files:
-            return LightStates(None, [], [])
+    if len(named) == 1:
+        _read(named[0], recording)
+    elif files:
         what = "which of them is its own is not known" if named else "none is named as it is"
         names = listed([file.name for file in named or files])
         note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
-        return LightStates(None, [note], [])
-    return _read(named[0])
+        recording.notes.append(note)
 
 
 def _first_part(file: Path) -> str:
@@ -72,17 +66,17 @@ def _has_states(file: Path) -> bool:
         return b"<tlsStates" in opened.read(_HEAD_BYTES)
 
 
-def _read(file: Path) -> LightStates:
+def _read(file: Path, recording: Recording) -> None:
     try:
         root = safe_xml.parse(file.read_bytes(), f"light states of {file.name} are not read: it", TraceError)
     except TraceError as error:
-        return LightStates(None, [], [QualityFinding("lights_unread", "warning", str(error))])
-    table, dropped = _rows(root.iter("tlsState"))
-    findings = []
+        recording.findings.append(QualityFinding("lights_unread", "warning", str(error)))
+        return
+    recording.signals, dropped = _rows(root.iter("tlsState"))
+    recording.notes.append(f"the states of traffic lights are those of {file.name} beside it")
     if dropped:
         message = f"light states of {file.name} without a time, light or state: {dropped}: they are left out"
-        findings.append(QualityFinding("malformed_row", "warning", message, dropped))
-    return LightStates(table, [f"the states of traffic lights are those of {file.name} beside it"], findings)
+        recording.findings.append(QualityFinding("malformed_row", "warning", message, dropped))
 
 
 def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
@@ -111,8 +105,6 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
 
 def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:
     """Return the rows of one light with `n` connections: `times` (t,) in seconds, `codes` (t * n,) of SIGNAL_STATES, -1: not known."""
-    number = pa.array(np.tile(np.arange(n, dtype=np.int32), len(times)))
-    names = pa.DictionaryArray.from_arrays(number, pa.array([f"{light}_{k}" for k in range(n)]))
-    states = pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(list(SIGNAL_STATES)))
+    names = spelled(np.tile(np.arange(n, dtype=np.int32), len(times)), [f"{light}_{k}" for k in range(n)])
     t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
-    return pa.table({"signal_id": names.cast(pa.string()), "t_ns": t_ns, "state": states.cast(pa.string())})
+    return pa.table({"signal_id": names, "t_ns": t_ns, "state": spelled(codes, SIGNAL_STATES)})

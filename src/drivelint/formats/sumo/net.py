@@ -24,11 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from lxml import etree
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-    Floats = NDArray[np.float64]
 
 DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's, where a lane says none
 _LONGEST_MITRE: Final = 3.0

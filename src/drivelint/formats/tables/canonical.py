@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import coded, spelled
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
     BRAKE_LIGHTS,
@@ -24,13 +25,13 @@ from drivelint.errors import TraceError
 from drivelint.formats.files import is_canonical_folder
 from drivelint.formats.osi.metadata import parse_conditions
 from drivelint.formats.tables import parquet
+from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes
     from drivelint.formats.probe import Probe
 
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
@@ -61,15 +62,14 @@ def read(probe: Probe) -> Recording:
     recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
     if not path.is_dir():
         return recording
-    if (path / "actor.parquet").is_file():
-        recording.actors = _actors(path / "actor.parquet")
-        ego_column = recording.actors.column("is_ego").to_pylist() if "is_ego" in recording.actors.schema.names else []
-        recording.ego_ids += [
-            i for i, is_ego in zip(recording.actors.column("actor_id").to_pylist(), ego_column, strict=False) if is_ego
-        ]
-    recording.signals = _extra(path / "signal_state.parquet", ("signal_id", "t_ns"), ("state",))
-    recording.events = _extra(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), ("value",))
-    recording.conditions = _conditions(path / "drive_condition.parquet")
+    recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
+    if recording.actors is not None:
+        recording.ego_ids += [row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego")]
+    recording.signals = _every_cell(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
+    recording.events = _every_cell(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value")
+    conditions = path / "drive_condition.parquet"
+    if said := _extra(conditions, ("condition", "value")):
+        recording.conditions = parse_conditions(conditions, zip(*said.to_pydict().values(), strict=True))
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
@@ -166,55 +166,38 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     return states.take(~lost), egos, [QualityFinding("dropped_row", "error", message, int(lost.sum()))]
 
 
-def _codes(path: Path, column: pa.Array, name: str) -> NDArray[np.int8]:
+def _codes(path: Path, column: pa.Array, name: str) -> Codes:
     words = _WORDS[name]
-    encoded = pc.dictionary_encode(column)
-    table = []
-    for word in encoded.dictionary.to_pylist():
+
+    def code_of(word: str) -> int:
         if word.casefold() not in words:
             raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
-        table.append(words.index(word.casefold()))
-    lookup = np.array([*table, -1], np.int8)
-    return np.asarray(lookup[pc.fill_null(encoded.indices, len(table)).to_numpy(zero_copy_only=False)], np.int8)
+        return words.index(word.casefold())
+
+    return coded(column, code_of)
 
 
-def _spelled(path: Path, column: pa.Array, name: str) -> pa.Array:
-    codes = _codes(path, column, name)
-    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=codes < 0), pa.array(_WORDS[name])).cast(pa.string())
-
-
-def _actors(path: Path) -> pa.Table:
-    table = parquet.table(path)
-    _need(path, table, ("actor_id",))
-    columns = {"actor_id": _column(path, table, "actor_id", pa.string())}
-    columns |= _columns(path, table, SIZE_COLUMNS, pa.float64())
-    words = _columns(path, table, ("actor_class",), pa.string())
-    columns |= {name: _spelled(path, column, name) for name, column in words.items()}
-    return pa.table(columns | _columns(path, table, ("is_ego",), pa.bool_()))
-
-
-def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...]) -> pa.Table | None:
+def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> pa.Table | None:
+    """Return the required columns of a table and those of the optional ones that it has; None: there is no such file."""
     if not path.is_file():
         return None
     table = parquet.table(path)
     _need(path, table, required)
-    types = {"t_ns": pa.int64()}
-    columns = {name: _column(path, table, name, types.get(name, pa.string())) for name in required}
-    for name in optional:
-        present = name in table.schema.names
-        columns[name] = _column(path, table, name, pa.string()) if present else pa.nulls(table.num_rows, pa.string())
-    if "state" in columns:
-        columns["state"] = _spelled(path, columns["state"], "state")
-    for name, column in columns.items():
-        if name in required and column.null_count:
-            raise TraceError(f"{path}: {column.null_count} rows have no {name}: give every row one")
-    return pa.table(columns)
+    found = {}
+    for field in (arrow_schemas("model")[path.stem].field(name) for name in (*required, *optional)):
+        if field.name in table.schema.names:
+            column = _column(path, table, field.name, field.type)
+            words = _WORDS.get(field.name)
+            found[field.name] = column if words is None else spelled(_codes(path, column, field.name), words)
+    return pa.table(found)
 
 
-def _conditions(path: Path) -> dict[str, str]:
-    if not path.is_file():
-        return {}
-    table = parquet.table(path)
-    _need(path, table, ("condition", "value"))
-    names, words = (_column(path, table, name, pa.string()).to_pylist() for name in ("condition", "value"))
-    return parse_conditions(path, zip(names, words, strict=True))
+def _every_cell(path: Path, required: tuple[str, ...], optional: str) -> pa.Table | None:
+    """Return a table whose required columns have no empty cell, and the optional one, of text, even if the file lacks it."""
+    table = _extra(path, required, (optional,))
+    if table is None:
+        return None
+    for name in required:
+        if table[name].null_count:
+            raise TraceError(f"{path}: {table[name].null_count} rows have no {name}: give every row one")
+    return table if optional in table.schema.names else table.append_column(optional, pa.nulls(len(table), pa.string()))

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.drive.order import steps, time_derivative, wrapped
-from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, States
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
+    from drivelint.drive.trace import States
     from drivelint.formats.tables.mapping import Mapping
 
 _SOURCE = {
@@ -28,8 +27,7 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
     yaw rate is the log's or, without one, the heading's derivative. Accelerations are kept as recorded.
     """
     log = states.numbers
-    n = len(states)
-    nothing = np.full(n, np.nan)
+    nothing = np.full(len(states), np.nan)
     if mapping.frame.flip_y:
         for name in {"y", "vy", "ay"} & log.keys():
             log[name] = -log[name]
@@ -46,14 +44,10 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
                 log[east], log[north] = _turned(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _to_centre(states, mapping)
-    states.numbers = {
-        ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items() if ours in {*STATE_COLUMNS, *SIZE_COLUMNS}
-    }
+    states.numbers = {ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items()}
 
 
-def _turned(
-    forward: NDArray[np.float64], left: NDArray[np.float64], yaw: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _turned(forward: Floats, left: Floats, yaw: Floats) -> tuple[Floats, Floats]:
     """Rotate a vector from the vehicle's axes into the world's."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     return forward * cos - left * sin, forward * sin + left * cos
@@ -74,7 +68,7 @@ def _to_centre(states: States, mapping: Mapping) -> None:
         log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
 
 
-def _yaw_rate(states: States) -> NDArray[np.float64]:
+def _yaw_rate(states: States) -> Floats:
     """Differentiate the heading along each actor's track, rows in any order."""
     order = np.lexsort((states.t_ns, states.actor))
     track = states.take(order)

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import coded
 from drivelint.drive.trace import ACTOR_CLASSES, LOSS_CHECKS, MOTOR_VEHICLES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
@@ -21,8 +22,7 @@ from drivelint.phrases import hint
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes, Floats, Mask, Times
     from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
 
@@ -152,7 +152,8 @@ class _Body:
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._rows(k, n, t_ns, keep))
         ids = pc.dictionary_encode(pa.concat_arrays(texts))
-        states = _joined(ids.dictionary.to_pylist(), ids.indices.to_numpy(), parts)
+        states = States.joined(parts)
+        states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
         to_map_frame(states, self.mapping)
         return Recording(
             format="",
@@ -163,7 +164,7 @@ class _Body:
             strict_units=True,
         )
 
-    def _rows(self, k: str, n: int, t_ns: NDArray[np.int64], keep: NDArray[np.bool_]) -> States:
+    def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)
         for name, spec in mappings.fields(self.mapping).items():
             if name in FIELD_QUANTITIES:
@@ -176,9 +177,7 @@ class _Body:
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
-    def _values(
-        self, name: str, spec: Field, k: str, n: int, keep: NDArray[np.bool_]
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def _values(self, name: str, spec: Field, k: str, n: int, keep: Mask) -> tuple[Floats, Mask]:
         """Return SI values, unknown as NaN, and where the log itself says NaN or infinity (an empty cell does not)."""
         units = UNITS[FIELD_QUANTITIES[name]]
         factor = units[spec.unit] if spec.unit is not None else 1.0
@@ -195,7 +194,7 @@ class _Body:
             self._refuse_degrees(column, values)
         return (values * factor if factor != 1.0 else values), odd
 
-    def _refuse_degrees(self, column: str, values: NDArray[np.float64]) -> None:
+    def _refuse_degrees(self, column: str, values: Floats) -> None:
         """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
@@ -204,15 +203,17 @@ class _Body:
                 'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> NDArray[np.int8]:
+    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> Codes:
         """Translate texts to indices into `allowed`: each distinct text once."""
         texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
-        encoded = pc.dictionary_encode(texts[0])
-        words = [_word(text, spec) for text in encoded.dictionary.to_pylist()]
-        table = np.array([allowed.index(word) if word is not None else -1 for word in words] + [-1], np.int8)
-        return np.asarray(table[pc.fill_null(encoded.indices, len(words)).to_numpy(zero_copy_only=False)], np.int8)
+
+        def code_of(text: str) -> int:
+            word = _word(text, spec)
+            return -1 if word is None else allowed.index(word)
+
+        return coded(texts[0], code_of)
 
     def _ids(self, k: str, n: int) -> pa.Array:
         spec = mappings.as_field(self.mapping.columns.actor_id)
@@ -242,7 +243,7 @@ class _Body:
         self.findings.append(QualityFinding("ego_assumed", "info", message, actor_id=first))
         return [first]
 
-    def _blank(self, columns: list[str], n: int) -> NDArray[np.bool_]:
+    def _blank(self, columns: list[str], n: int) -> Mask:
         """Say which rows hold nothing in any mapped column."""
         blank = np.ones(n, np.bool_)
         for column in columns:
@@ -250,7 +251,7 @@ class _Body:
                 blank &= ~self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
         return blank
 
-    def _report_rows(self, rows: NDArray[np.bool_], why: str, check: str) -> None:
+    def _report_rows(self, rows: Mask, why: str, check: str) -> None:
         n = int(rows.sum())
         if n:
             follows = "not judged" if check == "dropped_row" else "those values are unknown"
@@ -272,17 +273,3 @@ def _word(text: str, spec: WordMapping) -> str | None:
     if text in spec.values:
         return spec.values[text]
     return next((pattern.word for pattern in spec.patterns if re.search(pattern.match, text)), spec.default)
-
-
-def _joined(ids: list[str], actor: NDArray[np.int32], parts: list[States]) -> States:
-    if len(parts) == 1:
-        parts[0].ids, parts[0].actor = ids, actor
-        return parts[0]
-    return States(
-        ids,
-        actor,
-        np.concatenate([part.t_ns for part in parts]),
-        {name: np.concatenate([part.numbers[name] for part in parts]) for name in parts[0].numbers},
-        {name: np.concatenate([part.codes[name] for part in parts]) for name in parts[0].codes},
-        np.concatenate([part.not_finite for part in parts]),
-    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
@@ -229,31 +229,20 @@ def needed_columns(mapping: Mapping) -> list[str]:
 
 
 def _refuse_unknown(path: Path, raw: Any, kind: Any, where: str) -> None:
-    struct = _struct_of(kind)
-    if struct is None or not isinstance(raw, dict):
-        if isinstance(raw, list) and Pattern in _parts(kind):
-            for item in raw:
-                _refuse_unknown(path, item, Pattern, where)
+    parts = _parts(kind)
+    struct = next((part for part in parts if isinstance(part, type) and issubclass(part, msgspec.Struct)), None)
+    if struct is None or isinstance(raw, list) != any(get_origin(part) is list for part in parts):
         return
     known = {info.encode_name: info for info in msgspec.structs.fields(struct)}
-    for key, value in raw.items():
-        if key not in known:
-            raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint(key, known, cutoff=0.5)}")
-        _refuse_unknown(path, value, known[key].type, f"{where}{key}.")
+    for table in raw if isinstance(raw, list) else [raw]:
+        for key, value in table.items() if isinstance(table, dict) else ():
+            if key not in known:
+                raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint(key, known, cutoff=0.5)}")
+            _refuse_unknown(path, value, known[key].type, f"{where}{key}.")
 
 
 def _parts(kind: Any) -> tuple[Any, ...]:
-    inner = get_args(kind)
-    return (kind, *(part for item in inner for part in _parts(item))) if inner else (kind,)
-
-
-def _struct_of(kind: Any) -> type[msgspec.Struct] | None:
-    if any(getattr(part, "__origin__", None) is list for part in _parts(kind)) and not isinstance(kind, type):
-        return None
-    for part in _parts(kind):
-        if isinstance(part, type) and issubclass(part, msgspec.Struct):
-            return part
-    return None
+    return (kind, *(part for item in get_args(kind) for part in _parts(item)))
 
 
 def _validate(path: Path, mapping: Mapping) -> None:

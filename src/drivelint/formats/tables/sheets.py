@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import polars as pl
-    from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.formats.tables.mapping import TextLayout
 
 MAX_NS = 2.0**63
@@ -117,11 +117,11 @@ class CsvSheet:
         """Return the column as trimmed strings, empty ones as null."""
         return self._columns[name].to_arrow().cast(pa.string())
 
-    def filled(self, name: str) -> NDArray[np.bool_]:
+    def filled(self, name: str) -> Mask:
         """Say which cells hold anything but blanks."""
         return self._columns[name].is_not_null().to_numpy()
 
-    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def number(self, name: str) -> tuple[Floats, Mask]:
         """Return values (NaN: empty or bad) and which cells are not numbers."""
         import polars as pl
 
@@ -129,7 +129,7 @@ class CsvSheet:
         values = column.cast(pl.Float64, strict=False)
         return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
 
-    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def time(self, name: str, unit: str) -> tuple[Times, Mask]:
         """Return nanoseconds, whole ones exactly, and which cells are empty or not times."""
         import polars as pl
 
@@ -139,7 +139,7 @@ class CsvSheet:
         exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
         return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
 
-    def describe_rows(self, rows: NDArray[np.intp]) -> str:
+    def describe_rows(self, rows: Indices) -> str:
         """Return the line numbers of the first of these rows."""
         return describe_places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
 
@@ -179,11 +179,11 @@ class ParquetSheet:
         except pa.ArrowException as error:
             raise TraceError(f"{self._path}: column {name!r} is {column.type}, not text: map another column") from error
 
-    def filled(self, name: str) -> NDArray[np.bool_]:
+    def filled(self, name: str) -> Mask:
         """Say which cells are not null."""
         return np.asarray(self._column(name).is_valid().to_numpy(zero_copy_only=False), np.bool_)
 
-    def number(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def number(self, name: str) -> tuple[Floats, Mask]:
         """Return values; the type of the column decides whether they are numbers."""
         column = self._column(name)
         try:
@@ -194,7 +194,7 @@ class ParquetSheet:
             ) from error
         return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
 
-    def time(self, name: str, unit: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def time(self, name: str, unit: str) -> tuple[Times, Mask]:
         """Return nanoseconds; a column of time stamps or durations knows its own unit."""
         column = self._column(name)
         if pa.types.is_timestamp(column.type):
@@ -208,7 +208,7 @@ class ParquetSheet:
         beyond = np.abs(whole) > int(MAX_NS) // factor
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
-    def describe_rows(self, rows: NDArray[np.intp]) -> str:
+    def describe_rows(self, rows: Indices) -> str:
         """Return the numbers of the first of these rows."""
         return describe_places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
 
@@ -230,9 +230,7 @@ def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Serie
     return series.set(series.is_in(["", *nothing]) if nothing else series == "", None)
 
 
-def _nanoseconds(
-    values: NDArray[np.float64], bad: NDArray[np.bool_], *, factor: int
-) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _nanoseconds(values: Floats, bad: Mask, *, factor: int) -> tuple[Times, Mask]:
     """Scale to nanoseconds and round: 8.3 s is 8,300,000,000 ns."""
     with np.errstate(invalid="ignore", over="ignore"):
         scaled = np.rint(values * float(factor))

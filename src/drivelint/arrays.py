@@ -1,0 +1,36 @@
+"""Names the types of numpy arrays, and turns codes into texts and back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import pyarrow as pa
+
+Floats = NDArray[np.float64]
+Times = NDArray[np.int64]  # nanoseconds, mostly
+Mask = NDArray[np.bool_]
+Indices = NDArray[np.intp]
+Codes = NDArray[np.int8]  # indices into a tuple of words, -1: unknown
+
+
+def spelled(codes: NDArray[np.integer], words: Sequence[str]) -> pa.Array:
+    """Return the word of each code as an Arrow string array, -1 as NULL."""
+    import pyarrow as pa
+
+    indices = pa.array(codes, mask=codes < 0)
+    return pa.DictionaryArray.from_arrays(indices, pa.array(words, pa.string())).cast(pa.string())
+
+
+def coded(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:
+    """Return the code of each text, every distinct one asked for once; -1 for NULL."""
+    import pyarrow.compute as pc
+
+    encoded = pc.dictionary_encode(texts)
+    codes = np.array([*map(code_of, encoded.dictionary.to_pylist()), -1], np.int8)
+    return np.asarray(codes[pc.fill_null(encoded.indices, len(codes) - 1).to_numpy(zero_copy_only=False)], np.int8)
