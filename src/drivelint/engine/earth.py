@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import pyarrow.compute as pc
 
 from drivelint.road.geo_reference import GeoFrame, why_unusable
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,23 +16,6 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
     from drivelint.road.map_reader import MapTables
-
-# the drive's coordinates in the projection, then in degrees; a projection may have no place for some
-_PLACED: Final = """
-SELECT p.key, ST_X(place) AS lon, ST_Y(place) AS lat FROM (
-    SELECT p.key, ST_Transform(ST_Point(
-        p.x_m * cos(l.geo_yaw_rad) - p.y_m * sin(l.geo_yaw_rad) + l.geo_x_m,
-        p.x_m * sin(l.geo_yaw_rad) + p.y_m * cos(l.geo_yaw_rad) + l.geo_y_m
-    ), l.geo_reference, 'EPSG:4326', always_xy := true) AS place
-    FROM ({places}) p JOIN data_log l USING (drive_id)
-    WHERE l.geo_reference IS NOT NULL AND list_contains($ids, l.drive_id)
-) p WHERE isfinite(ST_X(place)) AND isfinite(ST_Y(place))
-"""
-_FIRST: Final = """
-SELECT drive_id, drive_id AS key, arg_min(x_m, (actor_id, t_ns)) AS x_m, arg_min(y_m, (actor_id, t_ns)) AS y_m
-FROM actor_state SEMI JOIN (FROM actor WHERE is_ego) a USING (drive_id, actor_id)
-WHERE x_m IS NOT NULL AND y_m IS NOT NULL GROUP BY drive_id
-"""
 
 
 def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFrame | None, str | None]:
@@ -66,18 +50,14 @@ def _of_map(environment: MapTables) -> GeoFrame | None:
 
 def place_drives(con: duckdb.DuckDBPyConnection, ids: Sequence[str]) -> None:
     """Set longitude and latitude of these drives in `data_log`, which has their projection."""
-    _update(con, "data_log", "drive_id", _FIRST, ids)
+    _place(con, ids, table="data_log", key="drive_id", places=statement("earth/places_of_drives"))
 
 
 def place_findings(con: duckdb.DuckDBPyConnection, ids: Sequence[str]) -> None:
     """Set longitude and latitude of the findings of these drives that have none yet."""
-    _update(con, "finding", "rowid", "SELECT drive_id, rowid AS key, x_m, y_m FROM finding WHERE lon IS NULL", ids)
+    _place(con, ids, table="finding", key="rowid", places=statement("earth/places_of_findings"))
 
 
-def _update(con: duckdb.DuckDBPyConnection, table: str, key: str, places: str, ids: Sequence[str]) -> None:
-    placed = _PLACED.format(places=places)
+def _place(con: duckdb.DuckDBPyConnection, ids: Sequence[str], **rows: str) -> None:
     if ids:
-        con.execute(
-            f"UPDATE {table} SET lon = g.lon, lat = g.lat FROM ({placed}) g WHERE g.key = {table}.{key}",
-            {"ids": list(ids)},
-        )
+        con.execute(statement("earth/position", **rows), {"ids": list(ids)})

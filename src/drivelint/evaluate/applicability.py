@@ -13,15 +13,6 @@ from drivelint.drive import conditions
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-CREATE_DISENGAGED = """
-CREATE OR REPLACE TEMP TABLE _watched AS
-SELECT s.drive_id, s.ego_id, bool_and(coalesce(NOT e.engaged, false)) AS never
-FROM step s
-LEFT JOIN ego_condition e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
-GROUP BY ALL HAVING bool_or(e.engaged IS DISTINCT FROM true)
-"""
-"""`never`: it drives at no step at all. A step without a row is a step at which it is not known."""
-
 ROUNDING_MPS = 0.01
 """Speed limits are kilometres or miles per hour, rounded in one place and not in another: 50 km/h is 13.89 or 13.8889 m/s."""
 ENGAGED = "(w.ego_id IS NULL OR e.engaged)"

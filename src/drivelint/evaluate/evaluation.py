@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint.evaluate import applicability, finalize, findings, invariant, reference_points, temp_tables
+from drivelint.evaluate import findings, invariant, reference_points, temp_tables
+from drivelint.evaluate.sql_fragments import rule_statement
 from drivelint.reasons.reason_table import make_reason_table
 from drivelint.sql import store
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,15 +51,15 @@ class Evaluation:
             self._share(todo)
         else:
             self._work(todo)
-        for statement in finalize.COLLECT_STATEMENTS:
-            self.con.execute(statement)
+        self._run("blind", "closed", "named", "failed")
         make_reason_table(
-            self.con, finalize.SELECT_REASONS, {binding.no: binding.rule.reasons for binding in self.bindings}
+            self.con,
+            "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
+            {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        for statement in finalize.INSERT_STATEMENTS:
-            self.con.execute(statement)
+        self._run("verdict", "finding", "margin")
         if self.keep_measure_series:
-            self.con.execute(finalize.INSERT_MEASURE_SERIES)
+            self._run("course")
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
@@ -95,11 +97,12 @@ class Evaluation:
         self._n_todo = temp_tables.create_tables(self.con, self.bindings)
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self.con.execute(applicability.CREATE_DISENGAGED)
+        self._run("watched")
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
         quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
-            self.con.execute(invariant.CREATE_STEP_GROUPS, {"_objects": any(b.rule.per_object for b in quick)})
+            objects = any(binding.rule.per_object for binding in quick)
+            self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
         """Run the statements of one rule."""
@@ -110,7 +113,7 @@ class Evaluation:
 
     def _is_quick(self, binding: Binding) -> bool:
         """Whether the first pass can settle groups; margins need every step anyway."""
-        return not self.margins and invariant.default_steps_table(binding.rule) is not None
+        return not self.margins and invariant.has_default_grid(binding.rule)
 
     def _is_partial(self, binding: Binding) -> bool:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
@@ -118,7 +121,7 @@ class Evaluation:
     def _invariant(self, binding: Binding) -> None:
         rule, partial, quick = binding.rule, self._is_partial(binding), self._is_quick(binding)
         if rule.per_profile:
-            self._execute(invariant.profile_set_sql(rule), binding)
+            self._execute(rule_statement("profile_set", rule), binding)
         if rule.per_object and "applies" not in rule.sections:
             self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
         n_steps = -1
@@ -139,10 +142,10 @@ class Evaluation:
         if self._may_stop(n_judged):
             return
         if self._check_engagement or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
-            self._execute(invariant.INSERT_ERRORS, binding)
+            self._execute(statement("judging/error_of_grid"), binding)
         self._execute(invariant.episodes_sql(rule), binding)
         if self._has_holes:
-            self._execute(invariant.INSERT_HOLES, binding)
+            self._execute(statement("judging/outcome_of_holes"), binding)
         self._leave(binding)
 
     def _occasion(self, binding: Binding) -> None:
@@ -156,9 +159,9 @@ class Evaluation:
         self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
         if rule.per_profile:
-            self._execute(invariant.profile_set_sql(rule), binding)
+            self._execute(rule_statement("profile_set", rule), binding)
         self._execute(reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding)
-        self._execute(reference_points.INSERT_ERRORS, binding)
+        self._execute(statement("judging/error_of_references"), binding)
         self._execute(reference_points.outcomes_sql(rule, own_object), binding)
         self._leave(binding)
 
@@ -174,16 +177,21 @@ class Evaluation:
 
     def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
         """Whether courses are asked for, and kept rows of a table of outcomes are near misses."""
-        near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND {findings.IS_NEAR_MISS}"
+        near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND is_near_miss(margin, near_margin)"
         return self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}"))
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
 
+    def _run(self, *names: str) -> None:
+        """Run statements of `queries/judging` in this order."""
+        for name in names:
+            self.con.execute(statement(f"judging/{name}"))
+
     def _execute(self, sql: str, binding: Binding) -> int:
         """Execute one statement with exactly the values it names; return how many rows it made."""
-        statement = self.con.extract_statements(sql)[0]
-        row = self.con.execute(statement, binding.values(statement.named_parameters)).fetchone()
+        parsed = self.con.extract_statements(sql)[0]
+        row = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchone()
         return int(row[0]) if row else 0
 
     def _count(self, sql: str) -> int:
@@ -220,7 +228,7 @@ class PlanRecorder(Evaluation):
         return False
 
     def _execute(self, sql: str, binding: Binding) -> int:
-        statement = self.con.extract_statements(f"EXPLAIN {sql}")[0]
-        rows = self.con.execute(statement, binding.values(statement.named_parameters)).fetchall()
+        parsed = self.con.extract_statements(f"EXPLAIN {sql}")[0]
+        rows = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchall()
         self.plans += [str(plan) for _, plan in rows]
         return super()._execute(sql, binding)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
 from drivelint.evaluate import applicability
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -17,10 +18,6 @@ if TYPE_CHECKING:
 
 _NS = 1_000_000_000
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
-
-
-UNKNOWN_TIME_NS = 2**63 - 1
-"""Stands for a time that is not known where a struct needs one to be ordered by."""
 
 
 class Binding:
@@ -38,6 +35,11 @@ class Binding:
         self._values: dict[str, object] = {
             **params,
             "_no": no,
+            "_sense": rule.sense,
+            "_eventually": rule.quantifier == "eventually",
+            "_all": rule.combine == "all",
+            "_combined": rule.combine != "each",
+            "_physical": rule.subtype == "physical",
             **applicability.bound_values(rule),
         }
         for field, name in _ENGINE.items():
@@ -54,6 +56,19 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
     if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not 0 <= seconds < _NS:
         raise UsageError(f"rule {rule_id}: {field} must be a number of seconds, not {seconds!r}")
     return round(seconds * _NS)
+
+
+def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
+    """Return `queries/judging/<name>.sql` for a rule: with its condition, how its steps decide, its profiles, and `fragments`."""
+    return statement(
+        f"judging/{name}",
+        condition=condition_ctes(rule),
+        deciding_step=deciding_step(rule),
+        first_unknown_step=first_unknown_step(rule),
+        profile="p.profile" if rule.per_profile else "''",
+        profiles="JOIN _profile_set p USING (drive_id, ego_id)" if rule.per_profile else "",
+        **fragments,
+    )
 
 
 def condition_ctes(rule: Rule) -> str:
@@ -130,7 +145,7 @@ def step_by_rank(good: int, bad: int, unknown: int, sign: str = "", *, combined:
     who = "'who': coalesce(who, ''), " if combined else ""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
-        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, {UNKNOWN_TIME_NS}), "
+        f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, unknown_time_ns()), "
         f"{who}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )
 
@@ -139,25 +154,7 @@ def first_unknown_step(rule: Rule) -> str:
     """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason, observed, required)."""
     who = "'who': coalesce(who, ''), " if rule.combine != "each" else ""
     return (
-        f"min({{'t': coalesce(t_ns, {UNKNOWN_TIME_NS}), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
+        f"min({{'t': coalesce(t_ns, unknown_time_ns()), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
         "'observed': observed, 'required': required}) "
         "FILTER (holds IS NULL)"
     )
-
-
-def measure_columns(rule: Rule, step: str = "") -> str:
-    """Return the columns observed, required, margin of an outcome; `step` is '' or its worst step with a dot.
-
-    Infinity is stored as NULL, and there is no margin to it.
-    """
-    observed, required = f"{step}observed", f"{step}required"
-    margin = "NULL::DOUBLE"
-    if rule.sense != "holds":
-        gain = f"{observed} - {required}" if rule.sense[0] == ">" else f"{required} - {observed}"
-        margin = f"CASE WHEN {step}holds IS NOT NULL THEN {finite_or_null(f'({gain})')} END"
-    return f"{finite_or_null(observed)} AS observed, {finite_or_null(required)} AS required, {margin} AS margin"
-
-
-def finite_or_null(value: str) -> str:
-    """Return the SQL for a number, NULL where it is infinite; never a negative zero."""
-    return f"CASE WHEN isfinite({value}) THEN {value} + 0.0::DOUBLE END"

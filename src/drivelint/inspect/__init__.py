@@ -23,6 +23,7 @@ from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
 from drivelint.reasons import reason_text
 from drivelint.sql import store
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,17 +37,6 @@ if TYPE_CHECKING:
 
 DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
-_REGISTRATIONS: Final = """
-SELECT ego_id, ok, reason, n_steps AS steps, n_on_lane AS on_lane, n_moving AS moving, n_with_direction AS with_direction,
-    lateral_median_m
-FROM registration
-"""
-_QUALITY: Final = """
-SELECT 'log' AS about, severity, check_id, message, n, actor_id, t_first_ns FROM quality
-UNION ALL
-SELECT 'map', severity, check_id, coalesce(lanelet_id || ': ', '') || message, n, NULL, NULL FROM map_quality
-ORDER BY about, check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message
-"""
 
 
 @dataclass(frozen=True)
@@ -163,7 +153,7 @@ def _judgeable(
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "exposure")}
-        registrations = {row["ego_id"]: row for row in _rows(con, _REGISTRATIONS)}
+        registrations = {row["ego_id"]: row for row in _rows(con, statement("inspect/registration"))}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()
@@ -213,7 +203,7 @@ def _registration(row: dict[str, Any] | None) -> model.MapRegistration | None:
 
 
 def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:
-    rows = _rows(con, _QUALITY)
+    rows = _rows(con, statement("inspect/quality"))
     for row in rows:
         row["first_at_s"] = None if row["t_first_ns"] is None else (row["t_first_ns"] - start_ns) / 1e9
     return sorted(msgspec.convert(rows, list[model.Quality]), key=lambda q: _SEVERITIES.index(q.severity))

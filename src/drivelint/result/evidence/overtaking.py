@@ -2,65 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from drivelint.reasons.reason_table import make_reason_table
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     import duckdb
-
-# as the runtime assertions say it: touching is inside; a vehicle that cannot be placed could only make it worse
-_SAID: Final = """CASE WHEN ov_id IS NULL AND ov_known THEN 'nobody' WHEN {0} >= 0 THEN 'fail'
-            WHEN {0} < 0 AND ov_known THEN 'pass' ELSE 'unknown' END"""
-
-_OVERTAKES: Final = f"""
-INSERT INTO overtake_record BY NAME
-WITH said AS (
-    SELECT o.drive_id, o.ego_id, o.occurrence, o.t_ns, o.stage, t.k, t.seg,
-        [CASE WHEN vbp_in_ds_av_m >= 0 THEN 'fail' WHEN vbp_in_ds_av_m < 0 THEN 'pass' ELSE 'unknown' END,
-            {_SAID.format("ov_in_ds_av_m")}, {_SAID.format("av_in_ds_ov_m")}, {_SAID.format("ds_overlap_m")}] AS said,
-        vbp_in_ds_av_m AS a, ov_in_ds_av_m AS b, av_in_ds_ov_m AS c, ds_overlap_m AS d
-    FROM overtake_step o JOIN step t USING (drive_id, ego_id, t_ns)
-),
-changed AS (
-    SELECT *, (lag((stage, seg, said)) OVER w IS DISTINCT FROM (stage, seg, said))::INTEGER AS fresh FROM said
-    WINDOW w AS (PARTITION BY drive_id, ego_id, occurrence ORDER BY t_ns)
-),
-numbered AS (
-    SELECT *, sum(fresh) OVER (PARTITION BY drive_id, ego_id, occurrence ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS run FROM changed
-),
-stretch AS (
-    SELECT drive_id, ego_id, occurrence, run, stage, said, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns, count(*) AS n,
-        [max(a), max(b), max(c), max(d)] AS worst_m
-    FROM numbered GROUP BY ALL
-),
-stretches AS (
-    SELECT drive_id, ego_id, occurrence, list({{'stage': stage, 't_start_ns': t_start_ns, 't_end_ns': t_end_ns, 'n': n, 'said': said,
-        'worst_m': worst_m}} ORDER BY run) AS stretches
-    FROM stretch GROUP BY ALL
-),
-profiles AS (
-    SELECT s.drive_id, s.ego_id, s.occurrence, list({{'profile': s.profile, 'style': p.style, 'da_m': s.da_m, 'at_least': s.at_least,
-        'nobody': s.nobody, 'sda_m': s.sda_m, 'spare_m': s.spare_m, 'spare_s': s.spare_s, 'zone': s.zone, 'reason': w.words
-        }} ORDER BY p.style, s.profile) AS profiles
-    FROM overtake_sda s JOIN profile p USING (profile) LEFT JOIN _worded w ON w.cause = s.reason GROUP BY ALL
-)
-SELECT o.drive_id, o.ego_id, o.occurrence, o.status, o.opposing, o.vbp_id, o.ov_id, o.begin_seen, o.t0_ns, o.t1_ns, o.t2_ns, o.t3_ns,
-    o.t_end_ns, o.v_av_mps, o.v_vbp_mps, o.v_ov_mps, o.l_av_m, o.l_vbp_m, o.lane_width_m, o.da_m, coalesce(p.profiles, []) AS profiles,
-    coalesce(s.stretches, []) AS stretches
-FROM overtake o
-LEFT JOIN profiles p USING (drive_id, ego_id, occurrence)
-LEFT JOIN stretches s USING (drive_id, ego_id, occurrence)
-"""
-
-_OPPORTUNITIES: Final = """
-INSERT INTO opportunity_record BY NAME
-SELECT o.*, p.style FROM opportunity o JOIN profile p USING (profile)
-"""
 
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the overtakes and opportunities of the batch, as far as its rules needed them."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
-    con.execute(_OVERTAKES)
-    con.execute(_OPPORTUNITIES)
+    con.execute(statement("evidence/overtake_record"))
+    con.execute(statement("evidence/opportunity_record"))

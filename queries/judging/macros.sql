@@ -1,0 +1,38 @@
+-- Macros of the statements in this folder. They are made anew for each evaluation; no rule can call them.
+
+-- What makes a kept row a near miss.
+CREATE OR REPLACE TEMP MACRO is_near_miss(margin, near_margin) AS round(margin, 6) < near_margin;
+
+-- A number, NULL where it is infinite; never a negative zero.
+CREATE OR REPLACE TEMP MACRO finite(value) AS CASE WHEN isfinite(value) THEN value + 0.0::DOUBLE END;
+
+-- By how much a measure keeps what is required; there is no margin to infinity, to what is not decided, or of sense 'holds'.
+CREATE OR REPLACE TEMP MACRO margin_of(sense, observed, required, holds) AS CASE WHEN sense <> 'holds' AND holds IS NOT NULL
+    THEN finite(CASE WHEN sense IN ('>', '>=') THEN observed - required ELSE required - observed END) END;
+
+-- Stands for a time that is not known where a struct needs one to be ordered by.
+CREATE OR REPLACE TEMP MACRO unknown_time_ns() AS 9_223_372_036_854_775_807;
+CREATE OR REPLACE TEMP MACRO known_time_ns(t_ns) AS nullif(t_ns, unknown_time_ns());
+
+-- Whether a code says at what time something is not known, and not why.
+CREATE OR REPLACE TEMP MACRO tells_no_cause(code) AS code IN ('missing_step', 'null_value', 'applies_unknown');
+
+-- Why an object has no place, as a code.
+CREATE OR REPLACE TEMP MACRO lack(off_level, x_m, y_m, yaw_rad, length_m, width_m) AS CASE WHEN off_level THEN 'off_level'
+    WHEN x_m IS NULL OR y_m IS NULL THEN 'no_position' WHEN yaw_rad IS NULL THEN 'no_heading'
+    WHEN length_m IS NULL OR width_m IS NULL THEN 'no_size' END;
+
+-- Why the nearest object that has no place hides what the rule asks for.
+CREATE OR REPLACE TEMP MACRO hidden_reason(nearest) AS why(CASE nearest.code WHEN 'lost' THEN 'object_lost'
+        WHEN 'lost_behind' THEN 'object_lost_behind' WHEN 'appeared' THEN 'object_appeared' ELSE 'object_hidden' END,
+    {'object_id': nearest.id, 'lack': nearest.code,
+        't_ns': CASE WHEN nearest.code IN ('lost', 'lost_behind') THEN nearest.to_ns
+            WHEN nearest.code = 'appeared' THEN nearest.from_ns END,
+        'near_m': CASE WHEN nearest.m >= 1 THEN floor(nearest.m) END});
+
+-- Parts of sentences.
+CREATE OR REPLACE TEMP MACRO seconds(t_ns) AS format('{:.3f} s', t_ns / 1e9);
+CREATE OR REPLACE TEMP MACRO amount(value, unit) AS format('{:.6g}', value) || coalesce(' ' || unit, '');
+CREATE OR REPLACE TEMP MACRO threshold(sense, value, unit) AS CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least '
+    WHEN '<' THEN 'less than ' ELSE 'at most ' END || amount(value, unit);
+CREATE OR REPLACE TEMP MACRO capital(words) AS upper(words[1]) || words[2:];

@@ -1,0 +1,27 @@
+"""The statements that stand in files of `queries` and are neither derivations nor parts of rules."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Final
+
+from drivelint.resources import folder
+
+_FRAGMENT: Final = re.compile(r"\{(\w+)\}")
+
+
+def statement(name: str, **fragments: str) -> str:
+    """Return the text of `queries/<name>.sql` with each `{fragment}` in it replaced; in SQL, no word stands in braces alone.
+
+    Errors: `KeyError` for a fragment of the file that is not given.
+    """
+    part, _, file = name.rpartition("/")
+    return _FRAGMENT.sub(lambda found: fragments[found[1]], texts(part)[file])
+
+
+@cache
+def texts(part: str) -> dict[str, str]:
+    """Return file name -> text for every statement of `queries/<part>`."""
+    files = sorted((folder("queries") / part).glob("*.sql"))
+    return {file.stem: file.read_text(encoding="utf-8") for file in files}
