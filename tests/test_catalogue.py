@@ -16,7 +16,6 @@ from drivelint.casefile import coverage_problem, read_cases, run_cases, run_merg
 from drivelint.casefile.merged_cases import MERGE_KEYS
 from drivelint.casefile.mutation import entries_without_rule, judge_mutants
 from drivelint.catalogue import load_rules
-from drivelint.evaluate import query_plans
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -62,14 +61,6 @@ def test_cases(rule_id: str) -> None:
 @pytest.mark.parametrize("rule_id", SAMPLE)
 def test_each_case_alone_and_as_egos(rule_id: str) -> None:
     assert [message for _, ok, message in run_cases(RULES[rule_id]) if not ok] == []
-
-
-@pytest.mark.parametrize("rule_id", IDS)
-def test_the_plans_join_on_keys(con: duckdb.DuckDBPyConnection, rule_id: str) -> None:
-    plans = query_plans(con, RULES[rule_id])
-    assert plans
-    for plan in plans:
-        assert "BLOCKWISE_NL" not in plan, plan
 
 
 @pytest.mark.parametrize("rule_id", SAMPLE)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -34,7 +32,7 @@ from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, sayi
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     import duckdb
@@ -227,33 +225,6 @@ def test_derived_rows_of_a_hundred_thousand_states() -> None:
     with store.connect(threads=2) as con:
         assert prints(derived(one, con=con)) == first
     assert first["overtake"][0] > 5
-
-
-@pytest.mark.parametrize("table", [name for name, d in derivations().items() if not d.of_the_map])
-def test_no_derivation_compares_everything_with_everything(table: str) -> None:
-    """Joins are by key: a nested loop over two tables of a drive would take hours on a long one."""
-    plan = _filled().execute(f"EXPLAIN (FORMAT json) {derivations()[table].sql}").fetchall()[0][1]
-    assert list(_loops(json.loads(plan))) == []
-
-
-def _loops(plan: list[dict[str, Any]]) -> Iterator[object]:
-    """Give the conditions of each nested loop over two tables; the planner joins few rows by one although they have keys."""
-    for node in plan:
-        by_key = re.search(r"\w = \w", str(node["extra_info"]))
-        if (
-            node["name"] in {"NESTED_LOOP_JOIN", "BLOCKWISE_NL_JOIN"}
-            and not by_key
-            and not any(map(_few, node["children"]))
-        ):
-            yield node["extra_info"]
-        yield from _loops(node["children"])
-
-
-def _few(node: dict[str, Any]) -> bool:
-    """Say whether a side of a join is a list of constants, or one row."""
-    while node["name"] == "PROJECTION":
-        node = node["children"][0]
-    return node["name"] in {"COLUMN_DATA_SCAN", "UNGROUPED_AGGREGATE"}
 
 
 @pytest.mark.parametrize("table", [name for name, d in derivations().items() if d.needs])

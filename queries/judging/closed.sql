@@ -21,8 +21,12 @@ WITH _rows AS (
     SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
     FROM _blind b
     JOIN _subject s ON s.drive_id = b.drive_id AND s.ego_id = b.ego_id
-    JOIN _rule r ON b.signal IS NULL AND r.kind <> 'invariant'
-        OR EXISTS (FROM _needs n WHERE n.rule_no = r.rule_no AND n.signal = b.signal)
+    -- a stretch without steps (no signal) concerns every rule that is no invariant
+    JOIN (
+        SELECT rule_no, NULL AS signal FROM _rule WHERE kind <> 'invariant'
+        UNION
+        SELECT rule_no, signal FROM _needs
+    ) r ON r.signal IS NOT DISTINCT FROM b.signal
 ), _gaps AS (
     -- one outcome per rule and subject for the stretches that no unknown row of the rule speaks of; none where the rule's
     -- conditions never held, or the automated driver never drives
@@ -37,9 +41,13 @@ WITH _rows AS (
     LEFT JOIN (
         SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions')) AS elsewhere FROM _kept GROUP BY ALL
     ) k ON k.rule_no = b.rule_no AND k.drive_id = b.drive_id AND k.ego_id = b.ego_id
-    ANTI JOIN _kept u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
-        AND (u.verdict = 'error' OR u.verdict = 'unknown' AND coalesce(
-            u.t_start_ns <= b.b_ns + b.max_gap_ns AND u.t_end_ns >= b.a_ns - b.max_gap_ns, true))
+    ANTI JOIN (
+        -- an error, or an unknown without times, speaks of the whole drive
+        SELECT rule_no, drive_id, ego_id, coalesce(CASE WHEN verdict = 'unknown' THEN t_start_ns END, -9_000_000_000_000_000_000) AS from_ns,
+            coalesce(CASE WHEN verdict = 'unknown' THEN t_end_ns END, 9_000_000_000_000_000_000) AS to_ns
+        FROM _kept WHERE verdict IN ('error', 'unknown')
+    ) u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
+        AND u.from_ns <= b.b_ns + b.max_gap_ns AND u.to_ns >= b.a_ns - b.max_gap_ns
     WHERE w.never IS DISTINCT FROM true AND k.elsewhere IS DISTINCT FROM true
     GROUP BY b.rule_no, b.drive_id, b.ego_id
 ), _seen AS (

@@ -29,7 +29,8 @@ BOTH = {"reads": '["ego_state", "exit_taken"]'}
 
 @pytest.fixture(scope="module")
 def con() -> duckdb.DuckDBPyConnection:
-    con = duckdb.connect(config={"threads": 2})
+    con = store.open_as_is()
+    con.execute("SET threads=2")
     store.create_tables(con)
     store.create_macros(con)
     return con

@@ -1,0 +1,150 @@
+"""No statement of a run compares rows with rows one by one, seen on the rows of a run.
+
+The planner takes other joins on small tables than on large ones, and a plan says little about how many rows meet. So every statement of
+derivations, rules and evidence is run under EXPLAIN ANALYZE, over drives that fill the tables, and the rows that went in are counted.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import pytest
+
+from drivelint import catalogue
+from drivelint.drive.trace import IngestOptions
+from drivelint.engine import session
+from drivelint.engine.batch import Drive
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.evaluate.evaluation import Evaluation
+from drivelint.formats import read_trace
+from drivelint.result import evidence
+from drivelint.sql import store
+from tests.bench import traffic
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    import duckdb
+
+LOOPS = ("BLOCKWISE_NL_JOIN", "NESTED_LOOP_JOIN", "CROSS_PRODUCT", "POSITIONAL_JOIN")
+MOST_ROWS = 1_000
+"""So many rows may meet all rows of a side that has more than a few."""
+A_FEW = 30
+"""Rows of a list of constants, or drives of a batch: what they meet is a projection of it, repeated."""
+EXPLAINED = ("SELECT", "INSERT", "CREATE", "UPDATE")
+LOGS = {
+    "collision": "overtake-road",
+    "overtake-at-junction": "overtake-at-junction",
+    "exit-signalled": "exit-road",
+    "overtake-two-in-one-go": "long-road",
+}
+
+
+class Loop(NamedTuple):
+    """A join without keys, and the rows of both sides."""
+
+    statement: str
+    name: str
+    left: int
+    right: int
+
+
+class Explained:
+    """A connection that runs every statement under EXPLAIN ANALYZE, too, and keeps the joins without keys that it sees."""
+
+    def __init__(self, con: duckdb.DuckDBPyConnection, found: list[Loop], n: list[int]) -> None:
+        self._con = con
+        self._found = found
+        self._n = n
+
+    def execute(self, query: Any, parameters: Any = None) -> duckdb.DuckDBPyConnection:
+        statements = self._con.extract_statements(query) if isinstance(query, str) else [query]
+        if len(statements) == 1 and statements[0].type.name in EXPLAINED:
+            text = statements[0].query
+            self._con.execute("BEGIN")
+            plan = self._con.execute(f"EXPLAIN (ANALYZE, FORMAT json) {text}", parameters).fetchall()[0][1]
+            self._con.execute("ROLLBACK")
+            self._n.append(1)
+            self._found += loops(json.loads(plan), text)
+        return self._con.execute(query, parameters)
+
+    def cursor(self) -> Explained:
+        return Explained(self._con.cursor(), self._found, self._n)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._con.close()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._con, name)
+
+
+def loops(plan: dict[str, Any], statement: str = "") -> Iterator[Loop]:
+    """Give the joins of an analyzed plan that compare the rows of both sides one by one, and are no repetition by constants."""
+    children = plan.get("children", [])
+    name = plan.get("operator_name", "").strip()
+    if name in LOOPS:
+        left, right = (int(child.get("operator_cardinality", 0)) for child in children[:2])
+        if name == "BLOCKWISE_NL_JOIN" or min(left, right) > A_FEW or left * right > A_FEW * MOST_ROWS**2:
+            yield Loop(" ".join(statement.split()), name, left, right)
+    for child in children:
+        yield from loops(child, statement)
+
+
+@pytest.mark.parametrize("margins", [False, True])
+def test_no_statement_compares_all_rows_with_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, margins: bool
+) -> None:
+    """Every statement of every rule, also where an evaluation would stop before it."""
+    monkeypatch.setattr(Evaluation, "_may_stop", lambda _self, _n_rows: False)
+    rules = catalogue.load_rules(())
+    selected = catalogue.select_rules(rules, tuple(rules), ())
+    found: list[Loop] = []
+    n: list[int] = []
+    with store.connect(threads=2) as con:
+        store.insert(con, "profile", profile_table(load_profiles(()), ()))
+        run = session.JudgingSession(
+            Explained(con, found, n),  # type: ignore[arg-type]
+            selected,
+            catalogue.parse_params(selected, ()),
+            tmp_path,
+            margins=margins,
+            observers=(lambda of, _drives, **_part: evidence.gather(of),),
+        )
+        run.judge(drives(tmp_path))
+        run.close()
+        verdicts = con.execute("SELECT DISTINCT verdict FROM verdict ORDER BY ALL").fetchall()
+    assert verdicts == [("fail",), ("not_applicable",), ("pass",), ("unknown",)]
+    assert len(n) > 5 * len(selected)
+    assert found == [], "\n".join(map(str, found))
+
+
+def drives(home: Path) -> list[Drive]:
+    """Return a crowded ring road, and logs of the fixtures with junctions, exits and overtakes."""
+    ring = home / "ring.xodr"
+    ring.write_text(traffic.ring(), encoding="utf-8")
+    logs = [(traffic.write_folder(home / "ring", traffic.Shape(40.0, 10, 30), 1), ring)]
+    fixtures = ROOT / "fixtures/scenes"
+    logs += [(fixtures / f"{log}.mcap", fixtures / f"{road}.xodr") for log, road in LOGS.items()]
+    traces = [(read_trace(log, IngestOptions()), road) for log, road in logs]
+    return [Drive(trace, MapLibrary(road, None, "auto").find(trace)) for trace, road in traces]
+
+
+def test_a_join_without_keys_is_seen() -> None:
+    with store.connect(threads=1) as con:
+        con.execute("CREATE TABLE numbers AS SELECT range AS n FROM range(2000)")
+        found: list[Loop] = []
+        seen = Explained(con, found, [])
+        seen.execute("SELECT count(*) FROM numbers a JOIN numbers b USING (n)")
+        seen.execute("SELECT count(*) FROM numbers a CROSS JOIN (VALUES (1), (2)) AS v(i)")
+        assert found == []
+        seen.execute("SELECT count(*) FROM numbers a JOIN numbers b ON a.n + b.n = 7")
+        assert [(loop.left, loop.right) for loop in found] == [(2000, 2000)]
+        seen.execute("SELECT count(*) FROM numbers a LEFT JOIN numbers b ON a.n = b.n AND a.n % 2 = 0")
+        assert len(found) == 2
