@@ -51,7 +51,21 @@ CREATE TABLE course (
     observed DOUBLE[] NOT NULL,       -- value at each; NULL: not known, or nothing is measured
     required DOUBLE[] NOT NULL,       -- what it was held against
     margin DOUBLE[] NOT NULL,         -- signed, positive = kept
-    holds BOOLEAN[] NOT NULL          -- kept there; NULL: unknown
+    holds BOOLEAN[] NOT NULL,         -- kept there; NULL: unknown
+    x_m DOUBLE[] NOT NULL,            -- the ego at each; NULL: not known
+    y_m DOUBLE[] NOT NULL             -- the ego at each
+);
+
+-- lifetime: run
+CREATE TABLE track (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- an ego, or the other road user of a finding or near miss
+    part INTEGER NOT NULL,            -- 0.. in time order: a new part begins after each hole of the track
+    is_ego BOOLEAN NOT NULL,          -- see actor
+    actor_class VARCHAR,              -- see actor
+    t_ns BIGINT[] NOT NULL,           -- at most five samples a second, and the last one
+    x_m DOUBLE[] NOT NULL,            -- its box centre at each
+    y_m DOUBLE[] NOT NULL             -- its box centre at each
 );
 
 -- lifetime: run

@@ -7,8 +7,10 @@ WITH _named AS (SELECT c.* REPLACE (nullif(c.profile, '') AS profile, nullif(c.o
     FROM verdict WHERE near_miss)
 SELECT f.finding_id, f.drive_id, f.ego_id, f.rule_id, f.profile, f.object_id, f.occurrence,
     list(c.t_ns ORDER BY c.t_ns) AS t_ns, list(c.observed ORDER BY c.t_ns) AS observed,
-    list(c.required ORDER BY c.t_ns) AS required, list(c.margin ORDER BY c.t_ns) AS margin, list(c.holds ORDER BY c.t_ns) AS holds
+    list(c.required ORDER BY c.t_ns) AS required, list(c.margin ORDER BY c.t_ns) AS margin, list(c.holds ORDER BY c.t_ns) AS holds,
+    list(round(e.x_m, 3) ORDER BY c.t_ns) AS x_m, list(round(e.y_m, 3) ORDER BY c.t_ns) AS y_m
 FROM _named c
+LEFT JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ns
 JOIN _whose f ON f.near = c.near AND f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.rule_id = c.rule_id
     AND f.profile IS NOT DISTINCT FROM c.profile
     AND f.object_id IS NOT DISTINCT FROM c.object_id AND f.ref_id IS NOT DISTINCT FROM c.ref_id AND f.t_start_ns = c.t_start_ns

@@ -30,7 +30,7 @@ RESULT_FILES = frozenset(
     f"{name}.parquet"
     for name in (
         "courses", "drives", "findings", "lanes", "margins", "opportunities", "overtakes", "rules", "scenes", "spaces",
-        "verdicts",
+        "tracks", "verdicts",
     )
 )  # fmt: skip
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""

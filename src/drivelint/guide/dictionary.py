@@ -10,6 +10,7 @@ from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 from drivelint.report.catalogue_page import table
+from drivelint.result import geometry
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
@@ -93,7 +94,7 @@ def escaped(said: str) -> str:
 def output_tables() -> str:
     """Return a section per result file with the columns of its table."""
     files = {**TABLE_OF_FILE, "margins": "margin"}
-    return "\n".join(f"### {stem}.parquet\n\n{_columns(name)}" for stem, name in files.items())
+    return "\n".join(f"### {stem}.parquet\n\n{_columns(name, in_file=True)}" for stem, name in files.items())
 
 
 @cache
@@ -156,11 +157,14 @@ def _about(name: str) -> str:
     return " ".join(line.removeprefix("--").strip() for line in lines)
 
 
-def _columns(name: str) -> str:
+def _columns(name: str, *, in_file: bool = False) -> str:
     rows = [
         (f"`{column}`", escaped(_types()[name, column]), escaped(comment))
         for column, comment in column_comments()[name].items()
     ]
+    if in_file and name in geometry.SHAPES:
+        shape = geometry.SHAPES[name]
+        rows.append((f"`{geometry.COLUMN}`", "GEOMETRY", escaped(f"{shape.kind}: {shape.comment}")))
     return table(("column", "type", "meaning"), rows)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint.result.geometry import with_geometry
 from drivelint.result.schemas import OUTPUT_VERSION, conform
 from drivelint.sql.store import column_comments
 
@@ -30,7 +31,7 @@ class OutputError(DriveLintError):
 def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     """Return a schema table as Parquet: the same bytes for the same rows, whatever their chunks and metadata were.
 
-    Every column carries its comment from `schemas/` as Arrow field metadata (`comment`).
+    Every column carries its comment from `schemas/` as Arrow field metadata (`comment`). Tables that have a geometry are GeoParquet.
     """
     comments = column_comments()[table]
     rows = conform(rows, table)
@@ -39,7 +40,7 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
         described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
     sink = io.BytesIO()
     pq.write_table(
-        rows.cast(described),
+        with_geometry(rows.cast(described), table),
         sink,
         version="2.6",
         data_page_version="1.0",

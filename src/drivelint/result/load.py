@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate_file
+from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
 from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
 
@@ -50,7 +51,7 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        return pq.read_table(path)
+        return without_geometry(pq.read_table(path))
     except (OSError, pa.ArrowException) as error:
         raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
 

@@ -47,6 +47,7 @@ class Result:
     lanes: pa.Table = field(default_factory=lambda: empty_table("lane_shape"))
     spaces: pa.Table = field(default_factory=lambda: empty_table("danger_space"))
     courses: pa.Table = field(default_factory=lambda: empty_table("course"))
+    tracks: pa.Table = field(default_factory=lambda: empty_table("track"))
     overtakes: pa.Table = field(default_factory=lambda: empty_table("overtake_record"))
     opportunities: pa.Table = field(default_factory=lambda: empty_table("opportunity_record"))
     margins_file: Path | None = None

@@ -25,6 +25,7 @@ TABLE_OF_FILE: Final = {
     "lanes": "lane_shape",
     "spaces": "danger_space",
     "courses": "course",
+    "tracks": "track",
     "overtakes": "overtake_record",
     "opportunities": "opportunity_record",
 }

@@ -1,6 +1,6 @@
 """Evidence for pictures and charts, taken from the database while a batch is in it, into tables that stay until the end of the run.
 
-Scenes of findings and near misses with lanes and danger spaces; overtakes and opportunities. (Courses are the evaluation's.)
+Scenes of findings and near misses with lanes and danger spaces; tracks; overtakes and opportunities. (Courses are the evaluation's.)
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.result.evidence import lane_shapes, overtaking, surroundings
 from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     import duckdb
@@ -19,6 +20,7 @@ _KEYS: Final = {
     "lanes": "environment_id, lanelet_id",
     "spaces": "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id",
     "courses": "finding_id IS NULL, finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence",
+    "tracks": "drive_id, NOT is_ego, actor_id, part",
     "overtakes": "drive_id, ego_id, occurrence",
     "opportunities": "drive_id, ego_id, occurrence, style, profile",
 }
@@ -32,6 +34,7 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
     """
     surroundings.gather(con)
     lane_shapes.gather(con)
+    con.execute(statement("evidence/track"), {"step_ns": surroundings.PATH_STEP_NS})
     overtaking.gather(con)
 
 

@@ -1,0 +1,150 @@
+"""Gives result files a geometry: the column `geom` of GeoParquet, made of the columns that hold coordinates.
+
+In the map's metres: x to the east, y to the north, without a coordinate reference system, since a map need not have one.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import shapely
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    Geometries = NDArray[np.object_]
+
+COLUMN: Final = "geom"
+
+
+class Shape(NamedTuple):
+    """The geometry of a table: its type in GeoParquet, what it shows, and what makes it of the rows (None where there is none)."""
+
+    kind: str
+    comment: str
+    make: Callable[[pa.Table], Geometries]
+
+
+def with_geometry(rows: pa.Table, table: str) -> pa.Table:
+    """Return the rows of a schema table with `geom` as WKB and what GeoParquet 1.1 says of it in the schema's metadata.
+
+    Tables that have no geometry come back as they are.
+    """
+    if table not in SHAPES:
+        return rows
+    shape = SHAPES[table]
+    wkb = pa.array(shapely.to_wkb(shape.make(rows), output_dimension=2, byte_order=1), pa.binary(), from_pandas=True)
+    about = {"encoding": "WKB", "geometry_types": [shape.kind], "crs": None}
+    geo = {"version": "1.1.0", "primary_column": COLUMN, "columns": {COLUMN: about}}
+    field = pa.field(COLUMN, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
+    metadata = {**(rows.schema.metadata or {}), b"geo": json.dumps(geo, sort_keys=True).encode()}
+    return rows.append_column(field, wkb).replace_schema_metadata(metadata)
+
+
+def without_geometry(rows: pa.Table) -> pa.Table:
+    """Return rows as they were before `with_geometry`."""
+    return rows.drop_columns([COLUMN]) if COLUMN in rows.column_names else rows
+
+
+def _points(rows: pa.Table) -> Geometries:
+    xy = np.column_stack([_floats(rows["x_m"]), _floats(rows["y_m"])])
+    points = np.full(len(xy), None, object)
+    known = np.isfinite(xy).all(axis=1)
+    points[known] = shapely.points(xy[known])
+    return points
+
+
+def _rings(rows: pa.Table) -> Geometries:
+    xy, offsets = _coordinates(rows, "")
+    return _polygons(xy, offsets)
+
+
+def _lanes(rows: pa.Table) -> Geometries:
+    """Return the area between the bounds: along the left one, and back along the right one to where it began."""
+    left, left_offsets = _coordinates(rows, "left_")
+    right, right_offsets = _coordinates(rows, "right_")
+    row = np.concatenate([_row_of(left_offsets), _row_of(right_offsets), np.arange(rows.num_rows)])
+    begin = left[left_offsets[:-1]]
+    place = np.concatenate(
+        [np.arange(len(left)), -np.arange(len(right)) + len(left) + len(right), np.full(len(begin), np.inf)]
+    )
+    order = np.lexsort((place, row))
+    offsets = left_offsets + right_offsets + np.arange(rows.num_rows + 1)
+    return _polygons(np.concatenate([left, right, begin])[order], offsets)
+
+
+def _boxes(rows: pa.Table) -> Geometries:
+    """Return the ground under the boxes of each scene's actors; those of unknown size are left out."""
+    actors = rows["actors"].combine_chunks()
+    if isinstance(actors, pa.ChunkedArray):  # no rows
+        return np.empty(0, object)
+    row = _row_of(np.asarray(actors.offsets) - actors.offsets[0].as_py())
+    x, y, yaw, length, width = (
+        _floats(actors.flatten().field(name)) for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m")
+    )
+    along, across = np.array([1, -1, -1, 1, 1]) * length[:, None] / 2, np.array([1, 1, -1, -1, 1]) * width[:, None] / 2
+    cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+    corners = np.stack([x[:, None] + along * cos - across * sin, y[:, None] + along * sin + across * cos], axis=-1)
+    known = np.isfinite(corners).all(axis=(1, 2))
+    boxes = shapely.polygons(corners[known])
+    covered = np.asarray(shapely.multipolygons(boxes, indices=row[known], out=np.full(rows.num_rows, None, object)))
+    overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # a contact
+    covered[overlapping] = shapely.buffer(covered[overlapping], 0)
+    one = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
+    covered[one] = shapely.multipolygons(covered[one][:, None])
+    return covered
+
+
+def _tracks(rows: pa.Table) -> Geometries:
+    """Return a line per row; of a single sample, a line from the sample to itself."""
+    xy, offsets = _coordinates(rows, "")
+    row = _row_of(offsets)
+    single = np.diff(offsets)[row] == 1
+    return np.asarray(shapely.linestrings(np.repeat(xy, 1 + single, axis=0), indices=np.repeat(row, 1 + single)))
+
+
+def _moments(rows: pa.Table) -> Geometries:
+    xy, offsets = _coordinates(rows, "")
+    known = np.isfinite(xy).all(axis=1)
+    return np.asarray(
+        shapely.multipoints(
+            shapely.points(xy[known]), indices=_row_of(offsets)[known], out=np.full(rows.num_rows, None, object)
+        )
+    )
+
+
+def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the points of lists of coordinates, and where those of each row begin."""
+    columns = [rows[f"{prefix}{axis}_m"] for axis in "xy"]
+    lengths = np.asarray(pa.compute.list_value_length(columns[0]).fill_null(0), np.int64)
+    xy = np.column_stack([_floats(pa.compute.list_flatten(column)) for column in columns])
+    return xy, np.concatenate([[0], np.cumsum(lengths)])
+
+
+def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries:
+    rings = (offsets, np.arange(len(offsets)))
+    return np.asarray(shapely.from_ragged_array(shapely.GeometryType.POLYGON, xy, rings))
+
+
+def _row_of(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+
+
+def _floats(column: pa.ChunkedArray | pa.Array) -> NDArray[np.float64]:
+    return np.asarray(column.to_numpy(zero_copy_only=False), np.float64)
+
+
+SHAPES: Final[Mapping[str, Shape]] = {
+    "finding": Shape("Point", "the ego at the worst step", _points),
+    "scene": Shape("MultiPolygon", "the ground under the boxes of the actors at the moment", _boxes),
+    "lane_shape": Shape("Polygon", "the lane between its bounds", _lanes),
+    "danger_space": Shape("Polygon", "the danger space", _rings),
+    "track": Shape("LineString", "the way", _tracks),
+    "course": Shape("MultiPoint", "the ego at the judged steps", _moments),
+}
+"""Table of the schema -> its geometry in the file."""

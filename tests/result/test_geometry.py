@@ -1,0 +1,107 @@
+"""Result files are GeoParquet: geopandas and DuckDB read each, and the shapes are what the other columns say."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import geopandas
+import pytest
+import shapely
+from shapely import affinity
+
+from drivelint.report.outputs import write
+from drivelint.result.files import parquet_bytes
+from drivelint.result.geometry import SHAPES
+from drivelint.result.load import load_result
+from drivelint.result.schemas import TABLE_OF_FILE, empty_table
+from drivelint.sql import store
+from tests.result import fixture_result
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.result.model import Result
+
+FILES = {stem: SHAPES[table] for stem, table in TABLE_OF_FILE.items() if table in SHAPES}
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    return fixture_result.run(tmp_path_factory.mktemp("run"))
+
+
+@pytest.fixture(scope="module")
+def folder(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("out")
+    write(result, out)
+    return out
+
+
+@pytest.mark.parametrize("stem", FILES)
+def test_geopandas_and_duckdb_read_the_same_valid_geometry(folder: Path, stem: str) -> None:
+    path = folder / f"{stem}.parquet"
+    frame = geopandas.read_parquet(path)
+    assert frame.crs is None
+    assert set(frame.geom_type) == {FILES[stem].kind}
+    assert len(frame) > 0
+    if stem != "tracks":  # a parked car's track is a line without length
+        assert frame.is_valid.all()
+    with store.open_as_is() as con:
+        kind = con.execute(f"SELECT DISTINCT typeof(geom) FROM '{path}'").fetchall()
+        wkb = [bytes(each) for (each,) in con.execute(f"SELECT ST_AsWKB(geom) FROM '{path}'").fetchall()]
+    assert kind == [("GEOMETRY",)]
+    assert wkb == [shapely.to_wkb(each, byte_order=1) for each in frame.geometry]
+
+
+@pytest.mark.parametrize("stem", FILES)
+def test_a_table_without_rows_is_read(stem: str, tmp_path: Path) -> None:
+    path = tmp_path / "empty.parquet"
+    table = TABLE_OF_FILE[stem]
+    path.write_bytes(parquet_bytes(empty_table(table), table))
+    assert len(geopandas.read_parquet(path)) == 0
+
+
+def test_a_result_comes_back_without_the_geometry(result: Result, folder: Path) -> None:
+    again = load_result(folder)
+    for stem in TABLE_OF_FILE:
+        assert getattr(again, stem).equals(getattr(result, stem)), stem
+
+
+def test_the_shapes_are_what_the_columns_say(folder: Path) -> None:
+    """Boxes by turning and moving a rectangle; lanes as wide as the road's 5.5 m or less; spaces as long as they say."""
+    scenes = geopandas.read_parquet(folder / "scenes.parquet")
+    for scene in scenes.itertuples():
+        boxes = []
+        for actor in scene.actors:
+            half = actor["length_m"] / 2, actor["width_m"] / 2
+            flat = affinity.rotate(shapely.box(-half[0], -half[1], *half), actor["yaw_rad"], (0, 0), use_radians=True)
+            boxes.append(affinity.translate(flat, actor["x_m"], actor["y_m"]))
+        assert shapely.hausdorff_distance(shapely.union_all(boxes), scene.geom) < 0.001
+    for lane in geopandas.read_parquet(folder / "lanes.parquet").itertuples():
+        ends = shapely.points([(lane.left_x_m[0], lane.left_y_m[0]), (lane.right_x_m[-1], lane.right_y_m[-1])])
+        assert shapely.distance(lane.geom.boundary, ends).max() == 0
+        left, right = (
+            shapely.linestrings(x, y) for x, y in ((lane.left_x_m, lane.left_y_m), (lane.right_x_m, lane.right_y_m))
+        )
+        assert lane.geom.area == pytest.approx(shapely.distance(left, right) * left.length, rel=0.01)
+    for space in geopandas.read_parquet(folder / "spaces.parquet").itertuples():
+        length, width = space.length_m, space.geom.area / space.length_m
+        assert space.geom.length == pytest.approx(2 * (length + width), rel=0.02)
+
+
+def test_tracks_are_those_of_egos_and_of_the_others_of_findings(result: Result, folder: Path) -> None:
+    tracks = geopandas.read_parquet(folder / "tracks.parquet")
+    told = {(row["drive_id"], row["object_id"]) for row in result.findings.to_pylist() if row["object_id"]}
+    told |= {
+        (row["drive_id"], row["object_id"])
+        for row in result.verdicts.to_pylist()
+        if row["object_id"] and row["near_miss"]
+    }
+    egos = {(row["drive_id"], row["ego_id"]) for row in result.verdicts.to_pylist()}
+    assert set(zip(tracks["drive_id"], tracks["actor_id"], strict=True)) == told | egos
+    assert set(zip(tracks[tracks.is_ego]["drive_id"], tracks[tracks.is_ego]["actor_id"], strict=True)) == egos
+    km = dict(zip(result.drives["drive_id"].to_pylist(), result.drives["km"].to_pylist(), strict=True))
+    for drive, rows in tracks[tracks.is_ego].groupby("drive_id"):
+        assert rows.geom.length.sum() == pytest.approx(1000 * km[drive], rel=0.01)
+    assert all(math.isfinite(x) for xs in tracks["x_m"] for x in xs)
