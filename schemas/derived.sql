@@ -74,6 +74,20 @@ CREATE TABLE road_half (
 );
 
 -- lifetime: map
+CREATE TABLE junction_area (
+    environment_id VARCHAR NOT NULL,  -- the map
+    junction_id VARCHAR NOT NULL,     -- see lanelet
+    geom GEOMETRY                     -- the ground of its drivable lanelets
+);
+
+-- lifetime: map
+CREATE TABLE road_surface (
+    environment_id VARCHAR NOT NULL,  -- the map
+    road_id VARCHAR NOT NULL,         -- see lanelet
+    geom GEOMETRY                     -- its carriageway: the ground of its drivable lanelets, and of those kept free or used beside them (shoulder, stop, border, parking, restricted, biking)
+);
+
+-- lifetime: map
 CREATE TABLE strip_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet

@@ -38,7 +38,8 @@ CREATE TABLE lanelet (
     left_id VARCHAR,                  -- the lanelet beside it on the driver's left; NULL: none
     left_against BOOLEAN,             -- that one is driven the other way
     right_id VARCHAR,                 -- the lanelet beside it on the driver's right; NULL: none
-    right_against BOOLEAN             -- that one is driven the other way
+    right_against BOOLEAN,            -- that one is driven the other way
+    geom GEOMETRY                     -- the area between its bounds: a polygon, or several where the bounds cross
 );
 
 -- lifetime: map
@@ -107,7 +108,8 @@ CREATE TABLE traffic_signal (
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it holds for; one row each
     lane_s_m DOUBLE NOT NULL,         -- where it stands, along that lanelet
     x_m DOUBLE NOT NULL,              -- where it stands
-    y_m DOUBLE NOT NULL               -- where it stands
+    y_m DOUBLE NOT NULL,              -- where it stands
+    geom GEOMETRY                     -- the same, as a point
 );
 
 -- lifetime: map
@@ -116,7 +118,8 @@ CREATE TABLE stop_line (
     stop_line_id VARCHAR NOT NULL,    -- id in the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it crosses; one row each
     lane_s_m DOUBLE NOT NULL,         -- where, along that lanelet
-    source VARCHAR NOT NULL           -- object, signal, connection (of a SUMO net: where a lane with a light or a stop sign ends): what in the map says so
+    source VARCHAR NOT NULL,          -- object, signal, connection (of a SUMO net: where a lane with a light or a stop sign ends): what in the map says so
+    geom GEOMETRY                     -- the line across that lanelet, from its left to its right bound
 );
 
 -- lifetime: map
@@ -130,7 +133,8 @@ CREATE TABLE road_object (
     x_m DOUBLE NOT NULL,              -- where it stands
     y_m DOUBLE NOT NULL,              -- where it stands
     outline_x_m DOUBLE[],             -- its outline, counter-clockwise; NULL: a point
-    outline_y_m DOUBLE[]              -- its outline
+    outline_y_m DOUBLE[],             -- its outline
+    geom GEOMETRY                     -- its outline as a polygon, or the point where it stands
 );
 
 -- lifetime: map
@@ -140,7 +144,8 @@ CREATE TABLE crossing (
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet it lies across; one row each
     s_start_m DOUBLE NOT NULL,        -- from here, along that lanelet
     s_end_m DOUBLE NOT NULL,          -- to here
-    kind VARCHAR                      -- zebra, signalled, other; NULL: the map does not say
+    kind VARCHAR,                     -- zebra, signalled, other; NULL: the map does not say
+    geom GEOMETRY                     -- its part of that lanelet: a polygon
 );
 
 -- lifetime: run

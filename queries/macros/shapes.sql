@@ -18,3 +18,9 @@ CREATE OR REPLACE MACRO swept_path(from_box, to_box) AS
 -- one lies level with an edge of the other, and ST_DWithin follows it. The distance of their boundaries is right.
 CREATE OR REPLACE MACRO apart_m(a, b) AS
     CASE WHEN ST_Intersects(a, b) THEN 0.0 ELSE ST_Distance(CASE WHEN ST_Dimension(a) = 2 THEN ST_Boundary(a) ELSE a END, CASE WHEN ST_Dimension(b) = 2 THEN ST_Boundary(b) ELSE b END) END;
+
+-- The area between two bounds: along the points of one, and back along those of the other. Bounds that cross each other, as in a bend
+-- tighter than the lane is wide, make several areas.
+CREATE OR REPLACE MACRO area_between(bound, opposite_bound_backwards) AS
+    ST_MakePolygon(ST_MakeLine(list_concat(bound, opposite_bound_backwards, bound[1:1])));
+CREATE OR REPLACE MACRO valid_area(area) AS CASE WHEN ST_IsValid(area) THEN area ELSE ST_CollectionExtract(ST_MakeValid(area), 3) END;

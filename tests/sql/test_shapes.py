@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import shapely
@@ -30,7 +30,7 @@ def database() -> duckdb.DuckDBPyConnection:
     return store.connect(threads=1)
 
 
-def about(found: list[tuple[Box, Box]], *what: str) -> list[tuple[object, ...]]:
+def about(found: list[tuple[Box, Box]], *what: str) -> list[tuple[Any, ...]]:
     """Return expressions over pairs of boxes a and b, with the arguments of the arithmetic as columns."""
     values = ", ".join(f"({n}, {', '.join(f'{x!r}::DOUBLE' for x in (*a, *b))})" for n, (a, b) in enumerate(found))
     return (
@@ -123,7 +123,7 @@ def test_a_swept_path_covers_the_box_on_its_way(box: Box, dx: float, dy: float, 
         about([(box, after)], f"ST_AsWKB({swept})")[0],
         about([(between, after)], "ST_AsWKB(a)")[0],
     )
-    assert shapely.covers(shapely.from_wkb(bytes(wkb)), shapely.from_wkb(bytes(box_between)))  # type: ignore[arg-type]
+    assert shapely.covers(shapely.from_wkb(bytes(wkb)), shapely.from_wkb(bytes(box_between)))
 
 
 @pytest.mark.parametrize(

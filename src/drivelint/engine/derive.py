@@ -12,6 +12,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql.derivations import needed
+from drivelint.sql.statements import statement, texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -32,7 +33,7 @@ def derive(
     of_the_map: bool,
     advance: Callable[[str], None] = lambda _table: None,
 ) -> None:
-    """Fill the library tables behind `tables`: those of the map, or those of the drives.
+    """Fill the library tables behind `tables`: those of the map, whose own tables get their geometries, or those of the drives.
 
     Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
     transaction, whose rows the other connections do not see.
@@ -43,6 +44,8 @@ def derive(
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
     empty = {table for (table,) in con.execute(_EMPTY).fetchall()} - todo.keys()
+    for table in texts("map_shapes").keys() - empty if of_the_map else ():
+        con.execute(statement(f"map_shapes/{table}"))
     workers = WORKERS if n_states < ONE_WORKER_STATES else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
         free = [stack.enter_context(con.cursor()) for _ in range(workers)]

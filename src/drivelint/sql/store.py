@@ -147,14 +147,23 @@ def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
 
 @cache
 def arrow_schemas(file: str) -> dict[str, pa.Schema]:
-    """Return table -> Arrow schema for every table of `schemas/<file>.sql`, in file order."""
+    """Return table -> Arrow schema for every table of `schemas/<file>.sql`, in file order.
+
+    Geometries are left out: the database makes them of the other columns.
+    """
     import pyarrow as pa
 
     types = {
         "VARCHAR": pa.string(), "DOUBLE": pa.float64(), "BOOLEAN": pa.bool_(), "INTEGER": pa.int32(), "BIGINT": pa.int64(),
     }  # fmt: skip
     return {
-        name: pa.schema([(c, pa.list_(types[kind]) if many else types[kind]) for c, kind, many in _TYPE.findall(body)])
+        name: pa.schema(
+            [
+                (c, pa.list_(types[kind]) if many else types[kind])
+                for c, kind, many in _TYPE.findall(body)
+                if kind != "GEOMETRY"
+            ]
+        )
         for name, body in _TABLE.findall(_declarations(file))
     }
 
