@@ -29,17 +29,14 @@ def sorted_states(states: States) -> States:
     for i in used:
         rank[i] = place[states.ids[i]]
     actor = rank[states.actor]
-    time_order = np.arange(len(states)) if _rising(states.t_ns) else np.argsort(states.t_ns, kind="stable")
+    rising = np.all(states.t_ns[1:] >= states.t_ns[:-1])
+    time_order = np.arange(len(states)) if rising else np.argsort(states.t_ns, kind="stable")
     # few actors fit 16 bits, for which numpy's stable sort is a radix sort: ten times faster
     keys = actor[time_order].astype(np.uint16) if len(ids) <= np.iinfo(np.uint16).max else actor[time_order]
     ordered = states.take(time_order[np.argsort(keys, kind="stable")])
     ordered.ids = ids
     ordered.actor = rank[ordered.actor]
     return ordered
-
-
-def _rising(t_ns: Times) -> bool:
-    return bool(np.all(t_ns[1:] >= t_ns[:-1]))
 
 
 def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
