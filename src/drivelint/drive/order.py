@@ -59,13 +59,11 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & _any(list(differ.values()))[of]
     text = "an actor appears again at the same time in {n} states ({ids}), which "
-    differ_text, same_text = (
-        text + "differ: what they do not agree on is unknown there",
-        text + "are the same: they count once",
-    )
     return kept, [
-        *states.findings(differing, "duplicate_state", "error", differ_text),
-        *states.findings(repeated & ~differing, "duplicate_state", "info", same_text),
+        *states.findings(
+            differing, "duplicate_state", "error", text + "differ: what they do not agree on is unknown there"
+        ),
+        *states.findings(repeated & ~differing, "duplicate_state", "info", text + "are the same: they count once"),
     ]
 
 
@@ -82,7 +80,7 @@ def _any(rows: list[Mask]) -> Mask:
 
 
 def changed_columns(states: States) -> dict[str, Mask]:
-    """Return for each column the rows whose value differs from the row before; unknown counts as a value."""
+    """Return for each column the rows whose value differ from the row before; unknown counts as a value."""
     found = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():

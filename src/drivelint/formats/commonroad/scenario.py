@@ -131,19 +131,14 @@ def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -
         columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
         columns["step"] = np.arange(last + 1, dtype=np.float64)
         columns["v"] = np.zeros(last + 1)
-    length, width = _size(obstacle)
-    columns["length_m"] = np.full(len(columns["step"]), length)
-    columns["width_m"] = np.full(len(columns["step"]), width)
-    return columns
-
-
-def _size(obstacle: etree._Element) -> tuple[float, float]:
-    """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
     box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
     if box is not None:
-        return safe_xml.number(box.findtext("length")), safe_xml.number(box.findtext("width"))
-    diameter = 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
-    return diameter, diameter
+        size = {name: safe_xml.number(box.findtext(name)) for name in ("length", "width")}
+    else:  # the square around a circle; of other shapes: not known
+        size = dict.fromkeys(
+            ("length", "width"), 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
+        )
+    return columns | {f"{name}_m": np.full(len(columns["step"]), value) for name, value in size.items()}
 
 
 def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Codes]:
