@@ -16,14 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 TOWN_ROAD_TYPES = (
-    "town",
-    "townExpressway",
-    "townCollector",
-    "townArterial",
-    "townPrivate",
-    "townLocal",
-    "townPlayStreet",
-)
+    "town", "townExpressway", "townCollector", "townArterial", "townPrivate", "townLocal", "townPlayStreet",
+)  # fmt: skip
 ROAD_TYPES = ("motorway", "rural", *TOWN_ROAD_TYPES, "lowSpeed", "pedestrian", "bicycle")
 """OpenDRIVE's road types (ASAM OpenDRIVE 1.8, e_roadType), without `unknown`, which is NULL."""
 BRITISH_NATIONS = ("gb", "gb-eng", "gb-wls", "gb-sct")

@@ -65,7 +65,7 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     rows = np.flatnonzero(changed & told[states.actor])
     lamps = pa.table(
         {
-            "t_ns": pa.array(states.t_ns[rows], pa.int64()),
+            "t_ns": states.t_ns[rows],
             "actor_id": spelled(states.actor[rows], states.ids),
             "event": pa.repeat(pa.scalar(HEADLIGHTS), len(rows)),
             "value": spelled(codes[rows], HEADLIGHT_STATES),

@@ -175,21 +175,15 @@ def _log_row(
     known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
     return {
         **dict.fromkeys(arrow_schemas("model")["data_log"].names),
-        "file_name": identity.file_name,
-        "sha256": identity.sha256,
-        "format": recording.format,
-        "t_start_ns": start,
-        "t_end_ns": int(states.t_ns.max()),
+        "file_name": identity.file_name, "sha256": identity.sha256, "format": recording.format, "n_states": len(states),
+        "t_start_ns": start, "t_end_ns": int(states.t_ns.max()),
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
-        "n_states": len(states),
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
-        "map_offset_x_m": offset[0],
-        "map_offset_y_m": offset[1],
-        "has_indicator": known["indicator"],
-        "has_brake_light": known["brake_light"],
+        "map_offset_x_m": offset[0], "map_offset_y_m": offset[1],
+        "has_indicator": known["indicator"], "has_brake_light": known["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
-    }
+    }  # fmt: skip
 
 
 def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:

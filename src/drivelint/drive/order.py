@@ -29,17 +29,14 @@ def sorted_states(states: States) -> States:
     for i in used:
         rank[i] = place[states.ids[i]]
     actor = rank[states.actor]
-    time_order = np.arange(len(states)) if _rising(states.t_ns) else np.argsort(states.t_ns, kind="stable")
+    rising = np.all(states.t_ns[1:] >= states.t_ns[:-1])
+    time_order = np.arange(len(states)) if rising else np.argsort(states.t_ns, kind="stable")
     # few actors fit 16 bits, for which numpy's stable sort is a radix sort: ten times faster
     keys = actor[time_order].astype(np.uint16) if len(ids) <= np.iinfo(np.uint16).max else actor[time_order]
     ordered = states.take(time_order[np.argsort(keys, kind="stable")])
     ordered.ids = ids
     ordered.actor = rank[ordered.actor]
     return ordered
-
-
-def _rising(t_ns: Times) -> bool:
-    return bool(np.all(t_ns[1:] >= t_ns[:-1]))
 
 
 def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
@@ -62,13 +59,11 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & _any(list(differ.values()))[of]
     text = "an actor appears again at the same time in {n} states ({ids}), which "
-    differ_text, same_text = (
-        text + "differ: what they do not agree on is unknown there",
-        text + "are the same: they count once",
-    )
     return kept, [
-        *states.findings(differing, "duplicate_state", "error", differ_text),
-        *states.findings(repeated & ~differing, "duplicate_state", "info", same_text),
+        *states.findings(
+            differing, "duplicate_state", "error", text + "differ: what they do not agree on is unknown there"
+        ),
+        *states.findings(repeated & ~differing, "duplicate_state", "info", text + "are the same: they count once"),
     ]
 
 
@@ -85,7 +80,7 @@ def _any(rows: list[Mask]) -> Mask:
 
 
 def changed_columns(states: States) -> dict[str, Mask]:
-    """Return for each column the rows whose value differs from the row before; unknown counts as a value."""
+    """Return for each column the rows whose value differ from the row before; unknown counts as a value."""
     found = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():

@@ -6,7 +6,7 @@ would be derived. It is told by what the samples around it do without it, and by
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
+
+    # the mean velocities (2, n - 1) and times (n - 1) between neighbouring samples; not finite where there are none
+    _Moves = tuple[Floats, Floats]
 
 
 TYRE_MPS2: Final = 12.0
@@ -43,7 +46,8 @@ def outlier_samples(states: States, step: Steps) -> Mask:
         return nothing
     place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
     told = _told(states, place)
-    moves = _Motion.of(place, step)
+    dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
+    moves = np.diff(place, axis=1) / dt_s, dt_s
     # the noise of the positions is worth its time only where without any somebody is off its track
     exact, any_error = np.zeros(n), np.full(n, np.inf)
     if not (
@@ -67,19 +71,7 @@ def _told(states: States, place: Floats) -> Mask:
     return told
 
 
-class _Motion(NamedTuple):
-    """Steps between neighbouring samples (n - 1): their mean velocity (2, n - 1) and time; not finite where there is none."""
-
-    v: Floats
-    dt_s: Floats
-
-    @classmethod
-    def of(cls, place: Floats, step: Steps) -> _Motion:
-        dt = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
-        return cls(np.diff(place, axis=1) / dt, dt)
-
-
-def _beside(place: Floats, moves: _Motion, told: Mask, sigma: Floats, error: Floats) -> Mask:
+def _beside(place: Floats, moves: _Moves, told: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
     n = place.shape[1]
     found = np.zeros(n, np.bool_)
@@ -106,7 +98,7 @@ def _beside(place: Floats, moves: _Motion, told: Mask, sigma: Floats, error: Flo
     return found
 
 
-def _stepped(moves: _Motion, told: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
+def _stepped(moves: _Moves, told: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
     """Return the ends of steps that both neighbours contradict by the same way, where no velocity is recorded."""
     n = len(told)
     found = np.zeros(n, np.bool_)

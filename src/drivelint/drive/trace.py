@@ -28,18 +28,8 @@ SIZE_COLUMNS = ("length_m", "width_m", "height_m")
 INDICATORS = ("off", "left", "right", "hazard")
 BRAKE_LIGHTS = ("off", "on", "strong")
 ACTOR_CLASSES = (
-    "car",
-    "van",
-    "truck",
-    "bus",
-    "motorcycle",
-    "bicycle",
-    "trailer",
-    "vehicle",
-    "pedestrian",
-    "animal",
-    "object",
-)
+    "car", "van", "truck", "bus", "motorcycle", "bicycle", "trailer", "vehicle", "pedestrian", "animal", "object",
+)  # fmt: skip
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
 LEAST_UTC_NS = 946_684_800_000_000_000

@@ -111,6 +111,11 @@ class LaneGeometry:
     half_width: Floats
 
     @property
+    def length(self) -> float:
+        """Length along the centre line (m)."""
+        return float(self.s[-1])
+
+    @property
     def turn(self) -> float:
         """Change of heading along the lane (rad), left positive."""
         a, b = self.tangent[:-1], self.tangent[1:]
@@ -276,11 +281,25 @@ def map_from_bounds(
             for lane in lanes
             for to in sorted(set(lane.successors))
         ],
-        "lane_boundary": [row for lane in lanes for row in _boundaries(lane)],
-        "speed_limit": [row for lane in lanes for row in _limits(lane)],
+        "lane_boundary": [
+            {
+                "lanelet_id": lane.lanelet_id, "side": mark.side, "marking": mark.marking, "color": None,
+                "s_start_m": mark.begin * lane.line.length, "s_end_m": mark.end * lane.line.length, "lane_change": mark.lane_change,
+            }
+            for lane in lanes
+            for mark in lane.marks or both_marks(None, None)
+        ],
+        "speed_limit": [
+            {
+                "lanelet_id": lane.lanelet_id, "limit_mps": limit, "source": lane.limit_source,
+                "s_start_m": begin * lane.line.length, "s_end_m": end * lane.line.length,
+            }
+            for lane in lanes
+            for begin, end, limit in lane.limits
+        ],
         "road_object": [],
         **furniture,
-    }
+    }  # fmt: skip
     return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo)
 
 
@@ -288,7 +307,7 @@ def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dic
     """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
     return {
         "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **said,
-        "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else float(lane.line.s[-1]) - s_m,
+        "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else lane.line.length - s_m,
         "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
     }  # fmt: skip
 
@@ -298,28 +317,10 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
         "lanelet_id": lane.lanelet_id, "road_id": lane.road_id, "section": 0, "lane_no": lane.lane_no,
         "lane_type": lane.kind, "drivable": lane.drivable, "bidirectional": lane.bidirectional,
         "along_road": lane.along, "junction_id": lane.junction_id, "road_type": lane.road_type,
-        "length_m": float(lane.line.s[-1]), "width_m": lane.line.width, "area_m2": lane.line.area,
+        "length_m": lane.line.length, "width_m": lane.line.width, "area_m2": lane.line.area,
         "left_id": lane.left_id, "left_against": lane.left_against,
         "right_id": lane.right_id, "right_against": lane.right_against,
     }  # fmt: skip
-
-
-def _limits(lane: BoundedLane) -> list[dict[str, Any]]:
-    length = float(lane.line.s[-1])
-    return [
-        {"lanelet_id": lane.lanelet_id, "s_start_m": begin * length, "s_end_m": end * length, "limit_mps": limit,
-         "source": lane.limit_source}
-        for begin, end, limit in lane.limits
-    ]  # fmt: skip
-
-
-def _boundaries(lane: BoundedLane) -> list[dict[str, Any]]:
-    length = float(lane.line.s[-1])
-    return [
-        {"lanelet_id": lane.lanelet_id, "side": mark.side, "s_start_m": mark.begin * length, "s_end_m": mark.end * length,
-         "marking": mark.marking, "color": None, "lane_change": mark.lane_change}
-        for mark in lane.marks or both_marks(None, None)
-    ]  # fmt: skip
 
 
 def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:

@@ -9,7 +9,6 @@ import pytest
 
 from drivelint.errors import TraceError
 from drivelint.formats.commonroad import scenario as commonroad
-from drivelint.formats.commonroad.trajectories import extract_trajectories
 from tests.formats.logs import actors, at, log, put, quality, read, states
 from tests.shared_data import shared
 
@@ -147,7 +146,7 @@ def test_the_text_of_trajectories_is_read_as_their_elements_are(
 ) -> None:
     path = write(tmp_path, moving(1), moving(2, "bus", n=7, yaw=0.2), obstacle(3, "car", state("initialState", 0, 9.0)))
     path.write_text(change(path.read_text("utf-8")), "utf-8")
-    assert (extract_trajectories(path.read_bytes()) is not None) == fast
+    assert (commonroad.extract_trajectories(path.read_bytes()) is not None) == fast
     first = read(path, ego="1")
     monkeypatch.setattr(commonroad, "extract_trajectories", lambda _content: None)
     second = read(path, ego="1")

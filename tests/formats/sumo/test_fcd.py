@@ -41,7 +41,7 @@ def test_line_by_line_is_what_the_parser_reads(tmp_path: Path, monkeypatch: pyte
     assert fast is not None
     assert fast.column("timestep_time").to_pylist() == [float(row["time"]) for row in ROWS[:6]]
     monkeypatch.setattr(sumo, "_lines", lambda *_: None)
-    slow = sumo._xml(path)
+    slow = sumo._rows(path)
     assert fast.column_names == slow.column_names
     assert fast.column("timestep_time").to_pylist() == [float(t) for t in slow.column("timestep_time").to_pylist()]
     assert all(fast.column(name).to_pylist() == slow.column(name).to_pylist() for name in fast.column_names[1:])

@@ -51,13 +51,7 @@ def signal_states(
         states += shown
     if not ids:
         return None, findings
-    return pa.table(
-        {
-            "signal_id": pa.array(ids, pa.string()),
-            "t_ns": pa.array(np.concatenate(times)),
-            "state": pa.array(states, pa.string()),
-        }
-    ), findings
+    return pa.table({"signal_id": ids, "t_ns": np.concatenate(times), "state": pa.array(states, pa.string())}), findings
 
 
 def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats, list[str | None]]:

@@ -6,6 +6,7 @@ A scenario has no ego but the start of a planning problem: say who it is with --
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,7 +15,6 @@ from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.lights import signal_states
-from drivelint.formats.commonroad.trajectories import extract_trajectories
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -40,6 +40,10 @@ _FIELDS = {
     "a": "acceleration/exact", "slip": "slipAngle/exact", "step": "time/exact",
 }  # fmt: skip
 """What is read of a state; a value given as an interval is not known."""
+_TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
+_STATE: Final = re.compile(rb"<state>.*?</state>", re.DOTALL)
+_COMMENT: Final = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 
 def accepts(probe: Probe) -> bool:
@@ -52,7 +56,8 @@ def read(probe: Probe) -> Recording:
     path = probe.path
     content = path.read_bytes()
     fast = extract_trajectories(content)
-    root = safe_xml.parse(content if fast is None else fast.rest, str(path), TraceError)
+    rest, fast_columns = fast or (content, [])
+    root = safe_xml.parse(rest, str(path), TraceError)
     step_s = safe_xml.number(root.get("timeStepSize"))
     if not step_s > 0.0:
         raise TraceError(
@@ -65,7 +70,7 @@ def read(probe: Probe) -> Recording:
     if len(set(ids)) < len(ids):
         twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
         raise TraceError(f"{path}: two obstacles have the same id: {twice}")
-    trajectories = {} if fast is None else dict(zip(root.iter("trajectory"), fast.columns, strict=True))
+    trajectories = dict(zip(root.iter("trajectory"), fast_columns, strict=True)) if fast else {}
     parts = [_states(path, o, trajectories) for o in obstacles]
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
     parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
@@ -126,19 +131,14 @@ def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -
         columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
         columns["step"] = np.arange(last + 1, dtype=np.float64)
         columns["v"] = np.zeros(last + 1)
-    length, width = _size(obstacle)
-    columns["length_m"] = np.full(len(columns["step"]), length)
-    columns["width_m"] = np.full(len(columns["step"]), width)
-    return columns
-
-
-def _size(obstacle: etree._Element) -> tuple[float, float]:
-    """Return length and width of a rectangle, or of the square around a circle; of other shapes: not known."""
     box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
     if box is not None:
-        return safe_xml.number(box.findtext("length")), safe_xml.number(box.findtext("width"))
-    diameter = 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
-    return diameter, diameter
+        size = {name: safe_xml.number(box.findtext(name)) for name in ("length", "width")}
+    else:  # the square around a circle; of other shapes: not known
+        size = dict.fromkeys(
+            ("length", "width"), 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
+        )
+    return columns | {f"{name}_m": np.full(len(columns["step"]), value) for name, value in size.items()}
 
 
 def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Codes]:
@@ -146,3 +146,65 @@ def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Code
     classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)
     return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}
+
+
+def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]] | None:
+    """Take the trajectories out of a file with regular expressions, five times as fast as element by element.
+
+    Returns the file without them, and the numbers of each by element path; None where their states differ in form.
+    """
+    first = _STATE.search(content)
+    shape = None if first is None else _shape(first[0])
+    if shape is None:
+        return None
+    pattern, places, n_tags = shape
+    parts = _TRAJECTORY.split(content)
+    columns = []
+    for body in parts[1::2]:
+        rows = pattern.findall(body)
+        if not rows or len(rows) * n_tags != body.count(b"<") or b"&" in body:
+            return None
+        try:
+            values = np.array([tuple(map(float, row)) for row in rows], np.float64)
+        except ValueError:
+            return None
+        columns.append(dict(zip(places, values.T, strict=True)))
+    rest = b"<trajectory/>".join(parts[::2])
+    # in a comment, a trajectory is none, and with attributes or empty it was not cut out: then it cannot be told which is whose
+    if b"<trajectory" in b"".join(_COMMENT.findall(rest)) or rest.count(b"<trajectory") != len(columns):
+        return None
+    return rest, columns
+
+
+def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
+    """Return the pattern of a state, the places of the numbers in it, and how many tags it has."""
+    pattern, at, opened = b"", 0, False
+    places: list[str] = []
+    stack: list[str] = []
+    tags = list(_TAG.finditer(state))
+    for tag in tags:
+        between = state[at : tag.start()]
+        closes, name = bool(tag[1]), tag[2].decode()
+        if closes and not stack:
+            return None
+        if opened and closes:
+            pattern += rb"([^<]*)"
+            places.append("/".join(stack[1:]))
+        elif between.strip():
+            return None
+        else:
+            pattern += rb"\s*"
+        pattern += re.escape(tag[0])
+        if closes:
+            stack.pop()
+        else:
+            stack.append(name)
+        at, opened = tag.end(), not closes
+    if (
+        len(tags) != state.count(b"<")
+        or any("interval" in place for place in places)
+        or len(places) < 2
+        or len(set(places)) < len(places)
+    ):
+        return None
+    return re.compile(pattern), places, len(tags)

@@ -188,9 +188,8 @@ def signal_rows(
         for lane, line_s_m in holds.get(name, ()):
             for part in elements:
                 s = _station(lane, part.kind, stands, line_s_m)
-                end = float(lane.line.s[-1])
                 unit = "m/s" if part.kind in _SPEEDS and part.value is not None else None
-                where = stands if stands is not None else lane.line.centre[-1 if s > end / 2 else 0]
+                where = stands if stands is not None else lane.line.centre[-1 if s > lane.line.length / 2 else 0]
                 rows.append(signal_row(
                     lane, s, where, signal_id=name, kind=part.kind, country=signs.codes, type=part.code, value=part.value,
                     unit=unit, dynamic=light, turns=turns,
@@ -200,14 +199,13 @@ def signal_rows(
 
 def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_m: float | None) -> float:
     """Return where a sign or light holds along a lanelet: at its stop line, where it stands, or without a place at an end."""
-    end = float(lane.line.s[-1])
     if kind in _AT_THE_END and line_s_m is not None:
         return line_s_m
     if kind == "traffic_light":
-        return end
+        return lane.line.length
     if stands is not None:
         return lane.line.station(stands)
-    return end if kind in _AT_THE_END else 0.0
+    return lane.line.length if kind in _AT_THE_END else 0.0
 
 
 def stop_line_stations(
@@ -222,7 +220,7 @@ def stop_line_stations(
             continue
         place = points(line)
         s = shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(place + offset))
-        found[lane.lanelet_id] = float(np.mean(s)) if len(place) else float(lane.line.s[-1])
+        found[lane.lanelet_id] = float(np.mean(s)) if len(place) else lane.line.length
     return found
 
 

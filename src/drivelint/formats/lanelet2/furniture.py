@@ -66,7 +66,7 @@ def _where(element: Any, lane: BoundedLane, offset: tuple[float, float]) -> floa
         at = _crossed(lane, xy(line) + offset)
         if at is not None:
             return at
-    return float(lane.line.s[-1])
+    return lane.line.length
 
 
 def _kinds(element: Any, lanelet: Any) -> list[str]:

@@ -2,30 +2,93 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
-from drivelint.formats.opendrive.objects import PlacedObject, placed_objects
 from drivelint.formats.opendrive.signals import signal_rows
+from drivelint.formats.opendrive.xml import MalformedError, number, required_attribute
 from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from lxml import etree
+
     from drivelint.arrays import Floats
     from drivelint.formats.opendrive.lanelet import Lanelet
-    from drivelint.formats.opendrive.network import Network
+    from drivelint.formats.opendrive.network import Network, Road
     from drivelint.road.quality import MapQuality
 
 MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
 MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
 MIN_CROSSING_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
+MAX_REPEATS = 10_000  # of one object
+_BAND_STEP_M = 5.0
+_BAND_WIDTH_M = 0.05  # of a fence or railing that has no width of its own
+
+_BY_TYPE = {
+    "crosswalk": "crossing", "parkingSpace": "parking_space", "obstacle": "obstacle", "barrier": "barrier",
+    "railing": "barrier", "guardRail": "barrier", "soundBarrier": "barrier", "wall": "barrier", "pole": "pole",
+    "streetLamp": "pole", "signalPole": "pole", "rail-pole": "pole", "guide-post": "pole", "tree": "tree",
+    "vegetation": "tree", "building": "building", "trafficIsland": "island", "roadMark": "marking",
+    "stopLine": "stop_line",
+}  # fmt: skip
+_BY_NAME = (
+    ("stopline_pedestrian", "marking"),  # RoadRunner's edge of a pedestrian crossing, right across the road
+    ("stopline", "stop_line"), ("stop_line", "stop_line"), ("crosswalk", "crossing"), ("zebra", "crossing"),
+    ("parking", "parking_space"), ("stencil", "marking"), ("crosshatch", "marking"), ("chevron", "marking"),
+    ("solid", "marking"), ("dashed", "marking"), ("signpost", "pole"), ("pole", "pole"), ("building", "building"),
+    ("tree", "tree"), ("island", "island"), ("barrier", "barrier"), ("fence", "barrier"), ("railing", "barrier"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedObject:
+    """One object in the map; the outline is (n, 2) map metres, None for a point."""
+
+    road: Road
+    element: etree._Element
+    object_id: str
+    s: float
+    x: float
+    y: float
+    outline: Floats | None
+
+    @cached_property
+    def kind(self) -> str:
+        """What it is, by its type, else by its name."""
+        name = (self.element.get("name") or "").lower()
+        by_name = next((kind for part, kind in _BY_NAME if part in name), "other")
+        return _BY_TYPE.get(self.element.get("type", ""), by_name)
+
+    def row(self) -> dict[str, Any]:
+        """Return the row of `road_object`."""
+        outline = None if self.outline is None else counter_clockwise(self.outline)
+        return {
+            "object_id": self.object_id, "kind": self.kind, "name": self.element.get("name") or None,
+            "road_id": self.road.road_id, "road_s_m": self.s, "x_m": self.x, "y_m": self.y,
+            "outline_x_m": None if outline is None else outline[:, 0].tolist(),
+            "outline_y_m": None if outline is None else outline[:, 1].tolist(),
+        }  # fmt: skip
+
+
+def counter_clockwise(outline: Floats) -> Floats:
+    """Return the corners with the inside on the left; a closing corner that repeats the first is dropped."""
+    if len(outline) > 1 and np.allclose(outline[0], outline[-1], atol=1e-6):
+        outline = outline[:-1]
+    x, y = (outline - outline[0]).T
+    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    return outline if area >= -1e-6 else outline[::-1]  # a line has no sense of turning, but rounding has
 
 
 def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
     """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
     signals, painted = signal_rows(net, lanes, offset, quality)
-    objects = placed_objects(net, offset, quality)
+    objects = _placed_objects(net, offset, quality)
     stop_lines, crossings = _laid_over(objects, [lane for lane in lanes if lane.drivable], quality)
     return {
         "traffic_signal": signals,
@@ -44,7 +107,7 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
     ]
     if not flat:
         return [], []
-    tree = shapely.STRtree([_area(lane) for lane in lanes])
+    tree = shapely.STRtree([_valid(np.vstack([lane.line.right, lane.line.left[::-1]])) for lane in lanes])
     found: dict[str, Rows] = {"stop_line": [], "crossing": []}
     for placed, corners in flat:
         rows = []
@@ -68,8 +131,8 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
     return found["stop_line"], found["crossing"]
 
 
-def _area(lane: Lanelet) -> shapely.Geometry:
-    polygon = shapely.Polygon(np.vstack([lane.line.right, lane.line.left[::-1]]))
+def _valid(corners: Floats) -> shapely.Geometry:
+    polygon = shapely.Polygon(corners)
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
@@ -78,7 +141,7 @@ def _shape(corners: Floats) -> shapely.Geometry:
     if len(corners) > 2:
         polygon = shapely.Polygon(corners)
         if polygon.area > 0.005 * polygon.length**2:  # a square has 0.0625; 0.2 m by 3.5 m has 0.013
-            return polygon if polygon.is_valid else polygon.buffer(0.0)
+            return _valid(corners)
     axis = np.linalg.svd(corners - corners.mean(axis=0))[2][0]
     reach = (corners - corners.mean(axis=0)) @ axis
     return shapely.LineString([corners.mean(axis=0) + r * axis for r in (reach.min(), reach.max())])
@@ -99,3 +162,99 @@ def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) 
 def _crossing_kind(placed: PlacedObject) -> str | None:
     said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
     return "zebra" if "zebra" in said else "signalled" if "signal" in said else None
+
+
+def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuality) -> list[PlacedObject]:
+    """Return every object, repetitions one by one; one that cannot be placed is a row of `quality`."""
+    placed: list[PlacedObject] = []
+    for road in net.roads.values():
+        for element in road.element.iterfind("objects/object"):
+            try:
+                placed += _placed(road, element, offset)
+            except MalformedError as error:
+                message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
+                quality.add("invalid_object", "warning", road.road_id, message)
+    return sorted(placed, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
+
+
+def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
+    repeats = element.findall("repeat")
+    if not repeats:
+        s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])
+        yield from _instances(road, element, s, t, offset, numbered=False)
+    counted = 0
+    for repeat in repeats:
+        distance, length = number(repeat, "distance", 0.0), number(repeat, "length", 0.0)
+        start = number(repeat, "s", number(element, "s"))
+        ends = [number(repeat, end, number(element, "t", 0.0)) for end in ("tStart", "tEnd")]
+        if distance <= 0.0:
+            yield _band(road, element, repeat, offset)
+            continue
+        steps = np.arange(min(int(length / distance + 1e-6) + 1, MAX_REPEATS + 1)) * distance
+        counted += len(steps)
+        if counted > MAX_REPEATS:
+            raise MalformedError(f"it is repeated more than {MAX_REPEATS} times")
+        t = np.interp(steps, [0.0, max(length, 1e-9)], ends)
+        yield from _instances(road, element, start + steps.astype(np.float64), t, offset, numbered=True)
+
+
+def _instances(
+    road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
+) -> Iterator[PlacedObject]:
+    x, y, heading = road.place(s, t, offset)
+    local, on_road = _local_outline(element), _corners(element, "cornerRoad", ("s", "t"))
+    turned = heading + number(element, "hdg", 0.0)
+    for i in range(len(s)):
+        outline = None
+        if on_road is not None:
+            shift = np.array([s[i] - number(element, "s"), t[i] - number(element, "t", 0.0)]) if numbered else 0.0
+            corners = on_road + shift
+            outline = np.column_stack(road.place(corners[:, 0], corners[:, 1], offset)[:2])
+        elif local is not None:
+            cos, sin = np.cos(turned[i]), np.sin(turned[i])
+            outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
+        name = required_attribute(element, "id") + (f"/{i}" if numbered else "")
+        yield PlacedObject(road, element, name, float(s[i]), float(x[i]), float(y[i]), outline)
+
+
+def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> PlacedObject:
+    """Return an object that runs along the road without gaps."""
+    start, length = number(repeat, "s", number(element, "s")), number(repeat, "length", 0.0)
+    if not 0.0 < length <= 1e5:
+        raise MalformedError(f"it is repeated over {length:g} m")
+    along = np.linspace(0.0, 1.0, int(np.ceil(length / _BAND_STEP_M)) + 1)
+    t0 = number(element, "t", 0.0)
+    t = np.interp(along, [0.0, 1.0], [number(repeat, "tStart", t0), number(repeat, "tEnd", t0)])
+    width = number(element, "width", 0.0)
+    half = np.interp(along, [0.0, 1.0], [number(repeat, "widthStart", width), number(repeat, "widthEnd", width)]) / 2
+    half = np.maximum(half, 0.5 * _BAND_WIDTH_M)
+    s = np.minimum(start + along * length, road.length_m)
+    right, left = (np.column_stack(road.place(s, t + side, offset)[:2]) for side in (-half, half))
+    x, y, _ = road.place(s[:1], t[:1], offset)
+    outline = np.concatenate([right, left[::-1]])
+    return PlacedObject(
+        road, element, required_attribute(element, "id"), float(s[0]), float(x[0]), float(y[0]), outline
+    )
+
+
+def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
+    for path in (f"outline/{tag}", f"outlines/outline/{tag}"):
+        found = element.findall(path)
+        if found:
+            mine = [c for c in found if c.getparent() is found[0].getparent()]  # the first outline of several
+            return np.array([[number(c, axis) for axis in axes] for c in mine])
+    return None
+
+
+def _local_outline(element: etree._Element) -> Floats | None:
+    """Return the corners in the object's frame: as listed, else its rectangle, else its circle; None: a point."""
+    listed = _corners(element, "cornerLocal", ("u", "v"))
+    if listed is not None:
+        return listed
+    length, width, radius = (number(element, a, 0.0) for a in ("length", "width", "radius"))
+    if length > 0.0 and width > 0.0:
+        return 0.5 * np.array([[length, width], [-length, width], [-length, -width], [length, -width]])
+    if radius > 0.0:
+        angle = np.arange(12) * (np.pi / 6)
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return None

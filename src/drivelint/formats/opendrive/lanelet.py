@@ -52,11 +52,6 @@ class Lanelet:
         """Motor vehicles may drive here."""
         return self.lane.kind in DRIVABLE
 
-    @property
-    def length_m(self) -> float:
-        """Length along the centre line."""
-        return float(self.line.s[-1])
-
     def station_at(self, road_s: float) -> float:
         """Return the lanelet station (m) of a road station (m), held within the lanelet."""
         step = self.along

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.cubic import Cubics, cubics
-from drivelint.formats.opendrive.planview import PlanView, planview
+from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
 from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
 from drivelint.road.geo_reference import GeoFrame
 

@@ -1,4 +1,4 @@
-"""The reference line: line, arc, spiral, poly3 and paramPoly3, evaluated at many stations at once.
+"""The reference line: line, arc, spiral, poly3 and paramPoly3, and cubic profiles along it, evaluated at many stations at once.
 
 Lines, arcs and spirals are one kind: a curvature that is linear in s. Its position is the integral of (cos, sin) of a
 quadratic heading, taken by Gauss-Legendre quadrature over panels of at most half a radian (error below 1e-12 of the
@@ -15,6 +15,8 @@ import numpy as np
 from drivelint.formats.opendrive.xml import MalformedError, number
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from lxml import etree
 
     from drivelint.arrays import Floats
@@ -211,3 +213,40 @@ def _clothoid(length: float, start: float, end: float) -> Clothoid:
             f"a geometry of {length:g} m with curvatures {start:g} and {end:g} 1/m turns beyond {_MAX_TURN_RAD:g} rad"
         )
     return Clothoid(start, (end - start) / length)
+
+
+@dataclass(frozen=True, eq=False)
+class Cubics:
+    """Records a + b ds + c ds^2 + d ds^3, ds counted from each record's start; 0 before the first record."""
+
+    start: Floats  # (n,) road station, ascending
+    coef: Floats  # (n, 4)
+
+    def evaluate(self, s: Floats, at: Floats) -> tuple[Floats, Floats]:
+        """Return values and first derivatives at stations `s`, taking the records that hold at stations `at`.
+
+        `at` differs from `s` at the ends of a section, where the record on the section's own side is wanted.
+        """
+        if not len(self.start):
+            return np.zeros_like(s), np.zeros_like(s)
+        k = np.searchsorted(self.start, at, side="right") - 1
+        before = k < 0
+        k = np.maximum(k, 0)
+        ds = s - self.start[k]
+        a, b, c, d = self.coef[k].T
+        value = ((d * ds + c) * ds + b) * ds + a
+        slope = (3 * d * ds + 2 * c) * ds + b
+        if before.any():
+            value, slope = np.where(before, 0.0, value), np.where(before, 0.0, slope)
+        return value, slope
+
+
+def cubics(elements: Iterable[etree._Element], station: str, origin: float = 0.0) -> Cubics:
+    """Read polynomial records; `station` is the attribute with their start, `origin` what it counts from.
+
+    Of records with the same start the last one holds.
+    """
+    rows = [(origin + number(e, station, 0.0), *(number(e, c, 0.0) for c in "abcd")) for e in elements]
+    rows.sort(key=lambda row: row[0])
+    table = np.array(rows, dtype=np.float64).reshape(-1, 5)
+    return Cubics(table[:, 0].copy(), table[:, 1:].copy())

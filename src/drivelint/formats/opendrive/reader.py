@@ -89,7 +89,7 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
         "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
         "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
         "road_type": road_type(lane),
-        "length_m": lane.length_m, "width_m": lane.mean_width(), "area_m2": lane.line.area,
+        "length_m": lane.line.length, "width_m": lane.mean_width(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _against(lane, lane.left),
         "right_id": lane.right.lanelet_id if lane.right else None,

@@ -53,7 +53,7 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
         seen.add(stretch)
         lane = by_id[stretch.lanelet_id]
         posted = min((s for s in posts.get(stretch.lanelet_id, ()) if s > stretch.start_m), default=None)
-        end = lane.length_m if posted is None else posted
+        end = lane.line.length if posted is None else posted
         if end > stretch.start_m:
             source = "unread" if stretch.limit_mps is None else "sign"
             rows.append({

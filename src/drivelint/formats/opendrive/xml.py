@@ -18,11 +18,9 @@ MAX_NUMBER = 1e9  # no length, coordinate or coefficient of a road is larger; be
 
 def number(element: etree._Element, name: str, default: float | None = None) -> float:
     """Return an attribute as a finite number, or the default if it is absent."""
-    said = element.get(name)
-    if said is None:
-        if default is None:
-            raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")
+    if default is not None and name not in element.attrib:
         return default
+    said = required_attribute(element, name)
     try:
         value = float(said)
     except ValueError:

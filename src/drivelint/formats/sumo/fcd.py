@@ -115,7 +115,12 @@ def _rows(path: Path) -> pa.Table:
         start = file.read(16)
     if start.startswith(b"PAR1"):
         return parquet.table(path)
-    return _csv(path) if _is_csv(start) else _xml(path)
+    if _is_csv(start):
+        return _csv(path)
+    content = path.read_bytes()
+    # where all vehicles look like the first, line by line, else by the parser
+    lines = _lines(content, content.find(b"<fcd-export")) if b"&" not in content else None
+    return _parsed(path, content) if lines is None else lines
 
 
 def _is_csv(head: bytes) -> bool:
@@ -249,13 +254,6 @@ def _csv(path: Path) -> pa.Table:
         )
     except pa.ArrowInvalid as error:
         raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
-
-
-def _xml(path: Path) -> pa.Table:
-    """Read XML: where all vehicles look like the first, line by line, else by the parser."""
-    content = path.read_bytes()
-    lines = _lines(content, content.find(b"<fcd-export")) if b"&" not in content else None
-    return _parsed(path, content) if lines is None else lines
 
 
 def _lines(content: bytes, begin: int) -> pa.Table | None:

@@ -35,12 +35,8 @@ def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tupl
     signals, lines = _lights(links, lanes)
     signed, stops = _signs(root, links, lanes)
     lines |= stops
-    rows = [stop_line_row(f"end of {name}", name, _end(lanes[name]), "connection") for name in sorted(lines)]
+    rows = [stop_line_row(f"end of {name}", name, lanes[name].line.length, "connection") for name in sorted(lines)]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
-
-
-def _end(lane: BoundedLane) -> float:
-    return float(lane.line.s[-1])
 
 
 def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
@@ -55,7 +51,7 @@ def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tu
         if light is None or source not in lanes:
             continue
         via = link.get("via")
-        at, s = (via, 0.0) if via in lanes else (source, _end(lanes[source]))
+        at, s = (via, 0.0) if via in lanes else (source, lanes[source].line.length)
         turns[f"{light}_{link.get('linkIndex')}", str(at), s].update(_TURNS.get(link.get("dir", ""), ()))
         if lanes[source].drivable:
             ends.add(source)
@@ -85,7 +81,7 @@ def _signs(
         kind = "stop" if "stop" in found else "give_way"
         for name, lane in sorted(lanes.items()):
             if lane.drivable and name.rpartition("_")[0] == edge:
-                rows.append(_row(f"{kind} {edge}", kind, lane, _end(lane), turns=None))
+                rows.append(_row(f"{kind} {edge}", kind, lane, lane.line.length, turns=None))
                 if kind == "stop":
                     stops.add(name)
     return rows, stops

@@ -274,29 +274,18 @@ def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[boo
     heading = "speed" in given or mapping.frame.velocity == "vehicle" or point != "centre"
     grouped = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
     return [
-        (
-            ("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given),
-            "vx and vy, and ax and ay, go in pairs",
-        ),
+        (("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given), "vx and vy, and ax and ay, go in pairs"),
         ("vx" in given and "speed" in given, "give vx and vy or speed, not both"),
-        (
-            heading and "yaw" not in given,
-            "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw",
-        ),
+        (heading and "yaw" not in given,
+         "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw"),
         (point == "rear_axle" and "forward" not in given, "reference.point = 'rear_axle' needs reference.forward"),
-        (
-            point == "front_bumper" and ("length" not in given or "forward" in given),
-            "reference.point = 'front_bumper' needs columns.length and takes no reference.forward",
-        ),
-        (
-            point == "centre" and not given.isdisjoint({"forward", "left", "up"}),
-            "reference.forward, left and up need reference.point = 'rear_axle'",
-        ),
-        (
-            mapping.ego.otherwise is not None and not grouped,
-            "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor",
-        ),
-    ]
+        (point == "front_bumper" and ("length" not in given or "forward" in given),
+         "reference.point = 'front_bumper' needs columns.length and takes no reference.forward"),
+        (point == "centre" and not given.isdisjoint({"forward", "left", "up"}),
+         "reference.forward, left and up need reference.point = 'rear_axle'"),
+        (mapping.ego.otherwise is not None and not grouped,
+         "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor"),
+    ]  # fmt: skip
 
 
 def _validate_words(path: Path, name: str, spec: WordMapping, allowed: tuple[str, ...]) -> None:
