@@ -13,7 +13,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import MAGIC, Container
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
-from drivelint.formats.osi.reader import OPEN_DRIVE
+from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout

@@ -12,14 +12,9 @@ from typing import Final
 from google.protobuf import descriptor_pb2, duration_pb2, timestamp_pb2
 from mcap.records import Schema
 
+from drivelint.formats.protobuf.descriptors import SCALARS
+
 _FIELD = descriptor_pb2.FieldDescriptorProto
-_SCALARS: Final = {
-    "double": _FIELD.TYPE_DOUBLE,
-    "bool": _FIELD.TYPE_BOOL,
-    "string": _FIELD.TYPE_STRING,
-    "bytes": _FIELD.TYPE_BYTES,
-    "fixed32": _FIELD.TYPE_FIXED32,
-}
 _KNOWN: Final = {"Timestamp": timestamp_pb2.DESCRIPTOR, "Duration": duration_pb2.DESCRIPTOR}
 # message -> its fields, numbered from 1; []: repeated; a name with an upper-case letter is a message, E: its own enumeration
 _TYPES: Final[dict[str, str]] = {
@@ -97,8 +92,8 @@ def _declare(message: descriptor_pb2.DescriptorProto, name: str, kind: str, numb
     words = name.split("_")
     field = message.field.add(name=name, number=number, json_name=words[0] + "".join(w.title() for w in words[1:]))
     field.label = _FIELD.LABEL_REPEATED if repeated else _FIELD.LABEL_OPTIONAL
-    if kind in _SCALARS:
-        field.type = _SCALARS[kind]
+    if kind in SCALARS:
+        field.type = SCALARS[kind]
     elif kind.startswith("E:"):
         field.type, field.type_name = _FIELD.TYPE_ENUM, f".foxglove.{message.name}.{kind[2:]}"
     else:

@@ -14,9 +14,9 @@ from google.protobuf.message import DecodeError
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.osi import schema as osi_schema
 from drivelint.formats.osi import signal_heads as osi_heads
-from drivelint.formats.osi.enum_codes import Bulbs, build_enum_codes, bulbs_of, state_codes, struct_field
+from drivelint.formats.osi.enum_codes import Bulbs, EnumCodes, bulbs_of, state_codes, struct_field
+from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
 from drivelint.formats.protobuf import descriptors
 
 if TYPE_CHECKING:
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
-
-GROUND_TRUTH = "osi3.GroundTruth"
-SENSOR_VIEW = "osi3.SensorView"
 
 _XY: FieldTree = {"x": None, "y": None}
 _ID: FieldTree = {"value": None}
@@ -112,7 +109,7 @@ class Decoder:
             raise TraceError(
                 f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
             )
-        self._words = build_enum_codes(types, GROUND_TRUTH)
+        self._words = EnumCodes(types, GROUND_TRUTH)
 
     def frames(self, packets: list[Packet]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
@@ -189,7 +186,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     placed on them: they are told, and make no map.
     """
     try:
-        outer = osi_schema.message_class(name.removeprefix("osi3.")).FromString(data)
+        outer = message_class(name.removeprefix("osi3.")).FromString(data)
     except DecodeError:
         return FirstMessage()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
@@ -203,7 +200,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
         return head._replace(findings=(QualityFinding("lanes_without_width", "info", message, n),) if n else ())
     if not (truth.lane or truth.logical_lane):
         return head
-    lanes, beside = osi_schema.message_class("GroundTruth")(), osi_schema.message_class("GroundTruth")()
+    lanes, beside = message_class("GroundTruth")(), message_class("GroundTruth")()
     for each in _LANES:
         getattr(lanes, each).extend(getattr(truth, each))
     beside.traffic_sign.extend(truth.traffic_sign)

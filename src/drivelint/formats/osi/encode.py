@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
-from drivelint.formats.osi.schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
-from drivelint.formats.protobuf.wire import BYTES, FIXED64, VARINT, integer, nested, tag, varint
+from drivelint.formats.osi.enum_codes import BRAKE_LIGHT_NAMES, INDICATOR_NAMES
+from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE, VERSION, enum_numbers
+from drivelint.formats.protobuf.wire import BYTES, FIXED64, VARINT, double_column, integer, nested, tag, varint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,36 +36,28 @@ _OPTIONAL: Final = frozenset({"length_m", "width_m", "height_m", "z_m"})
 _ALL: Final = tuple(column for _, parts in _VECTORS.values() for _, column in parts)
 
 
-def _names(message: str, prefix: str, words: Mapping[str, str]) -> dict[str, int]:
-    return {word: ENUMS[message][f"{prefix}_{name}"] for word, name in words.items()}
-
-
-_KIND: Final = ENUMS["MovingObject.Type"]
-_VEHICLE: Final = _names(
-    "MovingObject.VehicleClassification.Type",
-    "TYPE",
-    {
-        "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
-        "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
-    },
-)  # fmt: skip
-_TYPE: Final = {
-    "pedestrian": _KIND["TYPE_PEDESTRIAN"],
-    "animal": _KIND["TYPE_ANIMAL"],
-    "object": _KIND["TYPE_OTHER"],
-    **dict.fromkeys(_VEHICLE, _KIND["TYPE_VEHICLE"]),
-}
-_LIGHT_STATE = "MovingObject.VehicleClassification.LightState"
-_INDICATOR: Final = _names(
-    f"{_LIGHT_STATE}.IndicatorState",
-    "INDICATOR_STATE",
-    {"off": "OFF", "left": "LEFT", "right": "RIGHT", "hazard": "WARNING"},
-)
-_BRAKE: Final = _names(
-    f"{_LIGHT_STATE}.BrakeLightState", "BRAKE_LIGHT_STATE", {"off": "OFF", "on": "NORMAL", "strong": "STRONG"}
-)
-_COLOR: Final = ENUMS["TrafficLight.Classification.Color"]
-_MODE: Final = ENUMS["TrafficLight.Classification.Mode"]
+_VEHICLES: Final = {
+    "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
+    "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
+}  # fmt: skip
+_TYPES: Final = {
+    "pedestrian": "PEDESTRIAN", "animal": "ANIMAL", "object": "OTHER", **dict.fromkeys(_VEHICLES, "VEHICLE"),
+}  # fmt: skip
+_CLASSIFICATION: Final = "MovingObject.VehicleClassification"
+_CODES: Final[dict[str, tuple[str, tuple[str, ...], str, Mapping[str, str]]]] = {
+    "type": ("actor_class", ACTOR_CLASSES, "MovingObject.Type", _TYPES),
+    "vehicle": ("actor_class", ACTOR_CLASSES, f"{_CLASSIFICATION}.Type", _VEHICLES),
+    "indicator": (
+        "indicator", INDICATORS, f"{_CLASSIFICATION}.LightState.IndicatorState",
+        {word: name for name, word in INDICATOR_NAMES.items()},
+    ),
+    "brake_light": (
+        "brake_light", BRAKE_LIGHTS, f"{_CLASSIFICATION}.LightState.BrakeLightState",
+        {word: name for name, word in BRAKE_LIGHT_NAMES.items()},
+    ),
+}  # fmt: skip
+"""Slot -> its code, the words that the code indexes, their enumeration, and the name that each word has in it."""
+_COLOR, _MODE = "TrafficLight.Classification.Color", "TrafficLight.Classification.Mode"
 _BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
     "red": (("RED", "CONSTANT"),),
     "red_amber": (("RED", "CONSTANT"), ("YELLOW", "CONSTANT")),
@@ -125,7 +118,7 @@ def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> 
     reference = nested(5, nested(2, OPEN_DRIVE_REFERENCE.encode()) + nested(3, signal_id.encode()))
     bulbs = (
         nested(1, integer(1, number))
-        + nested(3, integer(1, _COLOR[f"COLOR_{color}"]) + integer(3, _MODE[f"MODE_{mode}"]))
+        + nested(3, integer(1, enum_numbers(_COLOR)[color]) + integer(3, enum_numbers(_MODE)[mode]))
         + reference
         for number, (color, mode) in zip(numbers, _BULBS[state], strict=False)
     )
@@ -156,7 +149,7 @@ def _shape(objects: Objects) -> NDArray[np.int64]:
         key |= (known | (column == "z_m" and objects.heights)).astype(np.int64) << i
     for i, code in enumerate(("indicator", "brake_light"), 4 + len(_ALL)):
         key |= (objects.codes[code] >= 0).astype(np.int64) << i
-    vehicle = np.array([*(word in _VEHICLE for word in ACTOR_CLASSES), False])[objects.codes["actor_class"]]
+    vehicle = np.array([*(word in _VEHICLES for word in ACTOR_CLASSES), False])[objects.codes["actor_class"]]
     return key | vehicle.astype(np.int64) << (6 + len(_ALL))
 
 
@@ -206,12 +199,8 @@ def _numbers(slot: Slot, objects: Objects, rows: NDArray[np.intp]) -> NDArray[np
         more = np.where(np.arange(slot.size) < slot.size - 1, 0x80, 0).astype(np.uint64)
         return (groups & np.uint64(0x7F) | more).astype(np.uint8)
     if slot.name in objects.values:
-        return np.ascontiguousarray(objects.values[slot.name][rows], "<f8").view(np.uint8).reshape(-1, 8)
-    words, known, code = {
-        "type": (ACTOR_CLASSES, _TYPE, "actor_class"),
-        "vehicle": (ACTOR_CLASSES, _VEHICLE, "actor_class"),
-        "indicator": (INDICATORS, _INDICATOR, "indicator"),
-        "brake_light": (BRAKE_LIGHTS, _BRAKE, "brake_light"),
-    }[slot.name]
-    table = np.array([*(known.get(word, 0) for word in words), 0], np.uint8)  # the last is for code -1, unknown
+        return double_column(objects.values[slot.name][rows])
+    code, words, enum, names = _CODES[slot.name]
+    numbers = {word: enum_numbers(enum)[name] for word, name in names.items()}
+    table = np.array([*(numbers.get(word, 0) for word in words), 0], np.uint8)  # the last is for code -1, unknown
     return table[objects.codes[code][rows]][:, None]

@@ -23,78 +23,63 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import Types
 
 OFF, ON, OTHER = 0, 1, 2
-_KINDS = {"TYPE_VEHICLE": "vehicle", "TYPE_PEDESTRIAN": "pedestrian", "TYPE_ANIMAL": "animal"}
-_VEHICLES = {
-    "TYPE_SMALL_CAR": "car", "TYPE_COMPACT_CAR": "car", "TYPE_CAR": "car", "TYPE_MEDIUM_CAR": "car",
-    "TYPE_LUXURY_CAR": "car", "TYPE_DELIVERY_VAN": "van", "TYPE_HEAVY_TRUCK": "truck", "TYPE_SEMITRACTOR": "truck",
-    "TYPE_SEMITRAILER": "trailer",
-    "TYPE_TRAILER": "trailer", "TYPE_MOTORBIKE": "motorcycle", "TYPE_BICYCLE": "bicycle", "TYPE_BUS": "bus",
-    "TYPE_WHEELCHAIR": "pedestrian", "TYPE_STANDUP_SCOOTER": "bicycle",
-}  # fmt: skip
-_INDICATORS = {
-    "INDICATOR_STATE_OFF": "off",
-    "INDICATOR_STATE_LEFT": "left",
-    "INDICATOR_STATE_RIGHT": "right",
-    "INDICATOR_STATE_WARNING": "hazard",
-}
-_BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
-_LAMPS = {
-    "GENERIC_LIGHT_STATE_OFF": OFF,
-    "GENERIC_LIGHT_STATE_ON": ON,
-    "GENERIC_LIGHT_STATE_OTHER": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_BLUE": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_AMBER": OTHER,
-}
-# one bulb each: bits of a traffic light's lit colours
-RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
-_COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
+# one bulb each: bits of a traffic light's lit colours; LIT stands for the bulb's colour
+RED, AMBER, GREEN, FLASHING, UNKNOWN, LIT = 1, 2, 4, 8, 16, 32
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
+INDICATOR_NAMES = {"OFF": "off", "LEFT": "left", "RIGHT": "right", "WARNING": "hazard"}
+BRAKE_LIGHT_NAMES = {"OFF": "off", "NORMAL": "on", "STRONG": "strong"}
+_KINDS = {"VEHICLE": "vehicle", "PEDESTRIAN": "pedestrian", "ANIMAL": "animal"}
+_VEHICLES = {
+    "SMALL_CAR": "car", "COMPACT_CAR": "car", "CAR": "car", "MEDIUM_CAR": "car", "LUXURY_CAR": "car",
+    "DELIVERY_VAN": "van", "HEAVY_TRUCK": "truck", "SEMITRACTOR": "truck", "SEMITRAILER": "trailer", "TRAILER": "trailer",
+    "MOTORBIKE": "motorcycle", "BICYCLE": "bicycle", "BUS": "bus", "WHEELCHAIR": "pedestrian", "STANDUP_SCOOTER": "bicycle",
+}  # fmt: skip
+_LAMPS = {"OFF": OFF, "ON": ON} | dict.fromkeys(
+    ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER"), OTHER
+)
 
 
-_MOVING = ("moving_object",)
-_VEHICLE = (*_MOVING, "vehicle_classification")
-_LIGHTS = (*_VEHICLE, "light_state")
-_TRAFFIC_LIGHT = ("traffic_light", "classification")
-_CODES: dict[str, tuple[tuple[str, ...], dict[str, int]]] = {
-    "kind": ((*_MOVING, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _KINDS.items()}),
-    "vehicle": ((*_VEHICLE, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _VEHICLES.items()}),
-    "indicator": ((*_LIGHTS, "indicator_state"), {n: INDICATORS.index(w) for n, w in _INDICATORS.items()}),
-    "brake_light": ((*_LIGHTS, "brake_light_state"), {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()}),
-    "lamp": ((*_LIGHTS, "head_light"), _LAMPS),
-    "color": ((*_TRAFFIC_LIGHT, "color"), _COLORS),
-}
-"""Attribute -> the field of a ground truth that has its enumeration, and the codes of the names."""
+def _indexed(names: Mapping[str, str], words: tuple[str, ...]) -> dict[str, int]:
+    return {name: words.index(word) for name, word in names.items()}
 
 
-@dataclass(frozen=True)
+_VEHICLE = "moving_object.vehicle_classification"
+_CODES: dict[str, tuple[str, str, dict[str, int]]] = {
+    "kind": ("moving_object.type", "TYPE", _indexed(_KINDS, ACTOR_CLASSES)),
+    "vehicle": (f"{_VEHICLE}.type", "TYPE", _indexed(_VEHICLES, ACTOR_CLASSES)),
+    "indicator": (f"{_VEHICLE}.light_state.indicator_state", "INDICATOR_STATE", _indexed(INDICATOR_NAMES, INDICATORS)),
+    "brake_light": (
+        f"{_VEHICLE}.light_state.brake_light_state", "BRAKE_LIGHT_STATE", _indexed(BRAKE_LIGHT_NAMES, BRAKE_LIGHTS),
+    ),
+    "lamp": (f"{_VEHICLE}.light_state.head_light", "GENERIC_LIGHT_STATE", _LAMPS),
+    "color": ("traffic_light.classification.color", "COLOR", {"RED": RED, "YELLOW": AMBER, "GREEN": GREEN}),
+    "mode": (
+        "traffic_light.classification.mode", "MODE", {"OFF": 0, "FLASHING": FLASHING, "CONSTANT": LIT, "COUNTING": LIT},
+    ),
+}  # fmt: skip
+"""Attribute -> the field of a ground truth that has its enumeration, what its names begin with, and the codes of the names."""
+
+
 class EnumCodes:
-    """Number -> code by what is translated, for one schema (numbers beyond a table are unknown); `modes`: name -> number."""
+    """Number -> code by attribute, for one schema: -1 for UNKNOWN, OTHER and whatever else is not in `_CODES`."""
 
-    tables: dict[str, NDArray[np.int8]]
-    modes: dict[str, int]
+    def __init__(self, types: Types, truth: str) -> None:
+        """Build the tables from the enumerations of the ground-truth message `truth`."""
+        self._tables = {}
+        for attribute, (path, prefix, codes) in _CODES.items():
+            names = enum_names(types, truth, *path.split("."))
+            known = {f"{prefix}_{name}": code for name, code in codes.items()}
+            table = np.full(max(names, default=0) + 2, -1, np.int8)
+            for number, name in names.items():
+                if number >= 0:
+                    table[number] = known.get(name, -1)
+            self._tables[attribute] = table
 
-    def codes(self, what: str, numbers: pa.Array) -> NDArray[np.int8]:
+    def codes(self, attribute: str, numbers: pa.Array) -> NDArray[np.int8]:
         """Return the codes of numbers, -1 where they are unknown."""
-        table = self.tables[what]
+        table = self._tables[attribute]
         index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
         return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
-
-
-def build_enum_codes(types: Types, truth: str) -> EnumCodes:
-    """Build the tables from the enumerations of the ground-truth message `truth`."""
-    modes = enum_names(types, truth, *_TRAFFIC_LIGHT, "mode")
-    tables = {what: _table(enum_names(types, truth, *path), codes) for what, (path, codes) in _CODES.items()}
-    return EnumCodes(tables, {name: number for number, name in modes.items()})
-
-
-def _table(names: dict[int, str], codes: dict[str, int]) -> NDArray[np.int8]:
-    """Return an array number -> code, -1 for every name that is not among `codes` (UNKNOWN, OTHER, newer ones)."""
-    table = np.full(max(names, default=0) + 2, -1, np.int8)
-    for number, name in names.items():
-        if number >= 0:
-            table[number] = codes.get(name, -1)
-    return table
 
 
 def struct_field(parent: pa.Array, name: str) -> pa.Array:
@@ -149,13 +134,9 @@ def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> B
     bulbs = lights.flatten()
     counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
     seen = struct_field(bulbs, "classification")
-    mode = pc.fill_null(struct_field(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    color = words.codes("color", struct_field(seen, "color"))
-    lit = np.isin(mode, [words.modes.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
-    bits = np.full(len(bulbs), UNKNOWN, np.int8)
-    bits[mode == words.modes.get("MODE_OFF", -2)] = 0
-    bits[mode == words.modes.get("MODE_FLASHING", -2)] = FLASHING
-    bits[lit & (color > 0)] = color[lit & (color > 0)]
+    mode, color = (words.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
+    shown = np.where(mode == LIT, color, mode)
+    bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
     return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
 
 

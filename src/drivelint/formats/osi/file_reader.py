@@ -11,9 +11,9 @@ from mcap.records import Channel
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import BATCH_BYTES, Packet
-from drivelint.formats.osi.decode import GROUND_TRUTH, SENSOR_VIEW, Decoder, FirstMessage, read_first_message
+from drivelint.formats.osi.decode import Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.reader import join_batches
-from drivelint.formats.osi.schema import reader_descriptor_set
+from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, reader_descriptor_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

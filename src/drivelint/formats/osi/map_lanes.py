@@ -16,7 +16,7 @@ from drivelint.errors import MapError
 from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
-from drivelint.formats.osi import schema as osi_schema
+from drivelint.formats.osi.schema import message_class
 from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
 from drivelint.road.handedness import choose_side
 from drivelint.road.quality import MapQuality
@@ -38,7 +38,7 @@ _SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
     quality = MapQuality()
-    truth = osi_schema.message_class("GroundTruth").FromString(source.content)
+    truth = message_class("GroundTruth").FromString(source.content)
     logical = osi_logical.read(truth, quality)
     physical = osi_physical.read(truth, quality)
     covers = _covers(logical, physical)

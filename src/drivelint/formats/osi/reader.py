@@ -13,15 +13,9 @@ from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Reco
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi import metadata
-from drivelint.formats.osi.decode import (
-    FIELD_TREES,
-    GROUND_TRUTH,
-    SENSOR_VIEW,
-    Decoder,
-    FirstMessage,
-    read_first_message,
-)
+from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import Bulbs, signal_states
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW
 from drivelint.formats.protobuf import descriptors
 from drivelint.phrases import listed
 
@@ -33,8 +27,6 @@ if TYPE_CHECKING:
 
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.osi.decode import FrameBatch
-
-OPEN_DRIVE = "osi3.MapAsamOpenDrive"
 
 
 def read(path: Path, topic: str | None) -> Recording:

@@ -25,6 +25,8 @@ FieldTree = dict[str, Any]
 
 _FIELD = descriptor_pb2.FieldDescriptorProto
 PACKAGE = "pruned"
+SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIELD.Type.items()}
+"""Type of a value as it is written in a schema -> its number."""
 
 
 @dataclass
