@@ -18,9 +18,8 @@ from drivelint.formats.foxglove.decode import (
     FIELD_TREES,
     SCENE,
     TRANSFORM,
-    Decoder,
+    decoded_rows,
     distinct_texts,
-    list_items,
     numbers,
     times,
     vectors,
@@ -28,7 +27,7 @@ from drivelint.formats.foxglove.decode import (
 from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.osi.enum_codes import struct_field
+from drivelint.formats.protobuf.columns import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
@@ -76,10 +75,8 @@ def read(path: Path, topic: str | None) -> Recording:
         container = Container(file)
         for name, packets in message_batches(container, partial(_kind, container)):
             channel = packets[0].channel
-            schema = container.schemas[channel.schema_id].data
-            decoder = Decoder(file, name, channel.message_encoding, schema)
             log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
-            decoded = decoder.rows(packets)
+            decoded = decoded_rows(file, container.schemas[channel.schema_id], packets)
             if name == SCENE:
                 _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
             elif name == TRANSFORM:

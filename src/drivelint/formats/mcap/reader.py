@@ -47,6 +47,11 @@ class Packet:
     data: bytes
     offset: int
 
+    def error(self, path: Path, what: str) -> TraceError:
+        """Return the error for this message: where it is, and what is wrong with it."""
+        where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
+        return TraceError(f"{path}: {where}: {what}: record or copy the log again")
+
 
 @dataclass
 class Container:

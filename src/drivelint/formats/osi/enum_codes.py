@@ -3,7 +3,6 @@ here."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +12,7 @@ import pyarrow.compute as pc
 from drivelint.drive.declared_events import HEADLIGHTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
+from drivelint.formats.protobuf.columns import integers, list_items, struct_field
 from drivelint.formats.protobuf.descriptors import enum_names
 
 if TYPE_CHECKING:
@@ -82,13 +82,6 @@ class EnumCodes:
         return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
-def struct_field(parent: pa.Array, name: str) -> pa.Array:
-    """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
-    if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
-        return pc.struct_field(parent, [parent.type.get_field_index(name)])
-    return pa.nulls(len(parent))
-
-
 def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
     """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = struct_field(objects, "vehicle_classification")
@@ -115,33 +108,21 @@ def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.
     return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
-@dataclass(frozen=True)
-class Bulbs:
-    """Lit bulbs of traffic lights, one row per message and bulb: frame, the signal's id, bits of what it shows."""
+def bulbs_of(words: EnumCodes, truth: pa.Array, joined: Mapping[str, str]) -> pa.Table:
+    """Return the bulbs of traffic lights, one row per message and bulb: frame, the signal's id, the bit of what it shows.
 
-    frame: NDArray[np.intp]
-    signal_id: list[str]
-    bits: NDArray[np.int8]
-
-
-def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
-    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
-
-    Of others each is its own.
+    Each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names. Of others each is its own.
     """
-    if not pa.types.is_list(lights.type):
-        return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
-    bulbs = lights.flatten()
-    counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
+    bulbs, frame = list_items(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
     mode, color = (words.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
     shown = np.where(mode == LIT, color, mode)
     bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
-    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
+    return pa.table({"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, joined), pa.string()), "bits": bits})
 
 
 def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
-    own = pc.fill_null(struct_field(struct_field(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
+    own = integers(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
     references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
     for number, sources in zip(own, references, strict=True):  # bulbs are few; actor states never come this way
@@ -152,24 +133,19 @@ def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
     return ids
 
 
-def signal_states(bulbs: Bulbs, t_ns: NDArray[np.int64]) -> pa.Table | None:
+def signal_states(bulbs: pa.Table, t_ns: NDArray[np.int64]) -> pa.Table | None:
     """Join the bulbs of each signal and frame into its state: `t_ns` is the time of each frame."""
-    if not len(bulbs.frame):
+    if not bulbs.num_rows:
         return None
-    encoded = pc.dictionary_encode(pa.array(bulbs.signal_id, pa.string()))
-    names, code = encoded.dictionary, encoded.indices.to_numpy().astype(np.int64)
-    key = bulbs.frame * len(names) + code
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) != 0])
-    bits = np.bitwise_or.reduceat(bulbs.bits[order], starts)
+    different = bulbs.group_by(["frame", "signal_id", "bits"]).aggregate([])
+    shown = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
     states = [
-        None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(int(value)) for value in range(32)
+        None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(value) for value in range(2 * UNKNOWN)
     ]
-    rows = order[starts]
     return pa.table(
         {
-            "signal_id": names.take(pa.array(code[rows])),
-            "t_ns": pa.array(t_ns[bulbs.frame[rows]]),
-            "state": pa.array(states, pa.string()).take(pa.array(bits)),
+            "signal_id": shown["signal_id"],
+            "t_ns": pa.array(t_ns[shown["frame"].to_numpy()]),
+            "state": pa.array(states, pa.string()).take(shown["bits_sum"]),
         }
     )

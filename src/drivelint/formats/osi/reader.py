@@ -7,16 +7,18 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
-from drivelint.formats.osi.enum_codes import Bulbs, signal_states
+from drivelint.formats.osi.enum_codes import signal_states
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW
 from drivelint.formats.protobuf import descriptors
+from drivelint.formats.protobuf.columns import decoder
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -94,13 +96,13 @@ def _kind(container: Container, truths: list[str], topic: str | None, channel: C
 def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the OpenDRIVE of a message, and why there is none."""
     types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
-    descriptor = descriptors.pruned(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
+    decode = decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
-        rows = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor).list_to_record_batch([packet.data])
+        content = decode([packet.data])
     except ValueError as error:
         text, why = None, f"cannot be decoded ({error})"
     else:
-        text, why = rows.column(0)[0].as_py() if rows.num_columns else None, "is empty"
+        text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
         message = (
             f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
@@ -145,10 +147,9 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
-    bulbs = Bulbs(
-        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
-        [name for batch in batches for name in batch.bulbs.signal_id],
-        np.concatenate([batch.bulbs.bits for batch in batches]),
+    bulbs = pa.concat_tables(
+        batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
+        for batch, offset in zip(batches, offsets, strict=False)
     )
     nameless = sum(batch.nameless for batch in batches)
     if nameless:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.errors import TraceError
 from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES
 
 if TYPE_CHECKING:
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.errors import TraceError
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
@@ -288,9 +288,7 @@ class _Batch:
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
     def _misfit(self, i: int, what: str) -> TraceError:
-        packet = self._packets[i]
-        where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
-        return TraceError(f"{self._path}: {where}: the {self._name} {what}: record or copy the log again")
+        return self._packets[i].error(self._path, f"the {self._name} {what}")
 
 
 def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]) -> Table:
