@@ -4,7 +4,6 @@ elsewhere."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -43,7 +42,7 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
     from drivelint.drive.trace import Severity
@@ -73,7 +72,7 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for name, packets in message_batches(container, partial(_kind, container)):
+        for name, packets in message_batches(container, _kind):
             channel = packets[0].channel
             log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
             decoded = decoded_rows(file, container.schemas[channel.schema_id], packets)
@@ -89,11 +88,8 @@ def read(path: Path, topic: str | None) -> Recording:
     return _recording(path, name, scenes[name], transforms, findings)
 
 
-def _kind(container: Container, channel: Channel) -> str | None:
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in FIELD_TREES:
-        return None
-    return schema.name
+def _kind(channel: Channel, schema: Schema) -> str | None:
+    return schema.name if channel.message_encoding in {"protobuf", "json"} and schema.name in FIELD_TREES else None
 
 
 def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:

@@ -240,16 +240,17 @@ class Container:
 
 
 def message_batches(
-    container: Container, kind_of: Callable[[Channel], str | None]
+    container: Container, kind_of: Callable[[Channel, Schema], str | None]
 ) -> Iterator[tuple[str, list[Packet]]]:
     """Yield the kind and the messages of a topic, those of one schema and some tens of megabytes at a time.
 
-    `kind_of`: what is read from a channel; None: nothing.
+    `kind_of`: what is read from a channel with a schema; None: nothing.
     """
     waiting: dict[str, tuple[str, list[Packet]]] = {}
     sizes: Counter[str] = Counter()
     for packet in container.packets():
-        topic, kind = packet.channel.topic, kind_of(packet.channel)
+        topic, schema = packet.channel.topic, container.schemas.get(packet.channel.schema_id)
+        kind = None if schema is None else kind_of(packet.channel, schema)
         if kind is None:
             continue
         changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id

@@ -24,7 +24,7 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
     from drivelint.formats.mcap.reader import Packet
@@ -45,7 +45,7 @@ def read(path: Path, topic: str | None) -> Recording:
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
     lost: list[QualityFinding] = []
-    for kind, packets in message_batches(container, partial(_kind, container, truths, topic)):
+    for kind, packets in message_batches(container, partial(_kind, truths, topic)):
         if kind in FIELD_TREES:
             _check_topics(container, truths, topic)
             schema = container.schemas[packets[0].channel.schema_id]
@@ -77,11 +77,8 @@ def read(path: Path, topic: str | None) -> Recording:
     return recording
 
 
-def _kind(container: Container, truths: list[str], topic: str | None, channel: Channel) -> str | None:
+def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema) -> str | None:
     """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None:
-        return None
     if schema.name == metadata.EVENT_MESSAGE and channel.message_encoding == "json":
         return schema.name
     if schema.encoding != "protobuf" or channel.message_encoding != "protobuf":

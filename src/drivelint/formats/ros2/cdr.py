@@ -34,6 +34,8 @@ BYTE_ORDERS: Final = {0: ">", 1: "<"}
 MAX_KEPT_NUMBERS = 3
 """How many numbers of a sequence are kept: a box has three dimensions."""
 _MAX_ALIGN = 8
+_SIZES: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
+"""Type of a member that is no message -> its bytes; 0: not always the same."""
 
 
 @dataclass
@@ -135,27 +137,22 @@ class _Compiler:
         if kind in NUMPY_CODES:
             self._then(_Numbers(NUMPY_CODES[kind], int(NUMPY_CODES[kind][1]), 1, keep))
             return
-        if not wanted and (uniform := self._uniform(kind)) is not None:
-            self._then(_Numbers(*uniform, None))
-            return
-        if kind in TEXT_TYPES:
+        sizes = [] if wanted or kind in TEXT_TYPES else self._sizes(kind)
+        if 0 not in sizes and len(set(sizes)) == 1:
+            self._then(_Numbers(f"u{sizes[0]}", sizes[0], len(sizes), None))
+        elif kind in TEXT_TYPES:
             self._then(_Items(None, [_Text(None)]))
         else:
             self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
 
-    def _uniform(self, kind: str) -> tuple[str, int, int] | None:
-        """Return code, size and number of the primitives of a type that has nothing but primitives of one size."""
-        if kind in TEXT_TYPES or not all(
-            isinstance(s, _Align | _Block) for s in _Compiler(self._types).program(kind, None)
-        ):
-            return None
-        sizes = self._sizes(kind)
-        return (f"u{sizes[0]}", sizes[0], len(sizes)) if sizes and len(set(sizes)) == 1 else None
-
     def _sizes(self, kind: str) -> list[int]:
+        """Return the sizes of all primitives of a type, 0 for texts and sequences."""
         found: list[int] = []
         for member in self._types[kind]:
-            inner = [int(NUMPY_CODES[member.kind][1])] if member.kind in NUMPY_CODES else self._sizes(member.kind)
+            if member.count == SEQUENCE:
+                found.append(0)
+                continue
+            inner = [_SIZES[member.kind]] if member.kind in _SIZES else self._sizes(member.kind)
             found += inner * (1 if member.count is None else member.count)
         return found
 

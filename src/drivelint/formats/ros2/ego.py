@@ -123,7 +123,7 @@ def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int6
 
 
 def _last(t_ns: NDArray[np.int64], reports: tuple[NDArray[np.int64], NDArray[Any]] | None) -> NDArray[np.int64]:
-    if reports is None or not len(reports[0]):
+    if reports is None:
         return np.full(len(t_ns), -1, np.int64)
     order = np.argsort(reports[0], kind="stable")
     times, values = reports[0][order], reports[1][order].astype(np.int64)
@@ -145,12 +145,6 @@ def engagement(reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]], ego: 
         return None
     order = np.argsort(t_ns, kind="stable")
     t_ns, on = t_ns[order], on[order]
-    changes = np.flatnonzero(np.r_[True, on[1:] != on[:-1]]) if len(on) else np.zeros(0, np.intp)
-    return pa.table(
-        {
-            "t_ns": pa.array(t_ns[changes], pa.int64()),
-            "actor_id": pa.array([ego] * len(changes), pa.string()),
-            "event": pa.array(["engaged"] * len(changes), pa.string()),
-            "value": pa.array(["on" if value else "off" for value in on[changes]], pa.string()),
-        }
-    )
+    changes = np.flatnonzero(np.r_[True, on[1:] != on[:-1]])
+    n, value = len(changes), np.where(on[changes], "on", "off")
+    return pa.table({"t_ns": t_ns[changes], "actor_id": [ego] * n, "event": ["engaged"] * n, "value": value})
