@@ -14,8 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import json
 
-from drivelint.formats.protobuf import descriptors
-from drivelint.formats.protobuf.columns import decoded, decoder, struct_field
+from drivelint.formats.protobuf.descriptors import decoded, decoder, parse_schema, struct_field
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,7 +66,7 @@ def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.Struct
     tree = FIELD_TREES[schema.name]
     if packets[0].channel.message_encoding == "json":
         return decoded(path, packets, partial(_json_rows, pa.schema(_json_type(tree))))
-    types = descriptors.parse(path, schema.name, schema.data)
+    types = parse_schema(path, schema.name, schema.data)
     return decoded(path, packets, decoder(path, types, schema.name, tree))
 
 

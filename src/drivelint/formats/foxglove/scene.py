@@ -26,7 +26,7 @@ from drivelint.formats.foxglove.decode import (
 from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.protobuf.columns import list_items, struct_field
+from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,

@@ -16,8 +16,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.osi import signal_heads as osi_heads
 from drivelint.formats.osi.enum_codes import EnumCodes, bulbs_of, state_codes
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
-from drivelint.formats.protobuf import descriptors
-from drivelint.formats.protobuf.columns import decoded, decoder, integers, list_items, struct_field
+from drivelint.formats.protobuf.descriptors import decoded, decoder, integers, list_items, parse_schema, struct_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -100,7 +99,7 @@ class Decoder:
         """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
         self._path, self._name, self.schema_id = path, name, schema_id
         self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
-        types = descriptors.parse(path, name, descriptor_set)
+        types = parse_schema(path, name, descriptor_set)
         self._decode = decoder(path, types, name, FIELD_TREES[name])
         kind = self._decode([]).type
         truth = _inner(kind, "global_ground_truth") if name == SENSOR_VIEW else kind

@@ -12,8 +12,7 @@ import pyarrow.compute as pc
 from drivelint.drive.declared_events import HEADLIGHTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
-from drivelint.formats.protobuf.columns import integers, list_items, struct_field
-from drivelint.formats.protobuf.descriptors import enum_names
+from drivelint.formats.protobuf.descriptors import enum_names, integers, list_items, struct_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -17,8 +17,7 @@ from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW
-from drivelint.formats.protobuf import descriptors
-from drivelint.formats.protobuf.columns import decoder
+from drivelint.formats.protobuf.descriptors import decoder, parse_schema
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -92,7 +91,7 @@ def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema
 
 def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the OpenDRIVE of a message, and why there is none."""
-    types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
+    types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     decode = decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
         content = decode([packet.data])

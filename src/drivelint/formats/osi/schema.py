@@ -6,16 +6,14 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 from google.protobuf import descriptor_pb2, message_factory
 
-from drivelint.formats.protobuf.descriptors import SCALARS
+from drivelint.formats.protobuf.descriptors import Declarations, add_field
 
-_F = descriptor_pb2.FieldDescriptorProto
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 SENSOR_VIEW: Final = f"{PACKAGE}.SensorView"
@@ -29,52 +27,42 @@ VERSION: Final = (3, 7, 0)
 
 
 @cache
-def _declared(what: str, *parts: str) -> dict[str, list[list[str]]]:
-    """Return the `messages` or `enums` of some parts of the declaration: name -> the words of each field or value."""
-    table = tomllib.loads((Path(__file__).parent / "schema.toml").read_text(encoding="utf-8"))
-    found: dict[str, list[list[str]]] = {}
-    for part in parts:
-        for name, items in table[part][what].items():
-            found.setdefault(name, []).extend(item.split() for item in items)
-    return found
+def _declared(*parts: str) -> Declarations:
+    return Declarations.read(Path(__file__).parent / "schema.toml", *parts)
 
 
 @cache
 def enum_numbers(name: str) -> dict[str, int]:
     """Return the values of an enumeration that is written: name, as `schema.toml` has it, -> number."""
-    return {word: int(number) for word, number in _declared("enums", "written")[name]}
+    return {word: int(number) for word, number in _declared("written").enums[name]}
 
 
-@cache
 def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
-    messages, enums = (_declared(what, *parts) for what in ("messages", "enums"))
+    declared = _declared(*parts)
     made: dict[str, Any] = {}
-    for name in [*messages, *enums]:
+    for name in [*declared.messages, *declared.enums]:
         outer, _, own = name.rpartition(".")
         home = made[outer] if outer else file
-        kind = "enum_type" if name in enums else "nested_type" if outer else "message_type"
+        kind = "enum_type" if name in declared.enums else "nested_type" if outer else "message_type"
         made[name] = getattr(home, kind).add(name=own)
-    for name, values in enums.items():
+    for name, values in declared.enums.items():
         prefix = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", made[name].name).upper()
         for word, number in values:
             made[name].value.add(name=f"{prefix}_{word}", number=int(number))
-    for name, fields in messages.items():
-        for field, number, kind in fields:
-            plain = kind.removesuffix("[]")
-            item = made[name].field.add(name=field, number=int(number))
-            item.label = _F.LABEL_REPEATED if kind != plain else _F.LABEL_OPTIONAL
-            item.type = SCALARS.get(plain, _F.TYPE_ENUM if plain in enums else _F.TYPE_MESSAGE)
-            if plain not in SCALARS:
-                item.type_name = f".{PACKAGE}.{plain}"
+    for name, fields in declared.messages.items():
+        for field in fields:
+            add_field(made[name], field, PACKAGE, declared.enums)
     return file
 
 
+@cache
 def descriptor_set() -> bytes:
     """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
     return _serialised("written")
 
 
+@cache
 def reader_descriptor_set() -> bytes:
     """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
     return _serialised("written", "read")
