@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import json
 
-from drivelint.formats.protobuf.descriptors import decoded, decoder, parse_schema, struct_field
+from drivelint.formats.protobuf.descriptors import decoded, message_decoder, parse_schema, struct_field
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,7 +67,7 @@ def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.Struct
     if packets[0].channel.message_encoding == "json":
         return decoded(path, packets, partial(_json_rows, pa.schema(_json_type(tree))))
     types = parse_schema(path, schema.name, schema.data)
-    return decoded(path, packets, decoder(path, types, schema.name, tree))
+    return decoded(path, packets, message_decoder(path, types, schema.name, tree))
 
 
 def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:

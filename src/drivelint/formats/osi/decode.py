@@ -16,7 +16,14 @@ from drivelint.errors import TraceError
 from drivelint.formats.osi import signal_heads as osi_heads
 from drivelint.formats.osi.enum_codes import EnumCodes, bulbs_of, state_codes
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
-from drivelint.formats.protobuf.descriptors import decoded, decoder, integers, list_items, parse_schema, struct_field
+from drivelint.formats.protobuf.descriptors import (
+    decoded,
+    integers,
+    list_items,
+    message_decoder,
+    parse_schema,
+    struct_field,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -100,7 +107,7 @@ class Decoder:
         self._path, self._name, self.schema_id = path, name, schema_id
         self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
         types = parse_schema(path, name, descriptor_set)
-        self._decode = decoder(path, types, name, FIELD_TREES[name])
+        self._decode = message_decoder(path, types, name, FIELD_TREES[name])
         kind = self._decode([]).type
         truth = _inner(kind, "global_ground_truth") if name == SENSOR_VIEW else kind
         base = _inner(_inner(truth, "moving_object"), "base")

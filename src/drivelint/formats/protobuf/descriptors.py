@@ -106,7 +106,7 @@ def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
     return types
 
 
-def decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Decode:
+def message_decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Decode:
     """Return a function that decodes messages `name`, one struct each, with those fields of `tree` that their schema has: enums as int32.
 
     Errors: `TraceError` when the log's schema contradicts itself. The function raises `ValueError`.
