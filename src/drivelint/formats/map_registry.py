@@ -73,8 +73,6 @@ def load_map(
     """
     if handedness not in {"auto", "lht", "rht"}:
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
-    if voted_handedness not in {None, "lht", "rht"}:
-        raise ValueError(f"voted_handedness={voted_handedness!r}")
     if not all(math.isfinite(v) for v in offset):
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:

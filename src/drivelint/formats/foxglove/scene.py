@@ -23,7 +23,7 @@ from drivelint.formats.foxglove.decode import (
     times,
     vectors,
 )
-from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
+from drivelint.formats.foxglove.entity_lifetime import Deletions, persisted_states
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
@@ -54,11 +54,9 @@ DELETE_ALL: Final = 1
 
 @dataclass
 class _Scene:
-    """What was read of one topic: rows, and beside each the entity's lifetime and whether it goes with its frame."""
+    """What was read of one topic."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
-    lifetime: list[NDArray[np.int64]] = field(default_factory=list)
-    locked: list[NDArray[np.bool_]] = field(default_factory=list)
     deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str | None]]] = field(
         default_factory=list
     )
@@ -119,19 +117,21 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     names, which = distinct_texts(entities, "id")
     frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
-    rows = recorded_poses(
-        times(struct_field(entities, "timestamp")),
-        (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
-        log_ns=log_ns[message],
-        ids=np.array([name.encode() for name in names] or [b""])[which],
-        frames=np.array([name.encode() for name in frames] or [b""])[frame],
-        size=vectors(cubes, "size"),
-        classes=_classes(entities),
+    scene.rows.append(
+        recorded_poses(
+            times(struct_field(entities, "timestamp")),
+            (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
+            log_ns=log_ns[message],
+            ids=np.array([name.encode() for name in names] or [b""])[which],
+            frames=np.array([name.encode() for name in frames] or [b""])[frame],
+            size=vectors(cubes, "size"),
+            classes=_classes(entities),
+            lifetime_ns=times(struct_field(entities, "lifetime"))[0],
+            locked=pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(
+                zero_copy_only=False
+            ),
+        )
     )
-    scene.rows.append(rows)
-    scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])
-    locked = struct_field(entities, "frame_locked").cast(pa.bool_())
-    scene.locked.append(pc.fill_null(locked, False).to_numpy(zero_copy_only=False))
     gone, message = list_items(decoded, "deletions")
     if len(gone):
         t_ns, timed = times(struct_field(gone, "timestamp"))
@@ -164,13 +164,12 @@ def _recording(
     findings: list[QualityFinding],
 ) -> Recording:
     rows = join_batches(scene.rows)
-    lifetime, locked = np.concatenate(scene.lifetime), np.concatenate(scene.locked)
     named = rows.ids != b""
     if not named.all():
         n = int((~named).sum())
         message = f"{topic}: entities without an id: {n}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, n))
-        rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
+        rows = rows.take(named)
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
@@ -178,7 +177,7 @@ def _recording(
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
-    rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
+    rows = _alive(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
@@ -204,30 +203,21 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
 
 
 def _alive(
-    rows: RecordedPoses,
-    manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
-    gone: tuple[NDArray[np.int64], list[str | None]],
-    findings: list[QualityFinding],
-    topic: str,
+    rows: RecordedPoses, gone: tuple[NDArray[np.int64], list[str | None]], findings: list[QualityFinding], topic: str
 ) -> RecordedPoses:
-    """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
-
-    `manner`: each row's lifetime, and whether it goes with its frame.
-    """
-    lifetime, locked = manner
+    """Add the states of entities that are there without an update: where they were if they stood still, else not placed."""
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
     whom = [-1 if name is None else number.get(name, len(unique)) for name in gone[1]]
     deletions = Deletions(np.array(whom, np.int32), gone[0])
-    box = np.concatenate([rows.place, rows.turn, rows.size], axis=1)
-    entities = EntityUpdates(actor, rows.t_ns, lifetime, box)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
-    more = persisted_states(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
+    grid_ns = np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns]))
+    more = persisted_states(rows, actor, deletions, grid_ns)
     if not len(more.row):
         return rows
     extra = rows.take(more.row)
     extra.t_ns = more.t_ns
-    extra.at_ns = np.where(locked[more.row], more.t_ns, rows.t_ns[more.row])
+    extra.at_ns = np.where(np.asarray(extra.locked), more.t_ns, rows.t_ns[more.row])
     extra.place = np.where(more.still[:, None], extra.place, np.nan)
     rows.at_ns = rows.t_ns
     kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
@@ -236,7 +226,7 @@ def _alive(
     )
     for still, check, severity, what in kinds:
         if still.any():
-            names = sorted({unique[i] for i in np.unique(entities.actor[more.row[still]])})
+            names = sorted({unique[i] for i in np.unique(actor[more.row[still]])})
             message = f"{topic}: {int(still.sum())} states of entities that are not updated nor gone ({listed(names)}): they {what}"
             findings.append(QualityFinding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
     return join_batches([rows, extra])

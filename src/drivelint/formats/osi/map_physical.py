@@ -188,9 +188,7 @@ def _whole(side: Floats, centre: Floats) -> Floats:
 
 def _nearest(points: Floats, to: Floats) -> Floats:
     """Return the one point (1, 2) nearest to another (1, 2), or none (0, 2)."""
-    if not len(points):
-        return points
-    return points[[int(np.argmin(np.hypot(*(points - to).T)))]]
+    return points[np.argsort(np.hypot(*(points - to).T), kind="stable")[:1]]
 
 
 def _kind(said: Any) -> tuple[str, bool]:

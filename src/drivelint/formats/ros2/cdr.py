@@ -34,6 +34,7 @@ BYTE_ORDERS: Final = {0: ">", 1: "<"}
 MAX_KEPT_NUMBERS = 3
 """How many numbers of a sequence are kept: a box has three dimensions."""
 _MAX_ALIGN = 8
+_TEXT = "S1"
 _SIZES: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
 """Type of a member that is no message -> its bytes; 0: not always the same."""
 
@@ -66,18 +67,17 @@ class _Block:
 
 
 @dataclass(frozen=True)
-class _Text:
-    keep: str | None
-
-
-@dataclass(frozen=True)
 class _Numbers:
-    """A sequence of primitives of `size` bytes, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer."""
+    """A sequence of primitives, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer, or a text."""
 
     code: str
-    size: int
     per_item: int
     keep: str | None
+
+    @property
+    def size(self) -> int:
+        """Bytes of a primitive."""
+        return int(self.code[1])
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class _Compiler:
             else:
                 for _ in range(1 if member.count is None else member.count):
                     if member.kind in TEXT_TYPES:
-                        self._then(_Text(path if wanted and member.count is None else None))
+                        self._then(_Numbers(_TEXT, 1, path if wanted and member.count is None else None))
                     else:
                         self._members(member.kind, subtree if member.count is None else None, f"{path}.")
 
@@ -135,13 +135,13 @@ class _Compiler:
     def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, wanted: bool) -> None:
         keep = path if wanted else None
         if kind in NUMPY_CODES:
-            self._then(_Numbers(NUMPY_CODES[kind], int(NUMPY_CODES[kind][1]), 1, keep))
+            self._then(_Numbers(NUMPY_CODES[kind], 1, keep))
             return
         sizes = [] if wanted or kind in TEXT_TYPES else self._sizes(kind)
         if 0 not in sizes and len(set(sizes)) == 1:
-            self._then(_Numbers(f"u{sizes[0]}", sizes[0], len(sizes), None))
+            self._then(_Numbers(f"u{sizes[0]}", len(sizes), None))
         elif kind in TEXT_TYPES:
-            self._then(_Items(None, [_Text(None)]))
+            self._then(_Items(None, [_Numbers(_TEXT, 1, None)]))
         else:
             self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
 
@@ -220,11 +220,6 @@ class _Batch:
                 cursor += step.size
             elif isinstance(step, _Align):
                 cursor += -cursor % step.to
-            elif isinstance(step, _Text):
-                length = self._length(cursor, end, message, 1)
-                if step.keep is not None:
-                    table.columns[step.keep] = self._texts(cursor, length)
-                cursor += length
             elif isinstance(step, _Numbers):
                 self._numbers(step, cursor, end, message, table)
             else:
@@ -236,7 +231,9 @@ class _Batch:
         cursor += np.where(length > 0, -cursor % step.size, 0)
         size = length * step.size * step.per_item
         self._check(cursor + size, end, message)
-        if step.keep is not None:
+        if step.keep is not None and step.code == _TEXT:
+            table.columns[step.keep] = self._texts(cursor, length)
+        elif step.keep is not None:
             first = np.full((len(cursor), MAX_KEPT_NUMBERS), np.nan)
             for k in range(MAX_KEPT_NUMBERS):
                 has = np.flatnonzero(length > k)
