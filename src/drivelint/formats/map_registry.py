@@ -83,7 +83,6 @@ def load_map(
 
 
 def _reader(source: MapSource) -> str:
-    """Return the module of `drivelint.formats` that reads the map."""
     if source.content[:1] in OSI_TAGS:
         return "osi.map_lanes"
     root = root_element_name(source.content)

@@ -23,7 +23,7 @@ from drivelint.formats.foxglove.decode import (
     times,
     vectors,
 )
-from drivelint.formats.foxglove.entity_lifetime import Deletions, persisted_states
+from drivelint.formats.foxglove.entity_lifetime import with_persisted
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
-    from drivelint.drive.trace import Severity
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
@@ -103,7 +102,6 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
 
 
 def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> None:
-    """Read a batch of scene updates."""
     entities, message = list_items(decoded, "entities")
     lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
@@ -177,7 +175,7 @@ def _recording(
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
-    rows = _alive(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
+    rows = with_persisted(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
@@ -200,36 +198,6 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
         times.append(np.where(timed & own_times, t_ns, last if own_times else sent_ns))
         ids += whom
     return np.concatenate(times), ids
-
-
-def _alive(
-    rows: RecordedPoses, gone: tuple[NDArray[np.int64], list[str | None]], findings: list[QualityFinding], topic: str
-) -> RecordedPoses:
-    """Add the states of entities that are there without an update: where they were if they stood still, else not placed."""
-    unique, actor = distinct(rows.ids)
-    number = {name: i for i, name in enumerate(unique)}
-    whom = [-1 if name is None else number.get(name, len(unique)) for name in gone[1]]
-    deletions = Deletions(np.array(whom, np.int32), gone[0])
-    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
-    grid_ns = np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns]))
-    more = persisted_states(rows, actor, deletions, grid_ns)
-    if not len(more.row):
-        return rows
-    extra = rows.take(more.row)
-    extra.t_ns = more.t_ns
-    extra.at_ns = np.where(np.asarray(extra.locked), more.t_ns, rows.t_ns[more.row])
-    extra.place = np.where(more.still[:, None], extra.place, np.nan)
-    rows.at_ns = rows.t_ns
-    kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
-        (more.still, "entity_held", "info", "stood still and are where they were"),
-        (~more.still, "entity_stale", "warning", "moved before and are there but not placed"),
-    )
-    for still, check, severity, what in kinds:
-        if still.any():
-            names = sorted({unique[i] for i in np.unique(actor[more.row[still]])})
-            message = f"{topic}: {int(still.sum())} states of entities that are not updated nor gone ({listed(names)}): they {what}"
-            findings.append(QualityFinding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
-    return join_batches([rows, extra])
 
 
 def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> TransformTree:

@@ -284,7 +284,6 @@ class _Copy:
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
-        """Remember for the index what will be copied."""
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:

@@ -152,7 +152,6 @@ class Container:
             self.channels[channel.id] = channel
 
     def _chunk(self, body: memoryview, at: int) -> Iterator[Packet]:
-        """Unpack a chunk and take its records."""
         if len(body) < _CHUNK.size:
             raise self._damaged(at, "a chunk record without its header")
         _, _, size, crc, name_length = _CHUNK.unpack_from(body)

@@ -48,12 +48,12 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         quality.add("invalid_lane", "error", str(i), message)
         del alone[i]
     ways = osi_physical.intersection_lanes(truth, alone)
-    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
+    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, [way for way, _ in ways])]
     lanes = build_lanes(bounded, request.offset, quality)
     if not any(lane.drivable for lane in lanes):
         raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
     heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
-    heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
+    heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
         lane.z = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option counts whatever the lanes say

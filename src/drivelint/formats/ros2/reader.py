@@ -47,11 +47,6 @@ _REPORTS = {
 }  # fmt: skip
 """Reports of the ego -> the field that says it."""
 _FIELD_TREES = ros_ego.FIELD_TREES | ros_objects.FIELD_TREES
-_OLD = {
-    "autoware_auto_perception_msgs": "autoware_perception_msgs",
-    "autoware_auto_vehicle_msgs": "autoware_vehicle_msgs",
-}
-"""Packages whose messages have the same fields under an older name."""
 _CARLA = "carla_msgs/"
 
 
@@ -117,8 +112,7 @@ def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Sc
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
     if channel.message_encoding != "cdr":
         return None
-    package, _, rest = ros_types.short_type_name(schema.name).partition("/")
-    kind = f"{_OLD.get(package, package)}/{rest}"
+    kind = ros_types.message_kind(schema.name)
     if kind not in _FIELD_TREES:
         return None
     if channel.schema_id not in decoders:

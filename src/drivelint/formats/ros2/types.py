@@ -43,6 +43,11 @@ Types = dict[str, list[Field]]
 """Full name (`package/Name`) -> its members in order."""
 
 
+def message_kind(schema: str) -> str:
+    """Return the type of a schema's messages: of Autoware's older packages the newer one, which has the same fields."""
+    return short_type_name(schema).replace("autoware_auto_", "autoware_")
+
+
 def short_type_name(name: str) -> str:
     """Return `package/Name` of a schema that may be called `package/msg/Name`."""
     return name.replace("/msg/", "/")
