@@ -54,8 +54,6 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
 _LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
 _WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
 _BLOCK: Final = 1 << 20
-_WHOLE_SECONDS: Final = ("seconds", "sec")
-_NANOSECONDS: Final = ("nanos", "nsec")
 
 
 def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.StructArray:
@@ -98,7 +96,7 @@ def _json_type(tree: FieldTree) -> list[pa.Field]:
 
 def times(stamp: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """Return times or durations in nanoseconds (0 where there is none), and where there is one."""
-    whole, rest = (_first(stamp, names) for names in (_WHOLE_SECONDS, _NANOSECONDS))
+    whole, rest = (_first(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
     seconds = np.floor(whole)
     t_ns = seconds.astype(np.int64) * 1_000_000_000 + np.rint((whole - seconds) * 1e9 + rest).astype(np.int64)
     return t_ns, stamp.is_valid().to_numpy(zero_copy_only=False)

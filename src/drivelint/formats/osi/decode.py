@@ -157,7 +157,7 @@ class Decoder:
 class FirstMessage(NamedTuple):
     """What the first message alone says: lanes as a message of their own, the geo reference with its offset, lanes that have no width.
 
-    `lights`: see `osi_heads.heads`.
+    `lights`: see `osi_heads.light_by_bulb`.
     """
 
     lanes: bytes | None = None

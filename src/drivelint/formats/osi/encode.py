@@ -97,6 +97,12 @@ class Objects:
     def __len__(self) -> int:
         return len(self.number)
 
+    def take(self, rows: NDArray[np.intp]) -> Objects:
+        """Return the chosen rows."""
+        values = {name: column[rows] for name, column in self.values.items()}
+        codes = {name: column[rows] for name, column in self.codes.items()}
+        return Objects(self.number[rows], values, codes, self.heights)
+
 
 def ground_truth_head(t_ns: int, host: int | None) -> bytes:
     """Return the beginning of a ground truth: version, time stamp and, where there is one, the host vehicle's id."""

@@ -77,7 +77,8 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
     for ref, drawn in physical.items():
         if ref in covers or not names:
             continue
-        points = _middles(drawn.centre)
+        s = stations(drawn.centre)
+        points = resampled(drawn.centre, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
         heights = [_height(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
         level = np.abs(points[over, 2] - heights)
@@ -85,12 +86,6 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
     return covers
-
-
-def _middles(line: Floats) -> Floats:
-    """Return the middles of 20 equal pieces of a line (n, 3)."""
-    s = stations(line)
-    return resampled(line, s, (np.arange(20) + 0.5) / 20 * s[-1])
 
 
 def _height(line: Floats, points: Floats) -> Floats:

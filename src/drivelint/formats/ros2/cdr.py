@@ -190,13 +190,12 @@ class _Batch:
             header = packets[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
         padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
-        self._start = np.concatenate([[0], np.cumsum(padded)])[:-1]
+        self._start = np.cumsum(padded) - padded
         self._end = self._start + sizes
         bodies = [p.data[HEADER_BYTES:] + b"\0" * int(n) for p, n in zip(packets, padded - sizes, strict=True)]
-        buffer = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
-        self._bytes = buffer
+        self._bytes = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
         order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
-        self._views = {code: buffer.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
+        self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
         messages = np.arange(len(self._packets))

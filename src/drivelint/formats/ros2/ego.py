@@ -28,17 +28,14 @@ CONTROL_MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
 ENGAGE: Final = "autoware_vehicle_msgs/Engage"
 FIELD_TREES: Final[dict[str, FieldTree]] = {
     ODOMETRY: {
-        "header": HEADER,
-        "child_frame_id": None,
-        "pose": {"pose": POSE},
+        "header": HEADER, "child_frame_id": None, "pose": {"pose": POSE},
         "twist": {"twist": {"linear": XYZ, "angular": XYZ}},
     },
     TRANSFORMS: {
         "transforms": {
-            "header": HEADER,
-            "child_frame_id": None,
+            "header": HEADER, "child_frame_id": None,
             "transform": {"translation": XYZ, "rotation": {**XYZ, "w": None}},
-        }
+        },
     },
     EGO_INFO: {"id": None, "rolename": None},
     WORLD_INFO: {"map_name": None, "opendrive": None},
@@ -46,7 +43,7 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
     HAZARD_LIGHTS: {"stamp": STAMP, "report": None},
     CONTROL_MODE: {"stamp": STAMP, "mode": None},
     ENGAGE: {"stamp": STAMP, "engage": None},
-}
+}  # fmt: skip
 STALE_NS: Final = 1_000_000_000
 """A report of lights holds for no longer than this: vehicles report them ten times a second or more."""
 _AUTONOMOUS = 1

@@ -153,7 +153,8 @@ def read(path: Path, options: IngestOptions) -> Recording:
     findings = log.findings
     own_times = choose_clock(parts, findings)
     frames = _frames(log, own_times=own_times)
-    _drop_nameless(parts, objects, findings)
+    if objects is not None:
+        parts[objects.topic] = _named(parts[objects.topic], objects.topic, findings)
     used = [sorted(distinct(parts[source.topic].frames)[0]) for source in (odometry, objects) if source]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
@@ -202,20 +203,14 @@ def _frames(log: _Log, *, own_times: bool) -> TransformTree:
     return frames
 
 
-def _drop_nameless(
-    parts: dict[str, RecordedPoses], objects: TopicMessages | None, findings: list[QualityFinding]
-) -> None:
-    if objects is None:
-        return
-    rows = parts[objects.topic]
-    if rows.ids.dtype.kind != "S":
-        return
-    nameless = rows.ids == b""
+def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> RecordedPoses:
+    nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
+    if not nameless.any():
+        return rows
     n = int(nameless.sum())
-    if n:
-        parts[objects.topic] = rows.take(~nameless)
-        message = f"{objects.topic}: objects without an id: {n}: they are not judged"
-        findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+    message = f"{topic}: objects without an id: {n}: they are not judged"
+    findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+    return rows.take(~nameless)
 
 
 def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[NDArray[np.int64], NDArray[Any]]]:
