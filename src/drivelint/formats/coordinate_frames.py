@@ -7,7 +7,7 @@ is not placed.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ MAX_HOLE_NS: Final = 500_000_000
 """Transforms further apart are not joined: in 0.5 s a car at 20 m/s that turns with 0.5 rad/s leaves the chord by 0.3 m."""
 
 
-@dataclass(frozen=True)
-class Poses:
+class Poses(NamedTuple):
     """n poses: `place` (n, 3) metres, `turn` (n, 4) quaternions x, y, z, w; NaN where unknown."""
 
     place: Vectors
@@ -69,13 +68,11 @@ class TransformTree:
             return
         if known is not None:
             t_ns = np.concatenate([known.t_ns, t_ns])
-            poses = Poses(
-                np.concatenate([known.poses.place, poses.place]), np.concatenate([known.poses.turn, poses.turn])
-            )
+            poses = Poses(*map(np.concatenate, zip(known.poses, poses, strict=True)))
             static = static and known.static
         t_ns, last = np.unique(t_ns[::-1], return_index=True)
         last = len(poses.place) - 1 - last
-        self.edges[child] = _Edge(parent, static, t_ns, Poses(poses.place[last], poses.turn[last]))
+        self.edges[child] = _Edge(parent, static, t_ns, Poses(*(column[last] for column in poses)))
 
     def chain(self, frame: str, fixed: str) -> list[_Edge] | None:
         """Return the transforms from a frame up to the fixed one; None where there is no way."""
@@ -156,9 +153,7 @@ def _product(a: Vectors, b: Vectors) -> Vectors:
 def _at(edge: _Edge, t_ns: NDArray[np.int64]) -> Poses:
     """Interpolate a transform: places linearly, turns along the shorter way; NaN outside its times and in holes."""
     if edge.static:
-        return Poses(
-            np.repeat(edge.poses.place[-1:], len(t_ns), axis=0), np.repeat(edge.poses.turn[-1:], len(t_ns), axis=0)
-        )
+        return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in edge.poses))
     after = np.clip(np.searchsorted(edge.t_ns, t_ns), 0, len(edge.t_ns) - 1)
     exact = edge.t_ns[after] == t_ns
     before = np.where(exact, after, np.maximum(after - 1, 0))

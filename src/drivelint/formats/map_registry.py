@@ -73,8 +73,6 @@ def load_map(
     """
     if handedness not in {"auto", "lht", "rht"}:
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
-    if voted_handedness not in {None, "lht", "rht"}:
-        raise ValueError(f"voted_handedness={voted_handedness!r}")
     if not all(math.isfinite(v) for v in offset):
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
     if len(source.content) > MAX_BYTES:
@@ -86,7 +84,6 @@ def load_map(
 
 
 def _reader(source: MapSource) -> str:
-    """Return the module of `drivelint.formats` that reads the map."""
     if source.content[:1] in OSI_TAGS:
         return "osi.map_lanes"
     root = root_element_name(source.content)

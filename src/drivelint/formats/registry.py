@@ -9,7 +9,7 @@ from drivelint.formats.commonroad import scenario
 from drivelint.formats.files import identify, is_drive_folder
 from drivelint.formats.film import reader as film
 from drivelint.formats.mcap import trace as mcap
-from drivelint.formats.osi import file_reader as osi_file
+from drivelint.formats.osi import reader as osi_file
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table

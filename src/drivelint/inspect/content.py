@@ -13,7 +13,8 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import MAGIC, Container
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
-from drivelint.formats.osi.reader import OPEN_DRIVE
+from drivelint.formats.osi.schema import OPEN_DRIVE
+from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout
@@ -176,7 +177,7 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
         messages=count.messages,
         bytes=count.size,
         rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-        read_as=roles.get((schema.replace("/msg/", "/"), encoding)),
+        read_as=roles.get((message_kind(schema), encoding)),
     )
 
 

@@ -85,7 +85,7 @@ def test_its_name_does_not_matter(tmp_path: Path) -> None:
 
 def test_the_batches_do_not_matter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = states(read(write(tmp_path / "drive.osi", drive())))
-    monkeypatch.setattr("drivelint.formats.osi.file_reader.BATCH_BYTES", 700)
+    monkeypatch.setattr("drivelint.formats.osi.reader.BATCH_BYTES", 700)
     assert states(read(tmp_path / "drive.osi")) == whole
 
 

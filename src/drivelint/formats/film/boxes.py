@@ -11,7 +11,7 @@ import numpy as np
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import types as ros_types
 from drivelint.formats.ros2.objects import HEADER, stamps
@@ -19,10 +19,10 @@ from drivelint.formats.ros2.objects import HEADER, stamps
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
     from drivelint.formats.film.mapping import VideoMapping
-    from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
 
 MESSAGE: Final = "vision_msgs/Detection2DArray"
@@ -51,8 +51,8 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for number, packets in _packets(container).items():
-            schema = container.schemas[number]
+        for _, packets in message_batches(container, _kind):
+            schema = container.schemas[packets[0].channel.schema_id]
             types = ros_types.parse(file, schema.name, schema.data)
             table = cdr.Decoder(file, schema.name, types, MESSAGE, _TREE).table(packets)
             t_ns, _ = stamps(table, "header.stamp")
@@ -66,18 +66,9 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     return _sightings(path, film, film.camera.focal_px, np.concatenate(times), boxes)
 
 
-def _packets(container: Container) -> dict[int, list[Packet]]:
-    """Return schema number -> the messages with boxes, in the order of the file."""
-    found: dict[int, list[Packet]] = {}
-    for packet in container.packets():
-        schema = container.schemas.get(packet.channel.schema_id)
-        if (
-            schema is not None
-            and packet.channel.message_encoding == "cdr"
-            and ros_types.short_type_name(schema.name) == MESSAGE
-        ):
-            found.setdefault(packet.channel.schema_id, []).append(packet)
-    return found
+def _kind(channel: Channel, schema: Schema) -> str | None:
+    is_read = channel.message_encoding == "cdr" and ros_types.short_type_name(schema.name) == MESSAGE
+    return MESSAGE if is_read else None
 
 
 def _sightings(

@@ -6,7 +6,7 @@ place; before he is first detected and after the last time nothing is claimed bu
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -140,38 +140,32 @@ def _states(
     if film.stages is not None:
         ego_y = -own * _across(film, film.stages, frames)
     front = ego_x + film.ego.length / 2
-    parts = [_track(0, t_ns, ego_x, ego_y, yaw=0.0, mps=film.ego.speed.mps)]
-    for number, (actor, distance) in enumerate(zip(film.actor, ahead, strict=True), 1):
+    tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
+    for actor, distance in zip(film.actor, ahead, strict=True):
         seen = np.flatnonzero(np.isfinite(distance))
-        if not len(seen):
-            continue
-        there = slice(seen[0], seen[-1] + 1)
+        there = slice(seen[0], seen[-1] + 1) if len(seen) else slice(0, 0)
         along = actor.lane == "own"
         x = (front + distance + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
         yaw, mps = (0.0, actor.speed.mps) if along else (np.pi, -actor.speed.mps)
-        parts.append(_track(number, t_ns[there], x, y, yaw=yaw, mps=mps))
+        tracks.append((t_ns[there], x, y, yaw, mps))
+    who = np.repeat(np.arange(len(tracks), dtype=np.int32), [len(track[0]) for track in tracks])
+    times, x, y = (np.concatenate([track[k] for track in tracks]) for k in range(3))
     everybody: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
+    # where somebody has no place, nothing else is known
+    motions = {
+        "yaw_rad": [track[3] for track in tracks],
+        "vx_mps": [track[4] for track in tracks],
+        "vy_mps": [0.0] * len(tracks),
+    }
+    numbers = {"x_m": x, "y_m": y}
+    numbers |= {name: np.where(np.isfinite(x), np.array(values)[who], np.nan) for name, values in motions.items()}
+    numbers["length_m"] = np.array([each.length for each in everybody])[who]
+    numbers["width_m"] = np.array([each.width for each in everybody])[who]
     kinds = ["car", *(actor.kind for actor in film.actor)]
-    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    who, times = columns.pop("who"), columns.pop("t_ns")
-    columns["length_m"] = np.array([each.length for each in everybody])[who]
-    columns["width_m"] = np.array([each.width for each in everybody])[who]
     codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[who]}
-    states = States([each.id for each in everybody], who, times, columns, codes, np.zeros(len(who), np.bool_))
+    states = States([each.id for each in everybody], who, times, numbers, codes, np.zeros(len(who), np.bool_))
     return states, (float(ego_x[0]), float(ego_x[-1]))
-
-
-def _track(
-    number: int, t_ns: NDArray[np.int64], x: NDArray[np.float64], y: NDArray[np.float64], *, yaw: float, mps: float
-) -> dict[str, NDArray[Any]]:
-    """Return the columns of one actor on a straight road; where he has no place, nothing else is known."""
-    placed = np.isfinite(x)
-    same = {"yaw_rad": yaw, "vx_mps": mps, "vy_mps": 0.0}
-    return {
-        "who": np.full(len(x), number, np.int32), "t_ns": t_ns, "x_m": x, "y_m": y,
-        **{name: np.where(placed, value, np.nan) for name, value in same.items()},
-    }  # fmt: skip
 
 
 def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> NDArray[np.float64]:

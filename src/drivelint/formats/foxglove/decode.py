@@ -6,21 +6,20 @@ Schemas: https://docs.foxglove.dev/docs/visualization/message-schemas. Times are
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import ptars
 import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import json
 
-from drivelint.formats.osi.decode import decode_error
-from drivelint.formats.osi.enum_codes import struct_field
-from drivelint.formats.protobuf import descriptors
+from drivelint.formats.protobuf.descriptors import decoded, message_decoder, parse_schema, struct_field
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from mcap.records import Schema
     from numpy.typing import NDArray
 
     from drivelint.formats.coordinate_frames import Vectors
@@ -55,49 +54,30 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
 _LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
 _WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
 _BLOCK: Final = 1 << 20
-_WHOLE_SECONDS: Final = ("seconds", "sec")
-_NANOSECONDS: Final = ("nanos", "nsec")
 
 
-class Decoder:
-    """Decodes messages of one schema record."""
+def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.StructArray:
+    """Decode a batch of one schema and encoding, one struct per message.
 
-    def __init__(self, path: Path, name: str, encoding: str, schema: bytes) -> None:
-        """Prepare for `protobuf` or `json`. Errors: `TraceError` where the log's description is none of the message."""
-        self._path, self._name = path, name
-        self._json: Any = None
-        if encoding == "json":
-            self._json = pa.schema(_json_type(FIELD_TREES[name]))
-        else:
-            types = descriptors.parse(path, name, schema)
-            descriptor = descriptors.pruned(path, types, name, FIELD_TREES[name])
-            self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
+    Errors: `TraceError` naming the first message that cannot be decoded, or where the log's schema is none of the message.
+    """
+    tree = FIELD_TREES[schema.name]
+    if packets[0].channel.message_encoding == "json":
+        return decoded(path, packets, partial(_json_rows, pa.schema(_json_type(tree))))
+    types = parse_schema(path, schema.name, schema.data)
+    return decoded(path, packets, message_decoder(path, types, schema.name, tree))
 
-    def rows(self, packets: list[Packet]) -> pa.StructArray:
-        """Decode a batch, one struct per message. Errors: `TraceError` naming the first message that cannot be decoded."""
-        try:
-            return self._rows(packets)
-        except ValueError:
-            for packet in packets:
-                try:
-                    self._rows([packet])
-                except ValueError as error:
-                    raise decode_error(self._path, packet, ValueError(str(error).splitlines()[0])) from error
-            raise
 
-    def _rows(self, packets: list[Packet]) -> pa.StructArray:
-        if self._json is None:
-            batch = self._handler.list_to_record_batch([packet.data for packet in packets])
-            return pa.StructArray.from_arrays(batch.columns, fields=list(batch.schema))
-        # within JSON's texts a line's end is written otherwise, so that one message can be put on one line
-        lines = [packet.data.replace(b"\n", b" ").replace(b"\r", b" ") for packet in packets]
-        parse = json.ParseOptions(explicit_schema=self._json, unexpected_field_behavior="ignore")
-        block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
-        table = json.read_json(pa.BufferReader(b"\n".join(lines)), block, parse).combine_chunks()
-        if table.num_rows != len(packets):
-            raise ValueError(f"{len(packets)} messages hold {table.num_rows} JSON objects")
-        columns = [table.column(name).chunk(0) for name in self._json.names]
-        return pa.StructArray.from_arrays(columns, fields=list(self._json))
+def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
+    # within JSON's texts a line's end is written otherwise, so that one message can be put on one line
+    lines = [message.replace(b"\n", b" ").replace(b"\r", b" ") for message in messages]
+    parse = json.ParseOptions(explicit_schema=schema, unexpected_field_behavior="ignore")
+    block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
+    table = json.read_json(pa.BufferReader(b"\n".join(lines)), block, parse).combine_chunks()
+    if table.num_rows != len(messages):
+        raise ValueError(f"{len(messages)} messages hold {table.num_rows} JSON objects")
+    columns = [table.column(name).chunk(0) for name in schema.names]
+    return pa.StructArray.from_arrays(columns, fields=list(schema))
 
 
 def _json_type(tree: FieldTree) -> list[pa.Field]:
@@ -114,18 +94,9 @@ def _json_type(tree: FieldTree) -> list[pa.Field]:
     return fields
 
 
-def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.intp]]:
-    """Return the items of all lists called `name`, and the row that each is in."""
-    lists = struct_field(rows, name)
-    if pa.types.is_null(lists.type):
-        return pa.nulls(0), np.zeros(0, np.intp)
-    counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
-    return lists.flatten(), np.repeat(np.arange(len(rows)), counts)
-
-
 def times(stamp: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """Return times or durations in nanoseconds (0 where there is none), and where there is one."""
-    whole, rest = (_first(stamp, names) for names in (_WHOLE_SECONDS, _NANOSECONDS))
+    whole, rest = (_first(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
     seconds = np.floor(whole)
     t_ns = seconds.astype(np.int64) * 1_000_000_000 + np.rint((whole - seconds) * 1e9 + rest).astype(np.int64)
     return t_ns, stamp.is_valid().to_numpy(zero_copy_only=False)

@@ -6,17 +6,22 @@ nobody knows where it is now: it is there but not placed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, join_batches
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.drive.trace import Severity
     from drivelint.formats.coordinate_frames import Vectors
+
+    Instants = NDArray[np.int64]
 
 MAX_PERSISTED: Final = 20_000_000
 """More states than this are not made up: nobody records so many road users that stand still."""
@@ -25,58 +30,67 @@ STALE_NS: Final = 500_000_000
 _NEVER: Final = np.iinfo(np.int64).max
 
 
-@dataclass(frozen=True)
-class EntityUpdates:
-    """n updates: actor index, time, lifetime (0: for ever), box (place, turn and size as columns)."""
+def with_persisted(
+    rows: RecordedPoses, gone: tuple[Instants, list[str | None]], findings: list[QualityFinding], topic: str
+) -> RecordedPoses:
+    """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
-    actor: NDArray[np.int32]
-    t_ns: NDArray[np.int64]
-    lifetime_ns: NDArray[np.int64]
-    box: Vectors
+    `gone`: times of deletions, and the ids of whom they delete, None: of all. Who was updated at that time or later stays.
+    """
+    unique, actor = distinct(rows.ids)
+    number = {name: i for i, name in enumerate(unique)}
+    whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in gone[1]], np.int32)
+    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
+    grid_ns = np.unique(np.concatenate([rows.t_ns[new], gone[0]]))
+    row, t_ns, stood_still = _persisted(rows, actor, (gone[0], whom), grid_ns)
+    if not len(row):
+        return rows
+    extra = rows.take(row)
+    extra.t_ns = t_ns
+    extra.at_ns = np.where(np.asarray(extra.locked), t_ns, rows.t_ns[row])
+    extra.place = np.where(stood_still[:, None], extra.place, np.nan)
+    rows.at_ns = rows.t_ns
+    kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
+        (stood_still, "entity_held", "info", "stood still and are where they were"),
+        (~stood_still, "entity_stale", "warning", "moved before and are there but not placed"),
+    )
+    for some, check, severity, what in kinds:
+        if some.any():
+            n, names = int(some.sum()), sorted({unique[i] for i in np.unique(actor[row[some]])})
+            message = f"{topic}: {n} states of entities that are not updated nor gone ({listed(names)}): they {what}"
+            findings.append(QualityFinding(check, severity, message, n, int(t_ns[some].min())))
+    return join_batches([rows, extra])
 
 
-@dataclass(frozen=True)
-class Deletions:
-    """Times of deletion: of one actor (index), or of all (-1). Who was updated at that time or later stays."""
+def _persisted(
+    updates: RecordedPoses, actor: NDArray[np.int32], deletions: tuple[Instants, NDArray[np.int32]], grid_ns: Instants
+) -> tuple[NDArray[np.intp], Instants, NDArray[np.bool_]]:
+    """Return the states between updates: which update each goes back to, its time, and whether the entity stood still.
 
-    actor: NDArray[np.int32]
-    t_ns: NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class PersistedStates:
-    """States between updates: which update each goes back to, its time, and whether the entity stood still."""
-
-    row: NDArray[np.intp]
-    t_ns: NDArray[np.int64]
-    still: NDArray[np.bool_]
-
-
-def persisted_states(entities: EntityUpdates, deletions: Deletions, grid_ns: NDArray[np.int64]) -> PersistedStates:
-    """Return the states of entities at the messages that do not update them."""
-    n = len(entities.t_ns)
-    order = np.lexsort((np.arange(n), entities.t_ns, entities.actor))
-    actor, t_ns, box = entities.actor[order], entities.t_ns[order], entities.box[order]
+    `actor`: the index of each update's entity; `deletions`: times, and indices of whom they delete, -1: of all.
+    """
+    n = len(updates)
+    order = np.lexsort((np.arange(n), updates.t_ns, actor))
+    sorted_updates = updates.take(order)
+    actor, t_ns, lifetime = actor[order], sorted_updates.t_ns, np.asarray(sorted_updates.lifetime_ns)
+    box = np.concatenate([sorted_updates.place, sorted_updates.turn, sorted_updates.size], axis=1)
     same, alike = actor[1:] == actor[:-1], _alike(box)
-    follows = np.r_[np.where(same, t_ns[1:], _NEVER), np.full(min(n, 1), _NEVER)]
-    lifetime = entities.lifetime_ns[order]
+    follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
     # a lifetime of centuries would overflow
     gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
     gone = np.minimum(gone, _deleted(actor, t_ns, deletions))
     replaced = (follows <= gone) & (follows < _NEVER)
     # between two places the entity moved: the samples themselves say so, and nothing is put between them
-    stays, alone = np.zeros(min(n, 1), np.bool_), np.ones(min(n, 1), np.bool_)
-    still = np.asarray(np.where(replaced, np.r_[same & alike, stays], np.r_[alone, alike | ~same]), np.bool_)
-    wanted = still | ~replaced
+    still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
     first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
     last = np.searchsorted(grid_ns, np.minimum(follows, gone), side="left")
-    count = np.where(wanted, np.maximum(last - first, 0), 0)
+    count = np.where(still | ~replaced, np.maximum(last - first, 0), 0)
     total = int(count.sum())
     if total > MAX_PERSISTED:
         raise TraceError(f"entities that are never deleted would have {total} states: record them with a lifetime")
     row = np.repeat(np.arange(n), count)
     step = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
-    return PersistedStates(order[row], grid_ns[first[row] + step], still[row])
+    return order[row], grid_ns[first[row] + step], still[row]
 
 
 def _alike(box: Vectors) -> NDArray[np.bool_]:
@@ -86,18 +100,13 @@ def _alike(box: Vectors) -> NDArray[np.bool_]:
     return result
 
 
-def _deleted(actor: NDArray[np.int32], t_ns: NDArray[np.int64], deletions: Deletions) -> NDArray[np.int64]:
+def _deleted(actor: NDArray[np.int32], t_ns: Instants, deletions: tuple[Instants, NDArray[np.int32]]) -> Instants:
     """Return when each update is deleted: by the first deletion of its actor, or of all, with a later time."""
-    every = np.sort(deletions.t_ns[deletions.actor < 0])
-    result: NDArray[np.int64] = np.r_[every, _NEVER][np.searchsorted(every, t_ns, side="right")]
-    one = np.flatnonzero(deletions.actor >= 0)
-    if len(one):
-        one = one[np.lexsort((deletions.t_ns[one], deletions.actor[one]))]
-        who, when = deletions.actor[one], deletions.t_ns[one]
-        for name in np.unique(who):
-            mine = np.flatnonzero(actor == name)
-            times = when[who == name]
-            result[mine] = np.minimum(
-                result[mine], np.r_[times, _NEVER][np.searchsorted(times, t_ns[mine], side="right")]
-            )
+    when, whom = deletions
+    result = np.full(len(t_ns), _NEVER)
+    for one in np.unique(whom):
+        mine = np.flatnonzero((actor == one) | (one < 0))
+        times = np.sort(when[whom == one])
+        first_later = np.r_[times, _NEVER][np.searchsorted(times, t_ns[mine], side="right")]
+        result[mine] = np.minimum(result[mine], first_later)
     return result

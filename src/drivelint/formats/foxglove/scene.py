@@ -4,7 +4,6 @@ elsewhere."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -18,17 +17,16 @@ from drivelint.formats.foxglove.decode import (
     FIELD_TREES,
     SCENE,
     TRANSFORM,
-    Decoder,
+    decoded_rows,
     distinct_texts,
-    list_items,
     numbers,
     times,
     vectors,
 )
-from drivelint.formats.foxglove.entity_lifetime import Deletions, EntityUpdates, persisted_states
+from drivelint.formats.foxglove.entity_lifetime import with_persisted
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.osi.enum_codes import struct_field
+from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
@@ -44,10 +42,9 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
-    from drivelint.drive.trace import Severity
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
@@ -56,11 +53,9 @@ DELETE_ALL: Final = 1
 
 @dataclass
 class _Scene:
-    """What was read of one topic: rows, and beside each the entity's lifetime and whether it goes with its frame."""
+    """What was read of one topic."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
-    lifetime: list[NDArray[np.int64]] = field(default_factory=list)
-    locked: list[NDArray[np.bool_]] = field(default_factory=list)
     deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str | None]]] = field(
         default_factory=list
     )
@@ -74,12 +69,10 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for name, packets in message_batches(container, partial(_kind, container)):
+        for name, packets in message_batches(container, _kind):
             channel = packets[0].channel
-            schema = container.schemas[channel.schema_id].data
-            decoder = Decoder(file, name, channel.message_encoding, schema)
             log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
-            decoded = decoder.rows(packets)
+            decoded = decoded_rows(file, container.schemas[channel.schema_id], packets)
             if name == SCENE:
                 _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
             elif name == TRANSFORM:
@@ -92,11 +85,8 @@ def read(path: Path, topic: str | None) -> Recording:
     return _recording(path, name, scenes[name], transforms, findings)
 
 
-def _kind(container: Container, channel: Channel) -> str | None:
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding not in {"protobuf", "json"} or schema.name not in FIELD_TREES:
-        return None
-    return schema.name
+def _kind(channel: Channel, schema: Schema) -> str | None:
+    return schema.name if channel.message_encoding in {"protobuf", "json"} and schema.name in FIELD_TREES else None
 
 
 def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
@@ -112,7 +102,6 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
 
 
 def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> None:
-    """Read a batch of scene updates."""
     entities, message = list_items(decoded, "entities")
     lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
@@ -126,19 +115,21 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     names, which = distinct_texts(entities, "id")
     frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
-    rows = recorded_poses(
-        times(struct_field(entities, "timestamp")),
-        (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
-        log_ns=log_ns[message],
-        ids=np.array([name.encode() for name in names] or [b""])[which],
-        frames=np.array([name.encode() for name in frames] or [b""])[frame],
-        size=vectors(cubes, "size"),
-        classes=_classes(entities),
+    scene.rows.append(
+        recorded_poses(
+            times(struct_field(entities, "timestamp")),
+            (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
+            log_ns=log_ns[message],
+            ids=np.array([name.encode() for name in names] or [b""])[which],
+            frames=np.array([name.encode() for name in frames] or [b""])[frame],
+            size=vectors(cubes, "size"),
+            classes=_classes(entities),
+            lifetime_ns=times(struct_field(entities, "lifetime"))[0],
+            locked=pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(
+                zero_copy_only=False
+            ),
+        )
     )
-    scene.rows.append(rows)
-    scene.lifetime.append(times(struct_field(entities, "lifetime"))[0])
-    locked = struct_field(entities, "frame_locked").cast(pa.bool_())
-    scene.locked.append(pc.fill_null(locked, False).to_numpy(zero_copy_only=False))
     gone, message = list_items(decoded, "deletions")
     if len(gone):
         t_ns, timed = times(struct_field(gone, "timestamp"))
@@ -171,13 +162,12 @@ def _recording(
     findings: list[QualityFinding],
 ) -> Recording:
     rows = join_batches(scene.rows)
-    lifetime, locked = np.concatenate(scene.lifetime), np.concatenate(scene.locked)
     named = rows.ids != b""
     if not named.all():
         n = int((~named).sum())
         message = f"{topic}: entities without an id: {n}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, n))
-        rows, lifetime, locked = rows.take(named), lifetime[named], locked[named]
+        rows = rows.take(named)
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
@@ -185,7 +175,7 @@ def _recording(
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)
-    rows = _alive(rows, (lifetime, locked), _deletions(scene, rows, own_times=own_times), findings, topic)
+    rows = with_persisted(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
@@ -208,45 +198,6 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
         times.append(np.where(timed & own_times, t_ns, last if own_times else sent_ns))
         ids += whom
     return np.concatenate(times), ids
-
-
-def _alive(
-    rows: RecordedPoses,
-    manner: tuple[NDArray[np.int64], NDArray[np.bool_]],
-    gone: tuple[NDArray[np.int64], list[str | None]],
-    findings: list[QualityFinding],
-    topic: str,
-) -> RecordedPoses:
-    """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
-
-    `manner`: each row's lifetime, and whether it goes with its frame.
-    """
-    lifetime, locked = manner
-    unique, actor = distinct(rows.ids)
-    number = {name: i for i, name in enumerate(unique)}
-    whom = [-1 if name is None else number.get(name, len(unique)) for name in gone[1]]
-    deletions = Deletions(np.array(whom, np.int32), gone[0])
-    box = np.concatenate([rows.place, rows.turn, rows.size], axis=1)
-    entities = EntityUpdates(actor, rows.t_ns, lifetime, box)
-    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
-    more = persisted_states(entities, deletions, np.unique(np.concatenate([rows.t_ns[new], deletions.t_ns])))
-    if not len(more.row):
-        return rows
-    extra = rows.take(more.row)
-    extra.t_ns = more.t_ns
-    extra.at_ns = np.where(locked[more.row], more.t_ns, rows.t_ns[more.row])
-    extra.place = np.where(more.still[:, None], extra.place, np.nan)
-    rows.at_ns = rows.t_ns
-    kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
-        (more.still, "entity_held", "info", "stood still and are where they were"),
-        (~more.still, "entity_stale", "warning", "moved before and are there but not placed"),
-    )
-    for still, check, severity, what in kinds:
-        if still.any():
-            names = sorted({unique[i] for i in np.unique(entities.actor[more.row[still]])})
-            message = f"{topic}: {int(still.sum())} states of entities that are not updated nor gone ({listed(names)}): they {what}"
-            findings.append(QualityFinding(check, severity, message, int(still.sum()), int(more.t_ns[still].min())))
-    return join_batches([rows, extra])
 
 
 def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> TransformTree:

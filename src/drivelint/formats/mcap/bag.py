@@ -11,6 +11,7 @@ from mcap.reader import make_reader
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
+from drivelint.formats.ros2.types import message_kind
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,32 +21,25 @@ _ROOT = "rosbag2_bagfile_information"
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROAD_USERS: Final = "road users"
 ODOMETRY: Final = "odometry"
-_VEHICLE_REPORTS: Final = {
-    "lights": ("TurnIndicatorsReport", "HazardLightsReport"),
-    "declared events": ("ControlModeReport", "Engage"),
-}
 ROS_ROLES: Final = {
     "derived_object_msgs/ObjectArray": ROAD_USERS,
     "autoware_perception_msgs/TrackedObjects": ROAD_USERS,
-    "autoware_auto_perception_msgs/TrackedObjects": ROAD_USERS,
     "vision_msgs/Detection3DArray": ROAD_USERS,
     "nav_msgs/Odometry": ODOMETRY,
     "tf2_msgs/TFMessage": "frames",
     "carla_msgs/CarlaEgoVehicleInfo": "ego",
     "carla_msgs/CarlaWorldInfo": "map",
-    **{
-        f"{package}/{name}": role
-        for package in ("autoware_vehicle_msgs", "autoware_auto_vehicle_msgs")
-        for role, names in _VEHICLE_REPORTS.items()
-        for name in names
-    },
+    "autoware_vehicle_msgs/TurnIndicatorsReport": "lights",
+    "autoware_vehicle_msgs/HazardLightsReport": "lights",
+    "autoware_vehicle_msgs/ControlModeReport": "declared events",
+    "autoware_vehicle_msgs/Engage": "declared events",
 }
 FOXGLOVE_ROLES: Final = {
     "foxglove.SceneUpdate": ROAD_USERS,
     "foxglove.FrameTransform": "frames",
     "foxglove.FrameTransforms": "frames",
 }
-"""Schema (without the `msg` in the names of ROS) -> what is read from its messages."""
+"""Schema, of ROS as `message_kind` names it, -> what is read from its messages."""
 
 
 def is_bag(path: Path) -> bool:
@@ -95,7 +89,7 @@ def message_family(path: Path) -> str:
     """
     parts = mcap_files(path)
     for schemas in (_indexed, _recorded):
-        found = {name.replace("/msg/", "/") for file in parts for name in schemas(file)}
+        found = {message_kind(name) for file in parts for name in schemas(file)}
         if found & OSI_SCHEMAS:
             return "osi"
         for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):

@@ -12,6 +12,7 @@ import mmap
 import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
+from itertools import chain
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
 
 import numpy as np
@@ -187,14 +188,13 @@ class Original:
         return False
 
     def _look_inside(self, chunks: list[Record]) -> None:
-        for chunk in chunks:
-            for opcode, _, body in self.chunk_records(chunk):
-                if opcode == Opcode.SCHEMA:
-                    schema = Schema.read(ReadDataStream(io.BytesIO(body)))
-                    self.schemas[schema.id] = schema
-                elif opcode == Opcode.CHANNEL:
-                    channel = Channel.read(ReadDataStream(io.BytesIO(body)))
-                    self.channels[channel.id] = channel
+        for opcode, _, body in chain.from_iterable(map(self.chunk_records, chunks)):
+            if opcode == Opcode.SCHEMA:
+                schema = Schema.read(ReadDataStream(io.BytesIO(body)))
+                self.schemas[schema.id] = schema
+            elif opcode == Opcode.CHANNEL:
+                channel = Channel.read(ReadDataStream(io.BytesIO(body)))
+                self.channels[channel.id] = channel
 
     def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
         """Whether the summary names every channel and schema, and the message indexes know of every message."""
@@ -284,33 +284,24 @@ class _Copy:
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
-        """Remember for the index what will be copied."""
         start, length = self._place(record.at), record.end - record.at
+        head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:
-            self._chunk = record, self._chunk_index(record, start, length)
+            begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
+            self._chunk = record, ChunkIndex(
+                chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
+                compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
+                message_start_time=begin, uncompressed_size=size,
+            )  # fmt: skip
         elif record.opcode == Opcode.ATTACHMENT:
-            self._sink.attachments.append(self._attachment_index(record, start, length))
+            log_time, create_time = head.read8(), head.read8()
+            name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
+            self._sink.attachments.append(AttachmentIndex(
+                offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
+                name=name, media_type=media_type,
+            ))  # fmt: skip
         elif record.opcode == Opcode.METADATA:
-            name = self._original.stream(record).read_prefixed_string()
-            self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=name))
-
-    def _chunk_index(self, record: Record, start: int, length: int) -> ChunkIndex:
-        head = self._original.stream(record, _HEAD_BYTES)
-        begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
-        return ChunkIndex(
-            chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
-            compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
-            message_start_time=begin, uncompressed_size=size,
-        )  # fmt: skip
-
-    def _attachment_index(self, record: Record, start: int, length: int) -> AttachmentIndex:
-        head = self._original.stream(record, _HEAD_BYTES)
-        log_time, create_time = head.read8(), head.read8()
-        name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
-        return AttachmentIndex(
-            offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
-            name=name, media_type=media_type,
-        )  # fmt: skip
+            self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=head.read_prefixed_string()))
 
     def _take_index(self, record: Record) -> None:
         """Copy a message index that can be relied on; another is left out and found anew."""

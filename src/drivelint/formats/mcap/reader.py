@@ -47,6 +47,11 @@ class Packet:
     data: bytes
     offset: int
 
+    def error(self, path: Path, what: str) -> TraceError:
+        """Return the error for this message: where it is, and what is wrong with it."""
+        where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
+        return TraceError(f"{path}: {where}: {what}: record or copy the log again")
+
 
 @dataclass
 class Container:
@@ -147,7 +152,6 @@ class Container:
             self.channels[channel.id] = channel
 
     def _chunk(self, body: memoryview, at: int) -> Iterator[Packet]:
-        """Unpack a chunk and take its records."""
         if len(body) < _CHUNK.size:
             raise self._damaged(at, "a chunk record without its header")
         _, _, size, crc, name_length = _CHUNK.unpack_from(body)
@@ -235,16 +239,17 @@ class Container:
 
 
 def message_batches(
-    container: Container, kind_of: Callable[[Channel], str | None]
+    container: Container, kind_of: Callable[[Channel, Schema], str | None]
 ) -> Iterator[tuple[str, list[Packet]]]:
     """Yield the kind and the messages of a topic, those of one schema and some tens of megabytes at a time.
 
-    `kind_of`: what is read from a channel; None: nothing.
+    `kind_of`: what is read from a channel with a schema; None: nothing.
     """
     waiting: dict[str, tuple[str, list[Packet]]] = {}
     sizes: Counter[str] = Counter()
     for packet in container.packets():
-        topic, kind = packet.channel.topic, kind_of(packet.channel)
+        topic, schema = packet.channel.topic, container.schemas.get(packet.channel.schema_id)
+        kind = None if schema is None else kind_of(packet.channel, schema)
         if kind is None:
             continue
         changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id

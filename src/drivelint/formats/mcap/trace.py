@@ -40,4 +40,4 @@ def read(probe: Probe) -> Recording:
         return foxglove_scene.read(probe.path, probe.options.topic)
     if probe.path.is_dir():
         raise TraceError(f"{probe.path}: a bag without ROS 2 or Foxglove messages that are read: give one of its files")
-    return osi.read(probe.path, probe.options.topic)
+    return osi.read_mcap(probe.path, probe.options.topic)

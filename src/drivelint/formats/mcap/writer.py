@@ -10,24 +10,9 @@ from typing import TYPE_CHECKING, BinaryIO, Final
 
 import numpy as np
 import zstandard
+from mcap import records
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import (
-    Attachment,
-    AttachmentIndex,
-    Channel,
-    Chunk,
-    ChunkIndex,
-    DataEnd,
-    Footer,
-    Header,
-    McapRecord,
-    Metadata,
-    MetadataIndex,
-    Schema,
-    Statistics,
-    SummaryOffset,
-)
 
 from drivelint.errors import DriveLintError
 from drivelint.formats.mcap.reader import MAGIC
@@ -53,11 +38,11 @@ class Sink:
         self._file = file
         self._crc = 0
         self.offset = 0
-        self.schemas: dict[int, Schema] = {}
-        self.channels: dict[int, Channel] = {}
-        self.chunks: list[ChunkIndex] = []
-        self.attachments: list[AttachmentIndex] = []
-        self.metadata: list[MetadataIndex] = []
+        self.schemas: dict[int, records.Schema] = {}
+        self.channels: dict[int, records.Channel] = {}
+        self.chunks: list[records.ChunkIndex] = []
+        self.attachments: list[records.AttachmentIndex] = []
+        self.metadata: list[records.MetadataIndex] = []
         self.counts: Counter[int] = Counter()
 
     def write(self, data: bytes | memoryview) -> None:
@@ -71,9 +56,9 @@ class Sink:
     def begin(self, library: str) -> None:
         """Begin a file of our own (a copied one begins with the original's magic bytes and header)."""
         self.write(MAGIC)
-        self._record(Header(profile="", library=library))
+        self._record(records.Header(profile="", library=library))
 
-    def add_channel(self, topic: str, encoding: str, schema: Schema) -> int:
+    def add_channel(self, topic: str, encoding: str, schema: records.Schema) -> int:
         """Announce a channel under ids that are still free, and its schema unless it is there; return the channel's id.
 
         `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
@@ -83,7 +68,7 @@ class Sink:
         if not same:
             self.schemas[number] = replace(schema, id=number)
             self._record(self.schemas[number])
-        channel = Channel(
+        channel = records.Channel(
             id=_free(self.channels, 0, "channel"), topic=topic, message_encoding=encoding, metadata={}, schema_id=number
         )
         self.channels[channel.id] = channel
@@ -91,27 +76,32 @@ class Sink:
         return channel.id
 
     def add_chunk(
-        self, records: bytes | memoryview, index: Mapping[int, NDArray[np.uint64]], *, compressed: bool = True
+        self, content: bytes | memoryview, index: Mapping[int, NDArray[np.uint64]], *, compressed: bool = True
     ) -> None:
         """Write records as one chunk with its message indexes.
 
-        `index`: channel id -> (n, 2) array of log time and offset within the chunk, for every message in `records`.
+        `index`: channel id -> (n, 2) array of log time and offset within the chunk, for every message in `content`.
         """
         times = np.concatenate([entries[:, 0] for entries in index.values()])
-        data = zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(records) if compressed else bytes(records)
-        chunk = Chunk(
+        data = zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(content) if compressed else bytes(content)
+        chunk = records.Chunk(
             compression="zstd" if compressed else "",
             data=data,
             message_start_time=int(times.min()),
             message_end_time=int(times.max()),
-            uncompressed_crc=zlib.crc32(records),
-            uncompressed_size=len(records),
+            uncompressed_crc=zlib.crc32(content),
+            uncompressed_size=len(content),
         )
         start = self.offset
         self._record(chunk)
-        self.index_chunk(chunk_index(chunk, start, self.offset - start), index)
+        entry = records.ChunkIndex(
+            chunk_length=self.offset - start, chunk_start_offset=start, compression=chunk.compression,
+            compressed_size=len(data), message_end_time=chunk.message_end_time, message_index_length=0,
+            message_index_offsets={}, message_start_time=chunk.message_start_time, uncompressed_size=chunk.uncompressed_size,
+        )  # fmt: skip
+        self.index_chunk(entry, index)
 
-    def index_chunk(self, chunk: ChunkIndex, index: Mapping[int, NDArray[np.uint64]]) -> None:
+    def index_chunk(self, chunk: records.ChunkIndex, index: Mapping[int, NDArray[np.uint64]]) -> None:
         """Write the message indexes of the chunk that was written last, and remember it for the summary."""
         start = self.offset
         for channel, entries in sorted(index.items()):
@@ -125,8 +115,8 @@ class Sink:
     def add_attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
         """Write an attachment; its creation time is 0, so that the same run writes the same bytes."""
         start = self.offset
-        self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
-        self.attachments.append(AttachmentIndex(
+        self._record(records.Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
+        self.attachments.append(records.AttachmentIndex(
             offset=start, length=self.offset - start, log_time=log_time, create_time=0, data_size=len(data),
             name=name, media_type=media_type,
         ))  # fmt: skip
@@ -134,15 +124,15 @@ class Sink:
     def add_metadata(self, name: str, content: Mapping[str, str]) -> None:
         """Write a metadata record, its keys in order."""
         start = self.offset
-        self._record(Metadata(name=name, metadata=dict(sorted(content.items()))))
-        self.metadata.append(MetadataIndex(offset=start, length=self.offset - start, name=name))
+        self._record(records.Metadata(name=name, metadata=dict(sorted(content.items()))))
+        self.metadata.append(records.MetadataIndex(offset=start, length=self.offset - start, name=name))
 
     def finish(self) -> None:
         """End the data, write the summary and the footer."""
-        self._record(DataEnd(data_section_crc=self._crc))
+        self._record(records.DataEnd(data_section_crc=self._crc))
         start = self.offset
         self._crc = 0  # the footer's CRC begins with the summary
-        groups: list[tuple[int, Sequence[McapRecord]]] = [
+        groups: list[tuple[int, Sequence[records.McapRecord]]] = [
             (Opcode.SCHEMA, [s for _, s in sorted(self.schemas.items())]),
             (Opcode.CHANNEL, [c for _, c in sorted(self.channels.items())]),
             (Opcode.STATISTICS, [self._statistics()]),
@@ -151,29 +141,33 @@ class Sink:
             (Opcode.METADATA_INDEX, self.metadata),
         ]
         places = []
-        for opcode, records in groups:
+        for opcode, group in groups:
             group_start = self.offset
-            for record in records:
+            for record in group:
                 self._record(record)
-            if records:
+            if group:
                 places.append(
-                    SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start)
+                    records.SummaryOffset(
+                        group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start
+                    )
                 )
         offsets = self.offset
         for place in places:
             self._record(place)
         head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets)
-        self._record(Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc)))
+        self._record(
+            records.Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc))
+        )
         self.write(MAGIC)
 
-    def _record(self, record: McapRecord) -> None:
+    def _record(self, record: records.McapRecord) -> None:
         builder = RecordBuilder()
         record.write(builder)
         self.write(builder.end())  # type: ignore[no-untyped-call]
 
-    def _statistics(self) -> Statistics:
+    def _statistics(self) -> records.Statistics:
         filled = [c for c in self.chunks if c.message_index_offsets]
-        return Statistics(
+        return records.Statistics(
             attachment_count=len(self.attachments),
             channel_count=len(self.channels),
             channel_message_counts=dict(sorted((c, n) for c, n in self.counts.items() if n)),
@@ -184,21 +178,6 @@ class Sink:
             metadata_count=len(self.metadata),
             schema_count=len(self.schemas),
         )
-
-
-def chunk_index(chunk: Chunk, start: int, length: int) -> ChunkIndex:
-    """Return the index entry of a chunk record that begins at `start`, still without message indexes."""
-    return ChunkIndex(
-        chunk_length=length,
-        chunk_start_offset=start,
-        compression=chunk.compression,
-        compressed_size=len(chunk.data),
-        message_end_time=chunk.message_end_time,
-        message_index_length=0,
-        message_index_offsets={},
-        message_start_time=chunk.message_start_time,
-        uncompressed_size=chunk.uncompressed_size,
-    )
 
 
 def _free(taken: Mapping[int, object], least: int, what: str) -> int:

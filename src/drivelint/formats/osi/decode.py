@@ -7,17 +7,23 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import ptars
 import pyarrow as pa
 import pyarrow.compute as pc
 from google.protobuf.message import DecodeError
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.osi import schema as osi_schema
 from drivelint.formats.osi import signal_heads as osi_heads
-from drivelint.formats.osi.enum_codes import Bulbs, build_enum_codes, bulbs_of, state_codes, struct_field
-from drivelint.formats.protobuf import descriptors
+from drivelint.formats.osi.enum_codes import EnumCodes, bulbs_of, state_codes
+from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
+from drivelint.formats.protobuf.descriptors import (
+    decoded,
+    integers,
+    list_items,
+    message_decoder,
+    parse_schema,
+    struct_field,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,9 +33,6 @@ if TYPE_CHECKING:
 
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
-
-GROUND_TRUTH = "osi3.GroundTruth"
-SENSOR_VIEW = "osi3.SensorView"
 
 _XY: FieldTree = {"x": None, "y": None}
 _ID: FieldTree = {"value": None}
@@ -93,7 +96,7 @@ class FrameBatch:
     not_finite: NDArray[np.bool_]
     left_out: dict[str, NDArray[np.bool_]]
     says_zero: bool
-    bulbs: Bulbs
+    bulbs: pa.Table
 
 
 class Decoder:
@@ -103,30 +106,23 @@ class Decoder:
         """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
         self._path, self._name, self.schema_id = path, name, schema_id
         self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
-        types = descriptors.parse(path, name, descriptor_set)
-        descriptor = descriptors.pruned(path, types, name, FIELD_TREES[name])
-        self._handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
-        truth = _inner(self._handler.schema(), "global_ground_truth") if name == SENSOR_VIEW else self._handler.schema()
+        types = parse_schema(path, name, descriptor_set)
+        self._decode = message_decoder(path, types, name, FIELD_TREES[name])
+        kind = self._decode([]).type
+        truth = _inner(kind, "global_ground_truth") if name == SENSOR_VIEW else kind
         base = _inner(_inner(truth, "moving_object"), "base")
         if _inner(base, "position") is None or _inner(_inner(truth, "moving_object"), "id") is None:
             raise TraceError(
                 f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
             )
-        self._words = build_enum_codes(types, GROUND_TRUTH)
+        self._words = EnumCodes(types, GROUND_TRUTH)
 
     def frames(self, packets: list[Packet]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
-        message = self._decode(packets)
+        message = decoded(self._path, packets, self._decode)
         truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
-        t_ns, timed = _times(truth)
-        hosts = _hosts(truth)
-        if self._name == SENSOR_VIEW:
-            outer_t, outer_timed = _times(message)
-            t_ns, timed = np.where(timed, t_ns, outer_t), timed | outer_timed
-            hosts = [inner if inner is not None else outer for inner, outer in zip(hosts, _hosts(message), strict=True)]
-        lists = struct_field(truth, "moving_object")
-        objects = lists.flatten()
-        counts = pc.fill_null(pc.list_value_length(lists), 0).to_numpy(zero_copy_only=False)
+        (t_ns, timed), (outer_ns, outer_timed) = _times(truth), _times(message)
+        objects, frame = list_items(truth, "moving_object")
         base = struct_field(objects, "base")
         numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
         says_zero = False
@@ -143,8 +139,7 @@ class Decoder:
                 left_out |= {column: left_out[column] & ~empty for column in columns}
         left_out = {column: rows for column, rows in left_out.items() if rows.any()}
         ids = struct_field(objects, "id")
-        frame = np.repeat(np.arange(len(packets)), counts)
-        number = pc.fill_null(struct_field(ids, "value").cast(pa.uint64()), 0).to_numpy(zero_copy_only=False)
+        number = integers(ids, "value", pa.uint64())
         codes = state_codes(self._words, objects)
         if ids.null_count:
             known = ids.is_valid().to_numpy(zero_copy_only=False)
@@ -152,27 +147,17 @@ class Decoder:
             numbers = {name: column[known] for name, column in numbers.items()}
             left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
-        bulbs = bulbs_of(self._words, struct_field(truth, "traffic_light"), self.lights)
         return FrameBatch(
-            t_ns, timed, hosts, frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero, bulbs
-        )
-
-    def _decode(self, packets: list[Packet]) -> pa.StructArray:
-        try:
-            rows = self._handler.list_to_record_batch([packet.data for packet in packets])
-        except ValueError as error:
-            if len(packets) == 1:
-                raise decode_error(self._path, packets[0], error) from error
-            for packet in packets:  # one of them spoilt the batch
-                self._decode([packet])
-            raise TraceError(f"{self._path}: {len(packets)} messages cannot be decoded together: {error}") from error
-        return pa.StructArray.from_arrays(rows.columns, fields=list(rows.schema))
+            np.where(timed, t_ns, outer_ns), timed | outer_timed, pc.coalesce(_hosts(truth), _hosts(message)).to_pylist(),
+            frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero,
+            bulbs_of(self._words, truth, self.lights),
+        )  # fmt: skip
 
 
 class FirstMessage(NamedTuple):
     """What the first message alone says: lanes as a message of their own, the geo reference with its offset, lanes that have no width.
 
-    `lights`: see `osi_heads.heads`.
+    `lights`: see `osi_heads.light_by_bulb`.
     """
 
     lanes: bytes | None = None
@@ -189,7 +174,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     placed on them: they are told, and make no map.
     """
     try:
-        outer = osi_schema.message_class(name.removeprefix("osi3.")).FromString(data)
+        outer = message_class(name.removeprefix("osi3.")).FromString(data)
     except DecodeError:
         return FirstMessage()  # whether the message is damaged, who reads its objects says
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
@@ -203,7 +188,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
         return head._replace(findings=(QualityFinding("lanes_without_width", "info", message, n),) if n else ())
     if not (truth.lane or truth.logical_lane):
         return head
-    lanes, beside = osi_schema.message_class("GroundTruth")(), osi_schema.message_class("GroundTruth")()
+    lanes, beside = message_class("GroundTruth")(), message_class("GroundTruth")()
     for each in _LANES:
         getattr(lanes, each).extend(getattr(truth, each))
     beside.traffic_sign.extend(truth.traffic_sign)
@@ -214,13 +199,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     return head._replace(lanes=content)
 
 
-def decode_error(path: Path, packet: Packet, error: ValueError) -> TraceError:
-    """Return the error for a message that cannot be decoded."""
-    where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
-    return TraceError(f"{path}: {where}: {error}: record or copy the log again")
-
-
-def _inner(fields: pa.Schema | pa.DataType | None, name: str) -> pa.DataType | None:
+def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
     """Return the struct type of a field, or that of its items; None where there is no such field."""
     if fields is None or fields.get_field_index(name) < 0:
         return None
@@ -239,14 +218,11 @@ def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArr
 
 def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     stamp = struct_field(message, "timestamp")
-    seconds, nanos = (
-        pc.fill_null(struct_field(stamp, name).cast(pa.int64()), 0).to_numpy(zero_copy_only=False)
-        for name in ("seconds", "nanos")
-    )
+    seconds, nanos = (integers(stamp, name, pa.int64()) for name in ("seconds", "nanos"))
     return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)
 
 
-def _hosts(message: pa.Array) -> list[int | None]:
+def _hosts(message: pa.Array) -> pa.Array:
     host = struct_field(message, "host_vehicle_id")
     value = pc.fill_null(struct_field(host, "value").cast(pa.uint64()), 0)
-    return list(pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64())).to_pylist())
+    return pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64()))

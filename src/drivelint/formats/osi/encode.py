@@ -12,13 +12,26 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
-from drivelint.formats.osi.schema import ENUMS, OPEN_DRIVE_REFERENCE, VERSION
-from drivelint.formats.protobuf.wire import BYTES, FIXED64, VARINT, integer, nested, tag, varint
+from drivelint.formats.osi.enum_codes import BRAKE_LIGHT_NAMES, INDICATOR_NAMES
+from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE, VERSION, enum_numbers
+from drivelint.formats.protobuf.wire import (
+    BYTES,
+    FIXED64,
+    VARINT,
+    double_column,
+    integer,
+    join_columns,
+    nested,
+    tag,
+    varint,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
+
+    from drivelint.formats.protobuf.wire import Bytes
 
 BLOCK_ROWS: Final = 1 << 14
 """Objects laid out at a time: enough to be quick, few enough to need only some tens of MB."""
@@ -35,36 +48,28 @@ _OPTIONAL: Final = frozenset({"length_m", "width_m", "height_m", "z_m"})
 _ALL: Final = tuple(column for _, parts in _VECTORS.values() for _, column in parts)
 
 
-def _names(message: str, prefix: str, words: Mapping[str, str]) -> dict[str, int]:
-    return {word: ENUMS[message][f"{prefix}_{name}"] for word, name in words.items()}
-
-
-_KIND: Final = ENUMS["MovingObject.Type"]
-_VEHICLE: Final = _names(
-    "MovingObject.VehicleClassification.Type",
-    "TYPE",
-    {
-        "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
-        "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
-    },
-)  # fmt: skip
-_TYPE: Final = {
-    "pedestrian": _KIND["TYPE_PEDESTRIAN"],
-    "animal": _KIND["TYPE_ANIMAL"],
-    "object": _KIND["TYPE_OTHER"],
-    **dict.fromkeys(_VEHICLE, _KIND["TYPE_VEHICLE"]),
-}
-_LIGHT_STATE = "MovingObject.VehicleClassification.LightState"
-_INDICATOR: Final = _names(
-    f"{_LIGHT_STATE}.IndicatorState",
-    "INDICATOR_STATE",
-    {"off": "OFF", "left": "LEFT", "right": "RIGHT", "hazard": "WARNING"},
-)
-_BRAKE: Final = _names(
-    f"{_LIGHT_STATE}.BrakeLightState", "BRAKE_LIGHT_STATE", {"off": "OFF", "on": "NORMAL", "strong": "STRONG"}
-)
-_COLOR: Final = ENUMS["TrafficLight.Classification.Color"]
-_MODE: Final = ENUMS["TrafficLight.Classification.Mode"]
+_VEHICLES: Final = {
+    "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
+    "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
+}  # fmt: skip
+_TYPES: Final = {
+    "pedestrian": "PEDESTRIAN", "animal": "ANIMAL", "object": "OTHER", **dict.fromkeys(_VEHICLES, "VEHICLE"),
+}  # fmt: skip
+_CLASSIFICATION: Final = "MovingObject.VehicleClassification"
+_CODES: Final[dict[str, tuple[str, tuple[str, ...], str, Mapping[str, str]]]] = {
+    "type": ("actor_class", ACTOR_CLASSES, "MovingObject.Type", _TYPES),
+    "vehicle": ("actor_class", ACTOR_CLASSES, f"{_CLASSIFICATION}.Type", _VEHICLES),
+    "indicator": (
+        "indicator", INDICATORS, f"{_CLASSIFICATION}.LightState.IndicatorState",
+        {word: name for name, word in INDICATOR_NAMES.items()},
+    ),
+    "brake_light": (
+        "brake_light", BRAKE_LIGHTS, f"{_CLASSIFICATION}.LightState.BrakeLightState",
+        {word: name for name, word in BRAKE_LIGHT_NAMES.items()},
+    ),
+}  # fmt: skip
+"""Field -> its code, the words that the code indexes, their enumeration, and the name that each word has in it."""
+_COLOR, _MODE = "TrafficLight.Classification.Color", "TrafficLight.Classification.Mode"
 _BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
     "red": (("RED", "CONSTANT"),),
     "red_amber": (("RED", "CONSTANT"), ("YELLOW", "CONSTANT")),
@@ -92,20 +97,11 @@ class Objects:
     def __len__(self) -> int:
         return len(self.number)
 
-
-@dataclass(frozen=True)
-class Slot:
-    """Where a number goes in an object's bytes: `name` is a column or a code, or `number`, the id."""
-
-    name: str
-    size: int
-
-
-LayoutPart = bytes | Slot
-
-
-def _nested(number: int, parts: Sequence[LayoutPart]) -> list[LayoutPart]:
-    return [tag(number, BYTES) + varint(sum(map(_size, parts))), *parts]
+    def take(self, rows: NDArray[np.intp]) -> Objects:
+        """Return the chosen rows."""
+        values = {name: column[rows] for name, column in self.values.items()}
+        codes = {name: column[rows] for name, column in self.codes.items()}
+        return Objects(self.number[rows], values, codes, self.heights)
 
 
 def ground_truth_head(t_ns: int, host: int | None) -> bytes:
@@ -125,7 +121,7 @@ def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> 
     reference = nested(5, nested(2, OPEN_DRIVE_REFERENCE.encode()) + nested(3, signal_id.encode()))
     bulbs = (
         nested(1, integer(1, number))
-        + nested(3, integer(1, _COLOR[f"COLOR_{color}"]) + integer(3, _MODE[f"MODE_{mode}"]))
+        + nested(3, integer(1, enum_numbers(_COLOR)[color]) + integer(3, enum_numbers(_MODE)[mode]))
         + reference
         for number, (color, mode) in zip(numbers, _BULBS[state], strict=False)
     )
@@ -135,15 +131,14 @@ def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> 
 def moving_objects(objects: Objects) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
     """Return the bytes of all objects in order, each a field of a ground truth, and where each begins (n + 1 offsets)."""
     shapes, shape = np.unique(_shape(objects), return_inverse=True)
-    layouts = [_layout(int(key)) for key in shapes]
-    sizes = np.array([sum(map(_size, layout)) for layout in layouts], np.int64)
+    sizes = np.array([_encoded(int(key), objects, np.zeros(0, np.intp)).shape[1] for key in shapes], np.int64)
     starts = np.concatenate([[0], np.cumsum(sizes[shape])]) if len(objects) else np.zeros(1, np.int64)
     data = np.empty(int(starts[-1]), np.uint8)
-    for k, layout in enumerate(layouts):
+    for k, key in enumerate(shapes):
         rows = np.flatnonzero(shape == k)
         for first in range(0, len(rows), BLOCK_ROWS):
             some = rows[first : first + BLOCK_ROWS]
-            data[starts[some][:, None] + np.arange(sizes[k])] = _filled(layout, objects, some)
+            data[starts[some][:, None] + np.arange(sizes[k])] = _encoded(int(key), objects, some)
     return data, starts
 
 
@@ -156,62 +151,49 @@ def _shape(objects: Objects) -> NDArray[np.int64]:
         key |= (known | (column == "z_m" and objects.heights)).astype(np.int64) << i
     for i, code in enumerate(("indicator", "brake_light"), 4 + len(_ALL)):
         key |= (objects.codes[code] >= 0).astype(np.int64) << i
-    vehicle = np.array([*(word in _VEHICLE for word in ACTOR_CLASSES), False])[objects.codes["actor_class"]]
+    vehicle = np.array([*(word in _VEHICLES for word in ACTOR_CLASSES), False])[objects.codes["actor_class"]]
     return key | vehicle.astype(np.int64) << (6 + len(_ALL))
 
 
-def _layout(key: int) -> list[LayoutPart]:
-    """Return the parts of an object of one shape, from the tag of the field that holds it on."""
+def _encoded(key: int, objects: Objects, rows: NDArray[np.intp]) -> Bytes:
+    """Return the bytes of objects of one shape, a row each, from the tag of the field that holds it on."""
     known = {column for i, column in enumerate(_ALL, 4) if key >> i & 1}
-    parts: list[LayoutPart] = _nested(1, [tag(1, VARINT), Slot("number", key & 15)])
-    base: list[LayoutPart] = []
+    base: list[bytes | Bytes] = []
     for number, coordinates in _VECTORS.values():
         must = {column for _, column in coordinates} - _OPTIONAL
-        written = [(n, column) for n, column in coordinates if column in known]
-        if written and must <= known:
-            fields = [part for n, column in written for part in (tag(n, FIXED64), Slot(column, 8))]
-            base += _nested(number, fields)
-    parts += _nested(2, base)
-    parts += [tag(3, VARINT), Slot("type", 1)]
-    if not (lit := key >> (4 + len(_ALL))):
-        return _nested(5, parts)
-    classification: list[LayoutPart] = [tag(1, VARINT), Slot("vehicle", 1)]
-    if lit & 3:
-        lights: list[LayoutPart] = [tag(1, VARINT), Slot("indicator", 1)] if lit & 1 else []
-        lights += [tag(7, VARINT), Slot("brake_light", 1)] if lit & 2 else []
-        classification += _nested(2, lights)
-    parts += _nested(6, classification)
-    return _nested(5, parts)
+        fields: list[bytes | Bytes] = []
+        for n, column in coordinates:
+            if column in known:
+                fields += [tag(n, FIXED64), double_column(objects.values[column][rows])]
+        if fields and must <= known:
+            base += _nested(number, *fields)
+    parts = [
+        *_nested(1, tag(1, VARINT), _varints(objects.number[rows], key & 15)),
+        *_nested(2, *base),
+        *(tag(3, VARINT), _numbers("type", objects, rows)),
+    ]
+    if lit := key >> (4 + len(_ALL)):
+        lights: list[bytes | Bytes] = [tag(1, VARINT), _numbers("indicator", objects, rows)] if lit & 1 else []
+        lights += [tag(7, VARINT), _numbers("brake_light", objects, rows)] if lit & 2 else []
+        state = _nested(2, *lights) if lights else []
+        parts += _nested(6, tag(1, VARINT), _numbers("vehicle", objects, rows), *state)
+    return join_columns(len(rows), *_nested(5, *parts))
 
 
-def _size(part: LayoutPart) -> int:
-    return len(part) if isinstance(part, bytes) else part.size
+def _nested(number: int, *parts: bytes | Bytes) -> list[bytes | Bytes]:
+    size = sum(len(part) if isinstance(part, bytes) else part.shape[1] for part in parts)
+    return [tag(number, BYTES) + varint(size), *parts]
 
 
-def _filled(layout: Sequence[LayoutPart], objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
-    """Return the bytes of objects of one shape, a row each."""
-    template = b"".join(part if isinstance(part, bytes) else bytes(part.size) for part in layout)
-    table = np.tile(np.frombuffer(template, np.uint8), (len(rows), 1))
-    at = 0
-    for part in layout:
-        if isinstance(part, Slot):
-            table[:, at : at + part.size] = _numbers(part, objects, rows)
-        at += _size(part)
-    return table
+def _varints(numbers: NDArray[np.uint64], size: int) -> Bytes:
+    groups = numbers[:, None] >> (np.arange(size, dtype=np.uint64) * np.uint64(7))
+    more = np.where(np.arange(size) < size - 1, 0x80, 0).astype(np.uint64)
+    return (groups & np.uint64(0x7F) | more).astype(np.uint8)
 
 
-def _numbers(slot: Slot, objects: Objects, rows: NDArray[np.intp]) -> NDArray[np.uint8]:
-    if slot.name == "number":
-        groups = objects.number[rows][:, None] >> (np.arange(slot.size, dtype=np.uint64) * np.uint64(7))
-        more = np.where(np.arange(slot.size) < slot.size - 1, 0x80, 0).astype(np.uint64)
-        return (groups & np.uint64(0x7F) | more).astype(np.uint8)
-    if slot.name in objects.values:
-        return np.ascontiguousarray(objects.values[slot.name][rows], "<f8").view(np.uint8).reshape(-1, 8)
-    words, known, code = {
-        "type": (ACTOR_CLASSES, _TYPE, "actor_class"),
-        "vehicle": (ACTOR_CLASSES, _VEHICLE, "actor_class"),
-        "indicator": (INDICATORS, _INDICATOR, "indicator"),
-        "brake_light": (BRAKE_LIGHTS, _BRAKE, "brake_light"),
-    }[slot.name]
-    table = np.array([*(known.get(word, 0) for word in words), 0], np.uint8)  # the last is for code -1, unknown
+def _numbers(field: str, objects: Objects, rows: NDArray[np.intp]) -> Bytes:
+    """Return the numbers of an enumeration, all below 128."""
+    code, words, enum, names = _CODES[field]
+    numbers = {word: enum_numbers(enum)[name] for word, name in names.items()}
+    table = np.array([*(numbers.get(word, 0) for word in words), 0], np.uint8)  # the last is for code -1, unknown
     return table[objects.codes[code][rows]][:, None]

@@ -3,7 +3,6 @@ here."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,7 @@ import pyarrow.compute as pc
 from drivelint.drive.declared_events import HEADLIGHTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
-from drivelint.formats.protobuf.descriptors import enum_names
+from drivelint.formats.protobuf.descriptors import enum_names, integers, list_items, struct_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,85 +22,63 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import Types
 
 OFF, ON, OTHER = 0, 1, 2
-_KINDS = {"TYPE_VEHICLE": "vehicle", "TYPE_PEDESTRIAN": "pedestrian", "TYPE_ANIMAL": "animal"}
-_VEHICLES = {
-    "TYPE_SMALL_CAR": "car", "TYPE_COMPACT_CAR": "car", "TYPE_CAR": "car", "TYPE_MEDIUM_CAR": "car",
-    "TYPE_LUXURY_CAR": "car", "TYPE_DELIVERY_VAN": "van", "TYPE_HEAVY_TRUCK": "truck", "TYPE_SEMITRACTOR": "truck",
-    "TYPE_SEMITRAILER": "trailer",
-    "TYPE_TRAILER": "trailer", "TYPE_MOTORBIKE": "motorcycle", "TYPE_BICYCLE": "bicycle", "TYPE_BUS": "bus",
-    "TYPE_WHEELCHAIR": "pedestrian", "TYPE_STANDUP_SCOOTER": "bicycle",
-}  # fmt: skip
-_INDICATORS = {
-    "INDICATOR_STATE_OFF": "off",
-    "INDICATOR_STATE_LEFT": "left",
-    "INDICATOR_STATE_RIGHT": "right",
-    "INDICATOR_STATE_WARNING": "hazard",
-}
-_BRAKE_LIGHTS = {"BRAKE_LIGHT_STATE_OFF": "off", "BRAKE_LIGHT_STATE_NORMAL": "on", "BRAKE_LIGHT_STATE_STRONG": "strong"}
-_LAMPS = {
-    "GENERIC_LIGHT_STATE_OFF": OFF,
-    "GENERIC_LIGHT_STATE_ON": ON,
-    "GENERIC_LIGHT_STATE_OTHER": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_BLUE": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_BLUE_AND_RED": OTHER,
-    "GENERIC_LIGHT_STATE_FLASHING_AMBER": OTHER,
-}
-# one bulb each: bits of a traffic light's lit colours
-RED, AMBER, GREEN, FLASHING, UNKNOWN = 1, 2, 4, 8, 16
-_COLORS = {"COLOR_RED": RED, "COLOR_YELLOW": AMBER, "COLOR_GREEN": GREEN}
+# one bulb each: bits of a traffic light's lit colours; LIT stands for the bulb's colour
+RED, AMBER, GREEN, FLASHING, UNKNOWN, LIT = 1, 2, 4, 8, 16, 32
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
+INDICATOR_NAMES = {"OFF": "off", "LEFT": "left", "RIGHT": "right", "WARNING": "hazard"}
+BRAKE_LIGHT_NAMES = {"OFF": "off", "NORMAL": "on", "STRONG": "strong"}
+_KINDS = {"VEHICLE": "vehicle", "PEDESTRIAN": "pedestrian", "ANIMAL": "animal"}
+_VEHICLES = {
+    "SMALL_CAR": "car", "COMPACT_CAR": "car", "CAR": "car", "MEDIUM_CAR": "car", "LUXURY_CAR": "car",
+    "DELIVERY_VAN": "van", "HEAVY_TRUCK": "truck", "SEMITRACTOR": "truck", "SEMITRAILER": "trailer", "TRAILER": "trailer",
+    "MOTORBIKE": "motorcycle", "BICYCLE": "bicycle", "BUS": "bus", "WHEELCHAIR": "pedestrian", "STANDUP_SCOOTER": "bicycle",
+}  # fmt: skip
+_LAMPS = {"OFF": OFF, "ON": ON} | dict.fromkeys(
+    ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER"), OTHER
+)
 
 
-_MOVING = ("moving_object",)
-_VEHICLE = (*_MOVING, "vehicle_classification")
-_LIGHTS = (*_VEHICLE, "light_state")
-_TRAFFIC_LIGHT = ("traffic_light", "classification")
-_CODES: dict[str, tuple[tuple[str, ...], dict[str, int]]] = {
-    "kind": ((*_MOVING, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _KINDS.items()}),
-    "vehicle": ((*_VEHICLE, "type"), {name: ACTOR_CLASSES.index(word) for name, word in _VEHICLES.items()}),
-    "indicator": ((*_LIGHTS, "indicator_state"), {n: INDICATORS.index(w) for n, w in _INDICATORS.items()}),
-    "brake_light": ((*_LIGHTS, "brake_light_state"), {n: BRAKE_LIGHTS.index(w) for n, w in _BRAKE_LIGHTS.items()}),
-    "lamp": ((*_LIGHTS, "head_light"), _LAMPS),
-    "color": ((*_TRAFFIC_LIGHT, "color"), _COLORS),
-}
-"""Attribute -> the field of a ground truth that has its enumeration, and the codes of the names."""
+def _indexed(names: Mapping[str, str], words: tuple[str, ...]) -> dict[str, int]:
+    return {name: words.index(word) for name, word in names.items()}
 
 
-@dataclass(frozen=True)
+_VEHICLE = "moving_object.vehicle_classification"
+_CODES: dict[str, tuple[str, str, dict[str, int]]] = {
+    "kind": ("moving_object.type", "TYPE", _indexed(_KINDS, ACTOR_CLASSES)),
+    "vehicle": (f"{_VEHICLE}.type", "TYPE", _indexed(_VEHICLES, ACTOR_CLASSES)),
+    "indicator": (f"{_VEHICLE}.light_state.indicator_state", "INDICATOR_STATE", _indexed(INDICATOR_NAMES, INDICATORS)),
+    "brake_light": (
+        f"{_VEHICLE}.light_state.brake_light_state", "BRAKE_LIGHT_STATE", _indexed(BRAKE_LIGHT_NAMES, BRAKE_LIGHTS),
+    ),
+    "lamp": (f"{_VEHICLE}.light_state.head_light", "GENERIC_LIGHT_STATE", _LAMPS),
+    "color": ("traffic_light.classification.color", "COLOR", {"RED": RED, "YELLOW": AMBER, "GREEN": GREEN}),
+    "mode": (
+        "traffic_light.classification.mode", "MODE", {"OFF": 0, "FLASHING": FLASHING, "CONSTANT": LIT, "COUNTING": LIT},
+    ),
+}  # fmt: skip
+"""Attribute -> the field of a ground truth that has its enumeration, what its names begin with, and the codes of the names."""
+
+
 class EnumCodes:
-    """Number -> code by what is translated, for one schema (numbers beyond a table are unknown); `modes`: name -> number."""
+    """Number -> code by attribute, for one schema: -1 for UNKNOWN, OTHER and whatever else is not in `_CODES`."""
 
-    tables: dict[str, NDArray[np.int8]]
-    modes: dict[str, int]
+    def __init__(self, types: Types, truth: str) -> None:
+        """Build the tables from the enumerations of the ground-truth message `truth`."""
+        self._tables = {}
+        for attribute, (path, prefix, codes) in _CODES.items():
+            names = enum_names(types, truth, *path.split("."))
+            known = {f"{prefix}_{name}": code for name, code in codes.items()}
+            table = np.full(max(names, default=0) + 2, -1, np.int8)
+            for number, name in names.items():
+                if number >= 0:
+                    table[number] = known.get(name, -1)
+            self._tables[attribute] = table
 
-    def codes(self, what: str, numbers: pa.Array) -> NDArray[np.int8]:
+    def codes(self, attribute: str, numbers: pa.Array) -> NDArray[np.int8]:
         """Return the codes of numbers, -1 where they are unknown."""
-        table = self.tables[what]
+        table = self._tables[attribute]
         index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
         return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
-
-
-def build_enum_codes(types: Types, truth: str) -> EnumCodes:
-    """Build the tables from the enumerations of the ground-truth message `truth`."""
-    modes = enum_names(types, truth, *_TRAFFIC_LIGHT, "mode")
-    tables = {what: _table(enum_names(types, truth, *path), codes) for what, (path, codes) in _CODES.items()}
-    return EnumCodes(tables, {name: number for number, name in modes.items()})
-
-
-def _table(names: dict[int, str], codes: dict[str, int]) -> NDArray[np.int8]:
-    """Return an array number -> code, -1 for every name that is not among `codes` (UNKNOWN, OTHER, newer ones)."""
-    table = np.full(max(names, default=0) + 2, -1, np.int8)
-    for number, name in names.items():
-        if number >= 0:
-            table[number] = codes.get(name, -1)
-    return table
-
-
-def struct_field(parent: pa.Array, name: str) -> pa.Array:
-    """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
-    if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
-        return pc.struct_field(parent, [parent.type.get_field_index(name)])
-    return pa.nulls(len(parent))
 
 
 def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
@@ -130,37 +107,21 @@ def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.
     return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
-@dataclass(frozen=True)
-class Bulbs:
-    """Lit bulbs of traffic lights, one row per message and bulb: frame, the signal's id, bits of what it shows."""
+def bulbs_of(words: EnumCodes, truth: pa.Array, joined: Mapping[str, str]) -> pa.Table:
+    """Return the bulbs of traffic lights, one row per message and bulb: frame, the signal's id, the bit of what it shows.
 
-    frame: NDArray[np.intp]
-    signal_id: list[str]
-    bits: NDArray[np.int8]
-
-
-def bulbs_of(words: EnumCodes, lights: pa.Array, joined: Mapping[str, str]) -> Bulbs:
-    """Read the bulbs of `traffic_light` lists: each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names.
-
-    Of others each is its own.
+    Each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names. Of others each is its own.
     """
-    if not pa.types.is_list(lights.type):
-        return Bulbs(np.zeros(0, np.intp), [], np.zeros(0, np.int8))
-    bulbs = lights.flatten()
-    counts = pc.fill_null(pc.list_value_length(lights), 0).to_numpy(zero_copy_only=False)
+    bulbs, frame = list_items(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
-    mode = pc.fill_null(struct_field(seen, "mode").cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
-    color = words.codes("color", struct_field(seen, "color"))
-    lit = np.isin(mode, [words.modes.get(name, -2) for name in ("MODE_CONSTANT", "MODE_COUNTING")])
-    bits = np.full(len(bulbs), UNKNOWN, np.int8)
-    bits[mode == words.modes.get("MODE_OFF", -2)] = 0
-    bits[mode == words.modes.get("MODE_FLASHING", -2)] = FLASHING
-    bits[lit & (color > 0)] = color[lit & (color > 0)]
-    return Bulbs(np.repeat(np.arange(len(lights)), counts), _signal_ids(bulbs, joined), bits)
+    mode, color = (words.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
+    shown = np.where(mode == LIT, color, mode)
+    bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
+    return pa.table({"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, joined), pa.string()), "bits": bits})
 
 
 def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
-    own = pc.fill_null(struct_field(struct_field(bulbs, "id"), "value").cast(pa.uint64()), 0).to_pylist()
+    own = integers(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
     references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
     for number, sources in zip(own, references, strict=True):  # bulbs are few; actor states never come this way
@@ -171,24 +132,19 @@ def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
     return ids
 
 
-def signal_states(bulbs: Bulbs, t_ns: NDArray[np.int64]) -> pa.Table | None:
+def signal_states(bulbs: pa.Table, t_ns: NDArray[np.int64]) -> pa.Table | None:
     """Join the bulbs of each signal and frame into its state: `t_ns` is the time of each frame."""
-    if not len(bulbs.frame):
+    if not bulbs.num_rows:
         return None
-    encoded = pc.dictionary_encode(pa.array(bulbs.signal_id, pa.string()))
-    names, code = encoded.dictionary, encoded.indices.to_numpy().astype(np.int64)
-    key = bulbs.frame * len(names) + code
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) != 0])
-    bits = np.bitwise_or.reduceat(bulbs.bits[order], starts)
+    different = bulbs.group_by(["frame", "signal_id", "bits"]).aggregate([])
+    shown = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
     states = [
-        None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(int(value)) for value in range(32)
+        None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(value) for value in range(2 * UNKNOWN)
     ]
-    rows = order[starts]
     return pa.table(
         {
-            "signal_id": names.take(pa.array(code[rows])),
-            "t_ns": pa.array(t_ns[bulbs.frame[rows]]),
-            "state": pa.array(states, pa.string()).take(pa.array(bits)),
+            "signal_id": shown["signal_id"],
+            "t_ns": pa.array(t_ns[shown["frame"].to_numpy()]),
+            "state": pa.array(states, pa.string()).take(shown["bits_sum"]),
         }
     )

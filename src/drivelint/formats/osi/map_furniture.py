@@ -139,10 +139,6 @@ def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     said, base = sign.main_sign.classification, sign.main_sign.base
     if said.is_out_of_service:
         return []
-    lanes = road.assigned(said, base)
-    if not lanes:
-        message = f"traffic sign {sign.id.value} is assigned to no lane of the map: nobody knows for whom it holds"
-        quality.add("signal_without_lane", "warning", None, message)
     value = said.value.value if said.value.value > 0 else None
     row = {
         "signal_id": str(sign.id.value), "kind": kinds.SIGN_KINDS.get(said.type) or _code(said),
@@ -151,7 +147,7 @@ def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
         "unit": None if value is None else kinds.UNITS.get(said.value.value_unit),
         "dynamic": said.variability in kinds.VARIABLE_SIGN,
     }  # fmt: skip
-    return [_placed(row, lane, road.place(base)) for lane in lanes]
+    return _placed(f"traffic sign {sign.id.value}", row, road.assigned(said, base), road.place(base), quality)
 
 
 def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
@@ -167,9 +163,6 @@ def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
 
 def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) -> Iterable[Row]:
     lanes = _once([lane for bulb in bulbs for lane in road.assigned(bulb.classification, bulb.base)])
-    if not lanes:
-        message = f"traffic light {name} is assigned to no lane of the map: nobody knows for whom it holds"
-        quality.add("signal_without_lane", "warning", None, message)
     icons = {int(bulb.classification.icon) for bulb in bulbs}
     arrows = icons - {kinds.FULL_LIGHT_ICON}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
@@ -178,14 +171,19 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
         "country": "osi", "dynamic": True, "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
     place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
-    return [_placed(row, lane, place) for lane in lanes]
+    return _placed(f"traffic light {name}", row, lanes, place, quality)
 
 
-def _placed(row: Row, lane: BoundedLane, place: Floats | None) -> Row:
-    """Return the row of a signal for one lane; where it stands is the lane's end if the log does not say it."""
+def _placed(
+    what: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
+) -> Iterable[Row]:
+    """Return the rows of a signal for its lanes; where it stands is the lane's end if the log does not say it."""
+    if not lanes:
+        message = f"{what} is assigned to no lane of the map: nobody knows for whom it holds"
+        quality.add("signal_without_lane", "warning", None, message)
     if place is None:
-        return signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row)
-    return signal_row(lane, lane.line.station(place[:2]), place, **row)
+        return [signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row) for lane in lanes]
+    return [signal_row(lane, lane.line.station(place[:2]), place, **row) for lane in lanes]
 
 
 def _outline(mark: Any, road: _Road) -> Floats:

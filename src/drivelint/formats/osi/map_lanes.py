@@ -16,7 +16,7 @@ from drivelint.errors import MapError
 from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
-from drivelint.formats.osi import schema as osi_schema
+from drivelint.formats.osi.schema import message_class
 from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
 from drivelint.road.driving_side import choose_side
 from drivelint.road.quality import MapQuality
@@ -38,7 +38,7 @@ _SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
     quality = MapQuality()
-    truth = osi_schema.message_class("GroundTruth").FromString(source.content)
+    truth = message_class("GroundTruth").FromString(source.content)
     logical = osi_logical.read(truth, quality)
     physical = osi_physical.read(truth, quality)
     covers = _covers(logical, physical)
@@ -48,12 +48,12 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         quality.add("invalid_lane", "error", str(i), message)
         del alone[i]
     ways = osi_physical.intersection_lanes(truth, alone)
-    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, ways)]
+    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, [way for way, _ in ways])]
     lanes = build_lanes(bounded, request.offset, quality)
     if not any(lane.drivable for lane in lanes):
         raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
     heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
-    heights |= {way.lanelet_id: osi_physical.intersection_lane_heights(way.lanelet_id, alone) for way in ways}
+    heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
         lane.z = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option counts whatever the lanes say
@@ -77,7 +77,8 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
     for ref, drawn in physical.items():
         if ref in covers or not names:
             continue
-        points = _middles(drawn.centre)
+        s = stations(drawn.centre)
+        points = resampled(drawn.centre, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
         heights = [_height(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
         level = np.abs(points[over, 2] - heights)
@@ -85,12 +86,6 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
     return covers
-
-
-def _middles(line: Floats) -> Floats:
-    """Return the middles of 20 equal pieces of a line (n, 3)."""
-    s = stations(line)
-    return resampled(line, s, (np.arange(20) + 0.5) / 20 * s[-1])
 
 
 def _height(line: Floats, points: Floats) -> Floats:

@@ -37,11 +37,6 @@ class LogicalLane:
     along: int
 
     @property
-    def lane_id(self) -> int:
-        """Its id in the trace."""
-        return int(self.message.id.value)
-
-    @property
     def centre(self) -> Floats:
         """The middle between its bounds (n, 3)."""
         return (self.left + self.right) / 2
@@ -181,13 +176,14 @@ def _neighbour(
     }
     if not length:
         return None, None
-    other = lanes[min(length, key=lambda name: (-length[name], name))]
+    longest = min(length, key=lambda name: (-length[name], name))
+    other = lanes[longest]
     if lane.message.reference_line_id.value == other.message.reference_line_id.value:
         against = lane.along != other.along
     else:
         ways = [each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)]
         against = float(np.dot(*ways)) < 0
-    return str(other.lane_id), against or other.message.move_direction == kinds.BOTH
+    return str(longest), against or other.message.move_direction == kinds.BOTH
 
 
 def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, told: bool) -> Iterator[Mark]:

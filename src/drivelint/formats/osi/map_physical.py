@@ -29,6 +29,7 @@ _DRIVING, _NONDRIVING = 2, 3
 _CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole
 _DASH_GAP_M = 15.0  # a dashed boundary is drawn up to its last dash: the next one begins no further away than this
 _WAY_POINTS = 13
+_DIRECTION = "centerline_is_driving_direction"
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,9 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     Areas of intersections are not among them.
     """
     bounds = {b.id.value: b for b in truth.lane_boundary}
-    drops = _drops_false(truth.lane)
+    directions = [lane.classification for lane in truth.lane if lane.classification.HasField(_DIRECTION)]
+    # a writer of whose lanes some say true, and none false, leaves out what is false
+    drops = {said.centerline_is_driving_direction for said in directions} == {True}
     found: dict[int, PhysicalLane] = {}
     for lane in truth.lane:
         said = lane.classification
@@ -62,19 +65,9 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     return found
 
 
-def _drops_false(lanes: Iterable[Any]) -> bool:
-    """Say whether the log's writer leaves out what is false: some lane says true, none says false."""
-    said = {
-        lane.classification.centerline_is_driving_direction
-        for lane in lanes
-        if lane.classification.HasField("centerline_is_driving_direction")
-    }
-    return said == {True}
-
-
 def _ascending(said: Any, *, drops: bool) -> bool:
     """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
-    if said.HasField("centerline_is_driving_direction"):
+    if said.HasField(_DIRECTION):
         return bool(said.centerline_is_driving_direction)
     if drops:
         return False
@@ -188,9 +181,7 @@ def _whole(side: Floats, centre: Floats) -> Floats:
 
 def _nearest(points: Floats, to: Floats) -> Floats:
     """Return the one point (1, 2) nearest to another (1, 2), or none (0, 2)."""
-    if not len(points):
-        return points
-    return points[[int(np.argmin(np.hypot(*(points - to).T)))]]
+    return points[np.argsort(np.hypot(*(points - to).T), kind="stable")[:1]]
 
 
 def _kind(said: Any) -> tuple[str, bool]:
@@ -264,8 +255,8 @@ def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
     return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < MAX_LINK_GAP_M)
 
 
-def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[BoundedLane]:
-    """Return a lane through the intersection for each pair of lanes that it joins."""
+def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:
+    """Return a lane through the intersection for each pair of lanes that it joins, and the two points (2, 3) between which it rises."""
     found = []
     for area in truth.lane:
         if area.classification.type != kinds.INTERSECTION or area.id.value in plain:
@@ -275,14 +266,9 @@ def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[Bo
             way = _way(plain.get(into), plain.get(out))
             if way is not None:
                 name = f"{area.id.value}.{into}.{out}"
-                found.append(BoundedLane(name, *way, junction_id=f"j{area.id.value}", successors=(str(out),)))
+                lane = BoundedLane(name, *way, junction_id=f"j{area.id.value}", successors=(str(out),))
+                found.append((lane, np.vstack([plain[into].centre[-1], plain[out].centre[0]])))
     return found
-
-
-def intersection_lane_heights(name: str, plain: Mapping[int, PhysicalLane]) -> Floats:
-    """Return two points (2, 3) between which a way through an intersection rises or falls; `name`: its id in the map."""
-    _, into, out = name.split(".")
-    return np.vstack([plain[int(into)].centre[-1], plain[int(out)].centre[0]])
 
 
 def _way(a: PhysicalLane | None, b: PhysicalLane | None) -> tuple[Floats, Floats] | None:

@@ -1,43 +1,59 @@
-"""ASAM OSI ground truth in MCAP: the channel is known by its schema and encoding, never by its topic."""
+"""ASAM OSI ground truth in MCAP, where the channel is known by its schema and encoding, never by its topic, and in trace files.
+
+Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own.
+"""
 
 from __future__ import annotations
 
+import mmap
 from collections import Counter
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
+from mcap.records import Channel
 
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, message_batches
 from drivelint.formats.osi import metadata
-from drivelint.formats.osi.decode import (
-    FIELD_TREES,
-    GROUND_TRUTH,
-    SENSOR_VIEW,
-    Decoder,
-    FirstMessage,
-    read_first_message,
-)
-from drivelint.formats.osi.enum_codes import Bulbs, signal_states
-from drivelint.formats.protobuf import descriptors
+from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
+from drivelint.formats.osi.enum_codes import signal_states
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, reader_descriptor_set
+from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
-    from mcap.records import Channel
+    from mcap.records import Schema
     from numpy.typing import NDArray
 
-    from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.osi.decode import FrameBatch
+    from drivelint.formats.probe import Probe
 
-OPEN_DRIVE = "osi3.MapAsamOpenDrive"
+formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
+takes_mapping: Final = False
+_LENGTH = 4
+_FIRST_TAGS = frozenset({0x0A, 0x12, 0x1A})
+"""What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
 
 
-def read(path: Path, topic: str | None) -> Recording:
+def is_osi_trace(head: bytes, size: int) -> bool:
+    """Say whether a file of `size` bytes that begins with `head` can be an OSI trace: a length that fits, then a message."""
+    length = int.from_bytes(head[:_LENGTH], "little")
+    return 2 <= length <= size - _LENGTH and len(head) > _LENGTH and head[_LENGTH] in _FIRST_TAGS
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept by the first length and the message behind it."""
+    return not probe.path.is_dir() and is_osi_trace(probe.head, probe.path.stat().st_size)
+
+
+def read_mcap(path: Path, topic: str | None) -> Recording:
     """Read the ground truth of an MCAP file, and the OpenDRIVE beside it if there is one.
 
     Of several different OpenDRIVE maps none is taken. Errors: `TraceError` for a damaged file, no or several ground-truth
@@ -51,7 +67,7 @@ def read(path: Path, topic: str | None) -> Recording:
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
     lost: list[QualityFinding] = []
-    for kind, packets in message_batches(container, partial(_kind, container, truths, topic)):
+    for kind, packets in message_batches(container, partial(_kind, truths, topic)):
         if kind in FIELD_TREES:
             _check_topics(container, truths, topic)
             schema = container.schemas[packets[0].channel.schema_id]
@@ -71,23 +87,18 @@ def read(path: Path, topic: str | None) -> Recording:
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
-    recording = join_batches(batches, np.array(log_ns, np.uint64))
-    recording.findings += container.findings
+    recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
-    recording.embedded_map = own if maps else head.lanes
-    recording.findings += [*lost[:1], *several]
-    recording.geo_reference, recording.geo_offset = head.reference, head.geo_offset
-    recording.findings += () if maps else head.findings
+    if maps:
+        recording.embedded_map = own
+    recording.findings += [*container.findings, *lost[:1], *(several if maps else head.findings)]
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
 
 
-def _kind(container: Container, truths: list[str], topic: str | None, channel: Channel) -> str | None:
+def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema) -> str | None:
     """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None:
-        return None
     if schema.name == metadata.EVENT_MESSAGE and channel.message_encoding == "json":
         return schema.name
     if schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
@@ -101,14 +112,14 @@ def _kind(container: Container, truths: list[str], topic: str | None, channel: C
 
 def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the OpenDRIVE of a message, and why there is none."""
-    types = descriptors.parse(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
-    descriptor = descriptors.pruned(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
+    types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
+    decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
-        rows = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor).list_to_record_batch([packet.data])
+        content = decode([packet.data])
     except ValueError as error:
         text, why = None, f"cannot be decoded ({error})"
     else:
-        text, why = rows.column(0)[0].as_py() if rows.num_columns else None, "is empty"
+        text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
         message = (
             f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
@@ -137,8 +148,75 @@ def _nothing(container: Container) -> str:
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 
-def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recording:
-    """Join batches into one recording in the order of the file."""
+def read(probe: Probe) -> Recording:
+    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: which of the two, the first messages tell.
+
+    Errors: `TraceError` with the byte for a file that breaks off within a message (what is lost cannot be told), a message
+    that is neither kind, or messages without time stamps.
+    """
+    path = probe.path
+    channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
+    batches: list[FrameBatch] = []
+    decoder: Decoder | None = None
+    head = FirstMessage()
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        for packets in _batches(path, channel, content):
+            if decoder is None:
+                decoder, name = _decoder(path, packets)
+                head = read_first_message(packets[0].data, name)
+                decoder.lights = head.lights
+            batches.append(decoder.frames(packets))
+    n = sum(len(batch.t_ns) for batch in batches)
+    untimed = n - sum(int(batch.timed.sum()) for batch in batches)
+    if untimed:
+        raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
+    recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
+    recording.frame_times = None
+    unprotected = "the file has no checksums: damage inside a message may go unseen"
+    recording.findings += [*head.findings, QualityFinding("unprotected", "info", unprotected)]
+    return recording
+
+
+def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[Packet]]:
+    """Cut the file into messages, some tens of megabytes at a time. Errors: `TraceError` for a length past the end."""
+    waiting: list[Packet] = []
+    at = size = 0
+    while at < len(content):
+        length = int.from_bytes(content[at : at + _LENGTH], "little")
+        start = at + _LENGTH
+        if start > len(content) or start + length > len(content):
+            raise TraceError(
+                f"{path}: the message at byte {at} should have {length} bytes and the file ends "
+                f"{start + length - len(content)} bytes before that: copy or record it again"
+            )
+        waiting.append(Packet(channel, 0, content[start : start + length], at))
+        at = start + length
+        size += length
+        if size >= BATCH_BYTES:
+            yield waiting
+            waiting, size = [], 0
+    if waiting:
+        yield waiting
+
+
+def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
+    """Return the decoder of the kind of message in which objects with positions are found, and its name."""
+    for name in (GROUND_TRUTH, SENSOR_VIEW):
+        decoder = Decoder(path, 1, name, reader_descriptor_set())
+        try:
+            frames = decoder.frames(packets)
+        except TraceError:
+            continue
+        if len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any():
+            return decoder, name
+    raise TraceError(
+        f"{path}: no moving objects in the first {len(packets)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
+        "only these two kinds of OSI trace can be judged"
+    )
+
+
+def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns: NDArray[np.uint64]) -> Recording:
+    """Join batches into one recording of format `name`, in the order of the file, on the map that the first message has."""
     findings: list[QualityFinding] = []
     t_ns = _clock(batches, log_ns.astype(np.int64), findings)
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
@@ -153,23 +231,25 @@ def join_batches(batches: list[FrameBatch], log_ns: NDArray[np.uint64]) -> Recor
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
-    bulbs = Bulbs(
-        np.concatenate([batch.bulbs.frame + offset for batch, offset in zip(batches, offsets, strict=False)]),
-        [name for batch in batches for name in batch.bulbs.signal_id],
-        np.concatenate([batch.bulbs.bits for batch in batches]),
+    bulbs = pa.concat_tables(
+        batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
+        for batch, offset in zip(batches, offsets, strict=False)
     )
     nameless = sum(batch.nameless for batch in batches)
     if nameless:
         message = f"moving objects without an id: {nameless}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, nameless))
     return Recording(
-        "osi-mcap",
+        name,
         states,
         signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
+        embedded_map=head.lanes,
+        geo_reference=head.reference,
+        geo_offset=head.geo_offset,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, BinaryIO, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 import msgspec
 import numpy as np
@@ -84,21 +84,13 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
     times = np.unique(np.concatenate([t_ns, np.fromiter(lights, np.int64, len(lights))]))
     first = np.searchsorted(t_ns[order], times)
     last = np.append(first[1:], len(order))
-    actor, columns, codes = _columns(trace, numbers)
+    objects = _objects(trace, numbers)
     egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
     host = min(egos, key=str, default=None)
-    heights = not bool(np.isnan(columns["z_m"]).all())
     begin = 0
     while begin < len(times):
         end = max(int(np.searchsorted(last, first[begin] + BATCH_STATES, side="right")), begin + 1)
-        rows = order[first[begin] : last[end - 1]]
-        objects = Objects(
-            actor[rows],
-            {name: values[rows] for name, values in columns.items()},
-            {name: words[rows] for name, words in codes.items()},
-            heights,
-        )
-        data, starts = moving_objects(objects)
+        data, starts = moving_objects(objects.take(order[first[begin] : last[end - 1]]))
         content = data.tobytes()
         for k in range(begin, end):
             a, b = starts[first[k] - first[begin]], starts[last[k] - first[begin]]
@@ -107,10 +99,7 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
         begin = end
 
 
-def _columns(
-    trace: Trace, numbers: dict[str, int]
-) -> tuple[NDArray[np.uint64], dict[str, NDArray[np.float64]], dict[str, NDArray[np.int8]]]:
-    """Return each state's OSI id, its numbers and sizes (NaN: unknown) and its codes (-1: unknown)."""
+def _objects(trace: Trace, numbers: dict[str, int]) -> Objects:
     states, actors = trace.tables["actor_state"], trace.tables["actor"]
     row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
     ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
@@ -121,7 +110,7 @@ def _columns(
         "indicator": _codes(states["indicator"], INDICATORS),
         "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
     }
-    return ids[row], columns, codes
+    return Objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
 
 
 def _floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
@@ -136,13 +125,12 @@ def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> NDArray[np.int8]:
 def _lights(signals: pa.Table) -> dict[int, list[bytes]]:
     """Return time -> the traffic lights of that frame. Signals are few; actor states never come this way."""
     place = {name: 2 * k + 1 for k, name in enumerate(sorted(set(signals["signal_id"].to_pylist())))}
-    encoded: dict[tuple[str, Any], bytes] = {}
+    t_ns, *said = (signals[name].to_pylist() for name in ("t_ns", "signal_id", "state"))
+    shown = list(zip(*said, strict=True))
+    encoded = {(name, state): traffic_light(name, state, (place[name], place[name] + 1)) for name, state in set(shown)}
     frames: dict[int, list[bytes]] = {}
-    for row in signals.select(["t_ns", "signal_id", "state"]).to_pylist():
-        key = (row["signal_id"], row["state"])
-        if key not in encoded:
-            encoded[key] = traffic_light(*key, (place[key[0]], place[key[0]] + 1))
-        frames.setdefault(row["t_ns"], []).append(encoded[key])
+    for t, light in zip(t_ns, shown, strict=True):
+        frames.setdefault(t, []).append(encoded[light])
     return frames
 
 

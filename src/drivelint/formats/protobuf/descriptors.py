@@ -1,49 +1,95 @@
-"""A protobuf schema cut down to the fields that are read: the parser then skips all others, three times faster.
+"""Protobuf schemas, and messages to Arrow structs by a schema cut down to the fields that are read.
 
+The parser then skips all other fields, three times faster.
 The schema record of the log carries the descriptor set. Field numbers and types come from it, so any version of the
 messages is read that still has fields of these names.
 """
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import ptars
+import pyarrow as pa
+import pyarrow.compute as pc
 from google.protobuf import descriptor_pb2, descriptor_pool
 from google.protobuf.message import DecodeError
 
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Container, Iterable, Sequence
     from pathlib import Path
 
-    from google.protobuf.descriptor import Descriptor
+    from google.protobuf.descriptor_pb2 import DescriptorProto, EnumDescriptorProto, FileDescriptorProto
+    from numpy.typing import NDArray
+
+    from drivelint.formats.mcap.reader import Packet
+
+    Decode = Callable[[list[bytes]], pa.StructArray]
 
 FieldTree = dict[str, Any]
 """Field name -> subtree of a message field, or None for a value."""
 
 _FIELD = descriptor_pb2.FieldDescriptorProto
 PACKAGE = "pruned"
+_SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIELD.Type.items()}
+"""Type of a value as it is written in a schema -> its number."""
+
+
+@dataclass
+class Declarations:
+    """Messages and enumerations as a data file declares them: name -> the words of each field or value."""
+
+    messages: dict[str, list[list[str]]] = field(default_factory=dict)
+    enums: dict[str, list[list[str]]] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, file: Path, *parts: str) -> Declarations:
+        """Read the tables `messages` and `enums` of a TOML file, or those below some parts of it, together."""
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        declared = cls()
+        for table in [content[part] for part in parts] or [content]:
+            for known, more in ((declared.messages, table["messages"]), (declared.enums, table["enums"])):
+                for name, items in more.items():
+                    known.setdefault(name, []).extend(item.split() for item in items)
+        return declared
+
+
+def add_field(
+    message: DescriptorProto, said: Sequence[str], package: str, enums: Container[str]
+) -> descriptor_pb2.FieldDescriptorProto:
+    """Add a field to a message: `said` is its name, number and type, where `[]` repeats; types that are no values are of `package`."""
+    name, number, kind = said
+    plain = kind.removesuffix("[]")
+    added = message.field.add(name=name, number=int(number))
+    added.label = _FIELD.LABEL_REPEATED if kind != plain else _FIELD.LABEL_OPTIONAL
+    added.type = _SCALARS.get(plain, _FIELD.TYPE_ENUM if plain in enums else _FIELD.TYPE_MESSAGE)
+    if plain not in _SCALARS:
+        added.type_name = f".{package}.{plain}"
+    return added
 
 
 @dataclass
 class Types:
     """The messages and enumerations of a descriptor set by full name, with a leading dot as in type references."""
 
-    messages: dict[str, descriptor_pb2.DescriptorProto] = field(default_factory=dict)
-    enums: dict[str, descriptor_pb2.EnumDescriptorProto] = field(default_factory=dict)
+    messages: dict[str, DescriptorProto] = field(default_factory=dict)
+    enums: dict[str, EnumDescriptorProto] = field(default_factory=dict)
 
-    def add(self, scope: str, messages: Iterable[descriptor_pb2.DescriptorProto]) -> None:
-        """Add messages and, below them, what is nested."""
+    def add(self, scope: str, messages: Iterable[DescriptorProto], enums: Iterable[EnumDescriptorProto]) -> None:
+        """Add messages, enumerations and, below them, what is nested."""
+        self.enums.update({f"{scope}.{enum.name}": enum for enum in enums})
         for message in messages:
             name = f"{scope}.{message.name}"
             self.messages[name] = message
-            self.enums.update({f"{name}.{enum.name}": enum for enum in message.enum_type})
-            self.add(name, message.nested_type)
+            self.add(name, message.nested_type, message.enum_type)
 
 
-def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
+def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
     """Read the schema record of message `name`. Errors: `TraceError` when it does not describe that message."""
     types = Types()
     try:
@@ -52,8 +98,7 @@ def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
         raise TraceError(f"{path}: the schema {name} in the log is not a protobuf description ({error})") from error
     for file in files:
         scope = f".{file.package}" if file.package else ""
-        types.enums.update({f"{scope}.{enum.name}": enum for enum in file.enum_type})
-        types.add(scope, file.message_type)
+        types.add(scope, file.message_type, file.enum_type)
     if f".{name}" not in types.messages:
         raise TraceError(
             f"{path}: the schema {name} in the log does not describe {name}: record it with its descriptor set"
@@ -61,10 +106,10 @@ def parse(path: Path, name: str, descriptor_set: bytes) -> Types:
     return types
 
 
-def pruned(path: Path, types: Types, name: str, tree: FieldTree) -> Descriptor:
-    """Return message `name` with only those fields of `tree` that it has: same numbers and types, enums as int32.
+def message_decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Decode:
+    """Return a function that decodes messages `name`, one struct each, with those fields of `tree` that their schema has: enums as int32.
 
-    Errors: `TraceError` when the log's description contradicts itself.
+    Errors: `TraceError` when the log's schema contradicts itself. The function raises `ValueError`.
     """
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}.proto", package=PACKAGE, syntax="proto2")
     _add(file, types, f".{name}", tree, "Root")
@@ -75,10 +120,17 @@ def pruned(path: Path, types: Types, name: str, tree: FieldTree) -> Descriptor:
         raise TraceError(
             f"{path}: the schema {name} in the log contradicts itself ({error}): record it again"
         ) from error
-    return pool.FindMessageTypeByName(f"{PACKAGE}.Root")
+    descriptor = pool.FindMessageTypeByName(f"{PACKAGE}.Root")
+    handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
+
+    def decode(messages: list[bytes]) -> pa.StructArray:
+        rows = handler.list_to_record_batch(messages)
+        return pa.StructArray.from_arrays(rows.columns, fields=list(rows.schema))
+
+    return decode
 
 
-def _add(file: descriptor_pb2.FileDescriptorProto, types: Types, source: str, tree: FieldTree, name: str) -> None:
+def _add(file: FileDescriptorProto, types: Types, source: str, tree: FieldTree, name: str) -> None:
     message = file.message_type.add(name=name)
     known = {item.name: item for item in types.messages[source].field}
     for field_name, subtree in tree.items():
@@ -108,3 +160,36 @@ def enum_names(types: Types, name: str, *path: str) -> dict[int, str]:
             return {}
         source = next((item.type_name for item in types.messages[source].field if item.name == step), "")
     return {value.number: value.name for value in types.enums[source].value} if source in types.enums else {}
+
+
+def decoded(path: Path, packets: list[Packet], decode: Decode) -> pa.StructArray:
+    """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
+    try:
+        return decode([packet.data for packet in packets])
+    except ValueError as error:
+        if len(packets) == 1:
+            raise packets[0].error(path, str(error).splitlines()[0]) from error
+        for packet in packets:  # one of them spoilt the batch
+            decoded(path, [packet], decode)
+        raise TraceError(f"{path}: {len(packets)} messages cannot be decoded together: {error}") from error
+
+
+def struct_field(parent: pa.Array, name: str) -> pa.Array:
+    """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
+    if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
+        return pc.struct_field(parent, [parent.type.get_field_index(name)])
+    return pa.nulls(len(parent))
+
+
+def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
+    """Return the items of all lists called `name`, and the row that each is in."""
+    lists = struct_field(rows, name)
+    if not pa.types.is_list(lists.type):
+        return pa.nulls(0), np.zeros(0, np.int64)
+    return lists.flatten(), pc.list_parent_indices(lists).to_numpy(zero_copy_only=False)
+
+
+def integers(rows: pa.Array, name: str, kind: pa.DataType) -> NDArray[Any]:
+    """Return a field as integers, 0 where it is not there."""
+    values: NDArray[Any] = pc.fill_null(struct_field(rows, name).cast(kind), 0).to_numpy(zero_copy_only=False)
+    return values

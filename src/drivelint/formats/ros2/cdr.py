@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.errors import TraceError
 from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES
 
 if TYPE_CHECKING:
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.errors import TraceError
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
@@ -34,6 +34,9 @@ BYTE_ORDERS: Final = {0: ">", 1: "<"}
 MAX_KEPT_NUMBERS = 3
 """How many numbers of a sequence are kept: a box has three dimensions."""
 _MAX_ALIGN = 8
+_TEXT = "S1"
+_SIZES: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
+"""Type of a member that is no message -> its bytes; 0: not always the same."""
 
 
 @dataclass
@@ -64,18 +67,17 @@ class _Block:
 
 
 @dataclass(frozen=True)
-class _Text:
-    keep: str | None
-
-
-@dataclass(frozen=True)
 class _Numbers:
-    """A sequence of primitives of `size` bytes, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer."""
+    """A sequence of primitives, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer, or a text."""
 
     code: str
-    size: int
     per_item: int
     keep: str | None
+
+    @property
+    def size(self) -> int:
+        """Bytes of a primitive."""
+        return int(self.code[1])
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,7 @@ class _Compiler:
             else:
                 for _ in range(1 if member.count is None else member.count):
                     if member.kind in TEXT_TYPES:
-                        self._then(_Text(path if wanted and member.count is None else None))
+                        self._then(_Numbers(_TEXT, 1, path if wanted and member.count is None else None))
                     else:
                         self._members(member.kind, subtree if member.count is None else None, f"{path}.")
 
@@ -133,29 +135,24 @@ class _Compiler:
     def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, wanted: bool) -> None:
         keep = path if wanted else None
         if kind in NUMPY_CODES:
-            self._then(_Numbers(NUMPY_CODES[kind], int(NUMPY_CODES[kind][1]), 1, keep))
+            self._then(_Numbers(NUMPY_CODES[kind], 1, keep))
             return
-        if not wanted and (uniform := self._uniform(kind)) is not None:
-            self._then(_Numbers(*uniform, None))
-            return
-        if kind in TEXT_TYPES:
-            self._then(_Items(None, [_Text(None)]))
+        sizes = [] if wanted or kind in TEXT_TYPES else self._sizes(kind)
+        if 0 not in sizes and len(set(sizes)) == 1:
+            self._then(_Numbers(f"u{sizes[0]}", len(sizes), None))
+        elif kind in TEXT_TYPES:
+            self._then(_Items(None, [_Numbers(_TEXT, 1, None)]))
         else:
             self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
 
-    def _uniform(self, kind: str) -> tuple[str, int, int] | None:
-        """Return code, size and number of the primitives of a type that has nothing but primitives of one size."""
-        if kind in TEXT_TYPES or not all(
-            isinstance(s, _Align | _Block) for s in _Compiler(self._types).program(kind, None)
-        ):
-            return None
-        sizes = self._sizes(kind)
-        return (f"u{sizes[0]}", sizes[0], len(sizes)) if sizes and len(set(sizes)) == 1 else None
-
     def _sizes(self, kind: str) -> list[int]:
+        """Return the sizes of all primitives of a type, 0 for texts and sequences."""
         found: list[int] = []
         for member in self._types[kind]:
-            inner = [int(NUMPY_CODES[member.kind][1])] if member.kind in NUMPY_CODES else self._sizes(member.kind)
+            if member.count == SEQUENCE:
+                found.append(0)
+                continue
+            inner = [_SIZES[member.kind]] if member.kind in _SIZES else self._sizes(member.kind)
             found += inner * (1 if member.count is None else member.count)
         return found
 
@@ -193,13 +190,12 @@ class _Batch:
             header = packets[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
         padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
-        self._start = np.concatenate([[0], np.cumsum(padded)])[:-1]
+        self._start = np.cumsum(padded) - padded
         self._end = self._start + sizes
         bodies = [p.data[HEADER_BYTES:] + b"\0" * int(n) for p, n in zip(packets, padded - sizes, strict=True)]
-        buffer = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
-        self._bytes = buffer
+        self._bytes = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
         order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
-        self._views = {code: buffer.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
+        self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
         messages = np.arange(len(self._packets))
@@ -223,11 +219,6 @@ class _Batch:
                 cursor += step.size
             elif isinstance(step, _Align):
                 cursor += -cursor % step.to
-            elif isinstance(step, _Text):
-                length = self._length(cursor, end, message, 1)
-                if step.keep is not None:
-                    table.columns[step.keep] = self._texts(cursor, length)
-                cursor += length
             elif isinstance(step, _Numbers):
                 self._numbers(step, cursor, end, message, table)
             else:
@@ -239,7 +230,9 @@ class _Batch:
         cursor += np.where(length > 0, -cursor % step.size, 0)
         size = length * step.size * step.per_item
         self._check(cursor + size, end, message)
-        if step.keep is not None:
+        if step.keep is not None and step.code == _TEXT:
+            table.columns[step.keep] = self._texts(cursor, length)
+        elif step.keep is not None:
             first = np.full((len(cursor), MAX_KEPT_NUMBERS), np.nan)
             for k in range(MAX_KEPT_NUMBERS):
                 has = np.flatnonzero(length > k)
@@ -288,9 +281,7 @@ class _Batch:
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
     def _misfit(self, i: int, what: str) -> TraceError:
-        packet = self._packets[i]
-        where = f"topic {packet.channel.topic!r}, log time {packet.log_time_ns} ns, record at byte {packet.offset}"
-        return TraceError(f"{self._path}: {where}: the {self._name} {what}: record or copy the log again")
+        return self._packets[i].error(self._path, f"the {self._name} {what}")
 
 
 def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]) -> Table:

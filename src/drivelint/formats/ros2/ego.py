@@ -28,17 +28,14 @@ CONTROL_MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
 ENGAGE: Final = "autoware_vehicle_msgs/Engage"
 FIELD_TREES: Final[dict[str, FieldTree]] = {
     ODOMETRY: {
-        "header": HEADER,
-        "child_frame_id": None,
-        "pose": {"pose": POSE},
+        "header": HEADER, "child_frame_id": None, "pose": {"pose": POSE},
         "twist": {"twist": {"linear": XYZ, "angular": XYZ}},
     },
     TRANSFORMS: {
         "transforms": {
-            "header": HEADER,
-            "child_frame_id": None,
+            "header": HEADER, "child_frame_id": None,
             "transform": {"translation": XYZ, "rotation": {**XYZ, "w": None}},
-        }
+        },
     },
     EGO_INFO: {"id": None, "rolename": None},
     WORLD_INFO: {"map_name": None, "opendrive": None},
@@ -46,7 +43,7 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
     HAZARD_LIGHTS: {"stamp": STAMP, "report": None},
     CONTROL_MODE: {"stamp": STAMP, "mode": None},
     ENGAGE: {"stamp": STAMP, "engage": None},
-}
+}  # fmt: skip
 STALE_NS: Final = 1_000_000_000
 """A report of lights holds for no longer than this: vehicles report them ten times a second or more."""
 _AUTONOMOUS = 1
@@ -123,7 +120,7 @@ def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int6
 
 
 def _last(t_ns: NDArray[np.int64], reports: tuple[NDArray[np.int64], NDArray[Any]] | None) -> NDArray[np.int64]:
-    if reports is None or not len(reports[0]):
+    if reports is None:
         return np.full(len(t_ns), -1, np.int64)
     order = np.argsort(reports[0], kind="stable")
     times, values = reports[0][order], reports[1][order].astype(np.int64)
@@ -145,12 +142,6 @@ def engagement(reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]], ego: 
         return None
     order = np.argsort(t_ns, kind="stable")
     t_ns, on = t_ns[order], on[order]
-    changes = np.flatnonzero(np.r_[True, on[1:] != on[:-1]]) if len(on) else np.zeros(0, np.intp)
-    return pa.table(
-        {
-            "t_ns": pa.array(t_ns[changes], pa.int64()),
-            "actor_id": pa.array([ego] * len(changes), pa.string()),
-            "event": pa.array(["engaged"] * len(changes), pa.string()),
-            "value": pa.array(["on" if value else "off" for value in on[changes]], pa.string()),
-        }
-    )
+    changes = np.flatnonzero(np.r_[True, on[1:] != on[:-1]])
+    n, value = len(changes), np.where(on[changes], "on", "off")
+    return pa.table({"t_ns": t_ns[changes], "actor_id": [ego] * n, "event": ["engaged"] * n, "value": value})

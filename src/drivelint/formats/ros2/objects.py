@@ -6,7 +6,6 @@ ros-perception/vision_msgs (before and after its version 4).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -77,18 +76,6 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
     )
 
 
-@dataclass(frozen=True)
-class ObjectMessage:
-    """How one message type is read: its fields, the path of its list, and the function that makes rows of it.
-
-    `RecordedPoses.log_ns` is each row's message: whoever has the container's times puts them there.
-    """
-
-    tree: FieldTree
-    items: str
-    rows: Callable[[Table, Table], RecordedPoses]
-
-
 def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
     """Fill in what all kinds have alike: times and frames of the message, unless an item says its own frame, and poses."""
     stamp_ns, stamped = stamps(top, "header.stamp")
@@ -101,7 +88,8 @@ def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: 
     return recorded_poses(times, poses, log_ns=items.parent.astype(np.int64), ids=ids, frames=frames)
 
 
-def _derived(top: Table, items: Table) -> RecordedPoses:
+def _derived(top: Table) -> RecordedPoses:
+    items = top.children["objects"]
     rows = _rows(top, items, items.columns["id"], "header.frame_id", "pose")
     rows.velocity, rows.acceleration = vectors(items, "twist.linear"), vectors(items, "accel.linear")
     form, numbers = items.columns["shape.type"], items.columns["shape.dimensions"]
@@ -113,7 +101,8 @@ def _derived(top: Table, items: Table) -> RecordedPoses:
     return rows
 
 
-def _autoware(top: Table, items: Table) -> RecordedPoses:
+def _autoware(top: Table) -> RecordedPoses:
+    items = top.children["objects"]
     ids = np.ascontiguousarray(items.columns["object_id.uuid"]).view("V16").reshape(-1)
     pose, twist, accel = (f"kinematics.{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
     rows = _rows(top, items, ids, None, f"{pose}.pose")
@@ -128,7 +117,8 @@ def _autoware(top: Table, items: Table) -> RecordedPoses:
     return rows
 
 
-def _detections(top: Table, items: Table) -> RecordedPoses:
+def _detections(top: Table) -> RecordedPoses:
+    items = top.children["detections"]
     ids = items.columns.get("id", items.columns.get("tracking_id", np.zeros(items.n, "S1")))
     rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
     rows.size = vectors(items, "bbox.size")
@@ -158,54 +148,37 @@ def _looked_up(known: NDArray[np.int8], numbers: NDArray[Any]) -> NDArray[np.int
     return result
 
 
-OBJECT_MESSAGES: Final[dict[str, ObjectMessage]] = {
-    "derived_object_msgs/ObjectArray": ObjectMessage(
-        {
-            "header": HEADER,
-            "objects": {
-                "header": {"frame_id": None},
-                "id": None,
-                "pose": POSE,
-                "twist": {"linear": XYZ},
-                "accel": {"linear": XYZ},
-                "shape": {"type": None, "dimensions": None},
-                "classification": None,
-            },
-        },
-        "objects",
-        _derived,
-    ),
-    "autoware_perception_msgs/TrackedObjects": ObjectMessage(
-        {
-            "header": HEADER,
-            "objects": {
-                "object_id": {"uuid": None},
-                "classification": {"label": None, "probability": None},
-                "kinematics": {
-                    "pose_with_covariance": {"pose": POSE},
-                    "twist_with_covariance": {"twist": {"linear": XYZ}},
-                    "acceleration_with_covariance": {"accel": {"linear": XYZ}},
-                    "orientation_availability": None,
-                },
-                "shape": {"dimensions": XYZ},
-            },
-        },
-        "objects",
-        _autoware,
-    ),
-    "vision_msgs/Detection3DArray": ObjectMessage(
-        {
-            "header": HEADER,
-            "detections": {
-                "header": {"frame_id": None},
-                "results": {"hypothesis": _HYPOTHESIS, "id": None, "score": None},
-                "bbox": {"center": POSE, "size": XYZ},
-                "id": None,
-                "tracking_id": None,
-            },
-        },
-        "detections",
-        _detections,
-    ),
+OBJECT_ROWS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
+    "derived_object_msgs/ObjectArray": _derived,
+    "autoware_perception_msgs/TrackedObjects": _autoware,
+    "vision_msgs/Detection3DArray": _detections,
 }
-"""Message type -> how it is read."""
+"""Message type -> the function that makes rows of it; `log_ns` of each row is its message."""
+FIELD_TREES: Final[dict[str, FieldTree]] = {
+    "derived_object_msgs/ObjectArray": {
+        "header": HEADER,
+        "objects": {
+            "header": {"frame_id": None}, "id": None, "pose": POSE, "twist": {"linear": XYZ}, "accel": {"linear": XYZ},
+            "shape": {"type": None, "dimensions": None}, "classification": None,
+        },
+    },
+    "autoware_perception_msgs/TrackedObjects": {
+        "header": HEADER,
+        "objects": {
+            "object_id": {"uuid": None}, "classification": {"label": None, "probability": None},
+            "kinematics": {
+                "pose_with_covariance": {"pose": POSE}, "twist_with_covariance": {"twist": {"linear": XYZ}},
+                "acceleration_with_covariance": {"accel": {"linear": XYZ}}, "orientation_availability": None,
+            },
+            "shape": {"dimensions": XYZ},
+        },
+    },
+    "vision_msgs/Detection3DArray": {
+        "header": HEADER,
+        "detections": {
+            "header": {"frame_id": None}, "results": {"hypothesis": _HYPOTHESIS, "id": None, "score": None},
+            "bbox": {"center": POSE, "size": XYZ}, "id": None, "tracking_id": None,
+        },
+    },
+}  # fmt: skip
+"""Message type -> the fields that are read of it."""

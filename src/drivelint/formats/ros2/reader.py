@@ -16,20 +16,10 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
+from drivelint.formats.ros2 import objects as ros_objects
 from drivelint.formats.ros2 import types as ros_types
-from drivelint.formats.ros2.ego import (
-    CONTROL_MODE,
-    EGO_INFO,
-    ENGAGE,
-    FIELD_TREES,
-    HAZARD_LIGHTS,
-    ODOMETRY,
-    TRANSFORMS,
-    TURN_INDICATORS,
-    WORLD_INFO,
-)
 from drivelint.formats.ros2.merge import merge_ego
-from drivelint.formats.ros2.objects import OBJECT_MESSAGES, stamps
+from drivelint.formats.ros2.objects import OBJECT_ROWS, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
@@ -52,12 +42,11 @@ if TYPE_CHECKING:
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
-_REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
-_OLD = {
-    "autoware_auto_perception_msgs": "autoware_perception_msgs",
-    "autoware_auto_vehicle_msgs": "autoware_vehicle_msgs",
-}
-"""Packages whose messages have the same fields under an older name."""
+_REPORTS = {
+    ros_ego.TURN_INDICATORS: "report", ros_ego.HAZARD_LIGHTS: "report", ros_ego.CONTROL_MODE: "mode", ros_ego.ENGAGE: "engage",
+}  # fmt: skip
+"""Reports of the ego -> the field that says it."""
+_FIELD_TREES = ros_ego.FIELD_TREES | ros_objects.FIELD_TREES
 _CARLA = "carla_msgs/"
 
 
@@ -84,7 +73,7 @@ class _Log:
         for file in files:
             container = Container(file)
             decoders: dict[int, Decoder] = {}
-            for kind, packets in message_batches(container, partial(_kind, container, decoders)):
+            for kind, packets in message_batches(container, partial(_kind, file, decoders)):
                 channel = packets[0].channel
                 table = decoders[channel.schema_id].table(packets)
                 log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
@@ -95,11 +84,13 @@ class _Log:
             self.findings += container.findings
 
     def _part(self, kind: str, table: Table, log_ns: NDArray[np.int64]) -> Any:
-        if kind in OBJECT_MESSAGES:
-            return _objects(kind, table, log_ns)
-        if kind == ODOMETRY:
+        if kind == ros_ego.ODOMETRY:
             return ros_ego.odometry(table, log_ns, self._forward_m)
-        return table, log_ns
+        if kind not in OBJECT_ROWS:
+            return table, log_ns
+        rows = OBJECT_ROWS[kind](table)
+        rows.log_ns = log_ns[rows.log_ns]
+        return rows
 
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch of the messages of a kind, by topic."""
@@ -117,24 +108,15 @@ class _Log:
         return found[chosen[0]] if chosen else None
 
 
-def _objects(kind: str, table: Table, log_ns: NDArray[np.int64]) -> RecordedPoses:
-    items = table.children[OBJECT_MESSAGES[kind].items]
-    rows = OBJECT_MESSAGES[kind].rows(table, items)
-    rows.log_ns = log_ns[items.parent]
-    return rows
-
-
-def _kind(container: Container, decoders: dict[int, Decoder], channel: Channel) -> str | None:
+def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-    schema = container.schemas.get(channel.schema_id)
-    if schema is None or channel.message_encoding != "cdr":
+    if channel.message_encoding != "cdr":
         return None
-    package, _, rest = ros_types.short_type_name(schema.name).partition("/")
-    kind = f"{_OLD.get(package, package)}/{rest}"
-    if kind not in OBJECT_MESSAGES and kind not in FIELD_TREES:
+    kind = ros_types.message_kind(schema.name)
+    if kind not in _FIELD_TREES:
         return None
     if channel.schema_id not in decoders:
-        decoders[channel.schema_id] = _decoder(container.path, schema, kind)
+        decoders[channel.schema_id] = _decoder(path, schema, kind)
     return kind
 
 
@@ -146,8 +128,7 @@ def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
         )
     name = ros_types.short_type_name(schema.name)
     types = ros_types.parse(path, schema.name, schema.data)
-    tree = OBJECT_MESSAGES[kind].tree if kind in OBJECT_MESSAGES else FIELD_TREES[kind]
-    return cdr.Decoder(path, schema.name, types, name, tree)
+    return cdr.Decoder(path, schema.name, types, name, _FIELD_TREES[kind])
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
@@ -162,17 +143,18 @@ def read(path: Path, options: IngestOptions) -> Recording:
             raise TraceError(
                 f"{path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
             )
-    objects = log.one(OBJECT_MESSAGES, "road users", asked)
-    odometry = log.one([ODOMETRY], "odometry", asked)
+    objects = log.one(OBJECT_ROWS, "road users", asked)
+    odometry = log.one([ros_ego.ODOMETRY], "odometry", asked)
     parts = {source.topic: join_batches(source.parts) for source in (objects, odometry) if source is not None}
     if not sum(map(len, parts.values())):
         raise TraceError(
-            f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_MESSAGES))} are read"
+            f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
         )
     findings = log.findings
     own_times = choose_clock(parts, findings)
     frames = _frames(log, own_times=own_times)
-    _drop_nameless(parts, objects, findings)
+    if objects is not None:
+        parts[objects.topic] = _named(parts[objects.topic], objects.topic, findings)
     used = [sorted(distinct(parts[source.topic].frames)[0]) for source in (odometry, objects) if source]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
@@ -188,18 +170,22 @@ def read(path: Path, options: IngestOptions) -> Recording:
     )
     carla = objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla
     # the id of the ego that each topic of the CARLA bridge's ego info gives last
-    infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.columns["id"].tolist()}
+    infos = {
+        topic: str(number)
+        for topic, (table, _) in log.parts(ros_ego.EGO_INFO)
+        for number in table.columns["id"].tolist()
+    }
     recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
     reports = _reports(log, asked, own_times=own_times)
     for ego in recording.ego_ids[:1]:
-        mine = recording.states.actor == recording.states.ids.index(ego) if ego in recording.states.ids else None
-        if mine is not None and (TURN_INDICATORS in reports or HAZARD_LIGHTS in reports):
-            codes = np.full(len(recording.states), -1, np.int8)
-            codes[mine] = ros_ego.indicators(recording.states.t_ns[mine], reports)
-            recording.states.codes["indicator"] = codes
+        all_states = recording.states
+        if ego in all_states.ids and reports.keys() & {ros_ego.TURN_INDICATORS, ros_ego.HAZARD_LIGHTS}:
+            mine = all_states.actor == all_states.ids.index(ego)
+            all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
+            all_states.codes["indicator"][mine] = ros_ego.indicators(all_states.t_ns[mine], reports)
         recording.events = ros_ego.engagement(reports, ego)
     maps: dict[bytes, str] = {}
-    for topic, (table, _) in log.parts(WORLD_INFO):
+    for topic, (table, _) in log.parts(ros_ego.WORLD_INFO):
         for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
             maps.setdefault(text, topic)
     recording.embedded_map, trouble = single_map(maps)
@@ -211,26 +197,20 @@ def read(path: Path, options: IngestOptions) -> Recording:
 
 def _frames(log: _Log, *, own_times: bool) -> TransformTree:
     frames = TransformTree()
-    for topic, (table, log_ns) in log.parts(TRANSFORMS):
+    for topic, (table, log_ns) in log.parts(ros_ego.TRANSFORMS):
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     return frames
 
 
-def _drop_nameless(
-    parts: dict[str, RecordedPoses], objects: TopicMessages | None, findings: list[QualityFinding]
-) -> None:
-    if objects is None:
-        return
-    rows = parts[objects.topic]
-    if rows.ids.dtype.kind != "S":
-        return
-    nameless = rows.ids == b""
+def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> RecordedPoses:
+    nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
+    if not nameless.any():
+        return rows
     n = int(nameless.sum())
-    if n:
-        parts[objects.topic] = rows.take(~nameless)
-        message = f"{objects.topic}: objects without an id: {n}: they are not judged"
-        findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+    message = f"{topic}: objects without an id: {n}: they are not judged"
+    findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+    return rows.take(~nameless)
 
 
 def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[NDArray[np.int64], NDArray[Any]]]:

@@ -37,7 +37,8 @@ class RecordedPoses:
     `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
     `along`: velocity and acceleration are given along the actor's own axes, else along those of `frames`. `faces`: the
     front is known, not only the axis. `classes` index `ACTOR_CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
-    `at_ns`: when a frame that moves is looked up, if not at the pose's own time.
+    `at_ns`: when a frame that moves is looked up, if not at the pose's own time. Of a scene: `lifetime_ns` (0: for ever), `locked`:
+    the entity goes with its frame.
     """
 
     stamp_ns: NDArray[np.int64]
@@ -55,6 +56,8 @@ class RecordedPoses:
     acceleration: Vectors
     t_ns: NDArray[np.int64]
     at_ns: NDArray[np.int64] | None = None
+    lifetime_ns: NDArray[np.int64] | None = None
+    locked: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         return len(self.stamp_ns)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 NUMPY_CODES: Final = {
@@ -42,83 +43,94 @@ Types = dict[str, list[Field]]
 """Full name (`package/Name`) -> its members in order."""
 
 
+def message_kind(schema: str) -> str:
+    """Return the type of a schema's messages: of Autoware's older packages the newer one, which has the same fields."""
+    return short_type_name(schema).replace("autoware_auto_", "autoware_")
+
+
 def short_type_name(name: str) -> str:
     """Return `package/Name` of a schema that may be called `package/msg/Name`."""
     return name.replace("/msg/", "/")
 
 
+class _DefinitionError(ValueError):
+    """What is wrong with a definition; caught where the definition is named."""
+
+
 def parse(path: Path, name: str, text: bytes) -> Types:
     """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
-    types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
+    try:
+        return _parsed(short_type_name(name), text)
+    except _DefinitionError as error:
+        raise TraceError(f"{path}: the definition of {name} in the log {error}") from error
+
+
+def _parsed(name: str, text: bytes) -> Types:
     try:
         first, *others = _RULE.split(text.decode())
     except UnicodeDecodeError as error:
-        raise TraceError(
-            f"{path}: the definition of {name} in the log is not text ({error}): record it again"
-        ) from error
-    sections = [(short_type_name(name), first)]
+        raise _DefinitionError(f"is not text ({error}): record it again") from error
+    sections = [(name, first)]
     for section in others:
         title, _, body = section.lstrip().partition("\n")
         if not title.startswith("MSG:"):
-            raise _not_understood(path, name, title)
+            raise _not_understood(title)
         sections.append((short_type_name(title.removeprefix("MSG:").strip()), body))
     defined = {title for title, _ in sections}
+    types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
     for title, body in sections:
-        types[title] = [_resolved(field, title, defined, path, name) for field in _fields(path, name, body)]
-    _refuse_loops(path, name, types)
+        types[title] = [
+            Field(field.name, _resolved(field.kind, title, defined), field.count) for field in _fields(body)
+        ]
+    _refuse_loops(name, types)
     return types
 
 
-def _fields(path: Path, name: str, body: str) -> list[Field]:
-    fields = []
+def _fields(body: str) -> Iterator[Field]:
     for raw in body.splitlines():
         line = raw.split("#")[0].strip()
         if not line:
             continue
         match = _FIELD.match(line)
         if match is None:
-            raise _not_understood(path, name, line)
+            raise _not_understood(line)
         if match["rest"].lstrip().startswith("="):
             continue  # a constant
         count = None
         if match["array"]:
             bounded = match["count"] == "" or "<=" in match["array"]
             count = SEQUENCE if bounded else int(match["count"])
-        fields.append(Field(match["name"], match["type"], count))
-    return fields
+        yield Field(match["name"], match["type"], count)
 
 
-def _resolved(field: Field, container: str, defined: set[str], path: Path, name: str) -> Field:
-    """Give a member's type its full name: another package's, the same package's, or a primitive."""
-    kind = field.kind
+def _resolved(kind: str, container: str, defined: set[str]) -> str:
+    """Return the full name of a member's type: another package's, the same package's, or a primitive."""
     if kind in NUMPY_CODES or kind in TEXT_TYPES:
-        return field
+        return kind
     full = short_type_name(kind)
     if full == "Header":
         full = "std_msgs/Header"
     if "/" not in full and full not in _STAMPS:
         full = f"{container.split('/', maxsplit=1)[0]}/{full}"
     if full not in defined and full not in _STAMPS:
-        raise TraceError(
-            f"{path}: the definition of {name} in the log uses {kind}, which it does not describe: record it with its definitions"
-        )
-    return Field(field.name, full, field.count)
+        raise _DefinitionError(f"uses {kind}, which it does not describe: record it with its definitions")
+    return full
 
 
-def _refuse_loops(path: Path, name: str, types: Types) -> None:
+def _refuse_loops(name: str, types: Types) -> None:
     done: set[str] = set()
 
     def visit(kind: str, inside: tuple[str, ...]) -> None:
         if kind in inside:
-            raise TraceError(f"{path}: the definition of {name} in the log contains itself ({kind}): record it again")
+            raise _DefinitionError(f"contains itself ({kind}): record it again")
         if kind in done:
             return
         for field in types.get(kind, []):
             visit(field.kind, (*inside, kind))
         done.add(kind)
 
-    visit(short_type_name(name), ())
+    visit(name, ())
 
 
-def _not_understood(path: Path, name: str, line: str) -> TraceError:
-    return TraceError(f"{path}: the definition of {name} in the log has a line that is not understood: {line[:80]!r}")
+def _not_understood(line: str) -> _DefinitionError:
+    return _DefinitionError(f"has a line that is not understood: {line[:80]!r}")
