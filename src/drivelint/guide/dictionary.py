@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.report.catalogue_page import table
+from drivelint.report.text_templates import cell
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
@@ -157,11 +157,10 @@ def _about(name: str) -> str:
 
 
 def _columns(name: str) -> str:
-    rows = [
-        (f"`{column}`", escaped(_types()[name, column]), escaped(comment))
-        for column, comment in column_comments()[name].items()
-    ]
-    return table(("column", "type", "meaning"), rows)
+    lines = ["| column | type | meaning |", "|---|---|---|"]
+    for column, comment in column_comments()[name].items():
+        lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
+    return "\n".join(lines) + "\n"
 
 
 @cache
