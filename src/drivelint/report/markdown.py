@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
-from drivelint.report.html.anchors import finding_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.text import number, rule_name, seconds, subject, with_count
@@ -127,7 +127,7 @@ def _findings(result: Result, link: str) -> Iterator[str]:
 
 
 def _finding(row: Row, sense: str, start_ns: int | None, link: str) -> list[str]:
-    rule = f"[{code(rule_name(row))}]({_target(link)}#{finding_anchor(row)})"
+    rule = f"[{code(rule_name(row))}]({_target(link)}#{anchor('finding', row['finding_id'])})"
     measured = [escaped(number(row["observed"], row["unit"])), escaped(number(row["required"], row["unit"]))]
     if sense in {">", ">=", "<", "<="} and row["required"] is not None:
         measured[1] = f"{escaped(sense)} {measured[1]}"
@@ -164,7 +164,7 @@ def _entries(diff: Difference, titles: dict[str, str], gate: Gate | None, link: 
         for entry in entries[:MAX_ROWS]:
             waived = " (waived)" if gate is not None and entry.finding_id in gate.waived else ""
             here = link is not None and standing == "changed"
-            there = f" [see]({_target(link or '')}#{finding_anchor({'finding_id': entry.finding_id})})" if here else ""
+            there = f" [see]({_target(link or '')}#{anchor('finding', entry.finding_id)})" if here else ""
             lines.append(f"* {escaped(_short(descriptions.finding_line(entry)))}{waived}{there}")
         heading, body = title + _shown(len(entries)), "\n".join(lines)
         yield f"### {heading}\n\n{body}" if standing in {"new", "unknown", "lost"} else _folded(heading, body)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import statistics
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.anchors import overtake_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.svg import Axis, num, percent
-from drivelint.result.text import non_breaking, number, seconds
+from drivelint.result.text import measure, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -71,7 +71,7 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any
     )
     return {
         "row": row,
-        "anchor": overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
+        "anchor": anchor("overtake", row["drive_id"], row["ego_id"], row["occurrence"]),
         "time": seconds(row["t0_ns"], start_ns),
         "ov_id": row["ov_id"] or "nobody seen",
         "status": _STATUS.get(row["status"]) or row["status"],
@@ -108,10 +108,10 @@ def _cell(p: Row) -> dict[str, Any]:
     """Return what one profile says of an overtake."""
     spare = "-"
     if p["spare_m"] is not None:
-        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {non_breaking(number(abs(p['spare_m']), 'm'))}"
+        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {measure(abs(p['spare_m']), 'm')}"
     return {
         "verdict": "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass",
-        "sda": non_breaking(number(p["sda_m"], "m")),
+        "sda": measure(p["sda_m"], "m"),
         "spare": spare,
         "zone": p["zone"],
         "reason": p["reason"] or "",
@@ -156,7 +156,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
 def _depth(metres: float | None) -> str:
     if metres is None:
         return ""
-    return f"{'inside' if metres >= 0 else 'clear'} by {non_breaking(number(abs(metres), 'm'))}"
+    return f"{'inside' if metres >= 0 else 'clear'} by {measure(abs(metres), 'm')}"
 
 
 def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.report.html import overview
-from drivelint.report.html.anchors import drive_anchor, rule_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.glossary import glossary_entries
 from drivelint.report.html.incidents import finding_line, incidents, incidents_in_summary, plan_views
@@ -128,7 +128,7 @@ def content(result: Result) -> dict[str, Any]:
         "drives": [
             {
                 **row,
-                "href": "#" + drive_anchor(row["drive_id"]) if row["drive_id"] in shown else "",
+                "href": "#" + anchor("drive", row["drive_id"]) if row["drive_id"] in shown else "",
                 "verdicts": told[row["drive_id"]],
                 "near": sum(line.kind == "near" for line in listed.get(row["drive_id"], [])),
                 "warnings": sum(check["severity"] != "info" for check in row["quality"]),
@@ -140,7 +140,7 @@ def content(result: Result) -> dict[str, Any]:
         "brief": len(drives) > MAX_DETAILED_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
-        "replays_of": {drive_anchor(drive_id): text for drive_id, text in tracks.items()},
+        "replays_of": {anchor("drive", drive_id): text for drive_id, text in tracks.items()},
         "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
@@ -256,7 +256,7 @@ def _section(
     missing = grouped(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
-        "anchor": drive_anchor(row["drive_id"]),
+        "anchor": anchor("drive", row["drive_id"]),
         "folded": folded,
         "parties": involved,
         "missing": [
@@ -278,7 +278,7 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     return [
         {
             **rule,
-            "anchor": rule_anchor(rule_id),
+            "anchor": anchor("rule", rule_id),
             "verdicts": told[rule_id],
             "worst": number(margins.get(rule_id), rule["unit"]),
         }
