@@ -10,10 +10,9 @@ import pyarrow.compute as pc
 from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
-from drivelint.report.html.glossary import glossary_entries
+from drivelint.report.html.explanations import glossary_entries, notes_on_logs
 from drivelint.report.html.incidents import finding_line, incidents, incidents_in_summary, plan_views
 from drivelint.report.html.involved_actors import involved_actors
-from drivelint.report.html.log_notes import notes_on_logs
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.overtakes import overtake_views
 from drivelint.report.html.overtaking_opportunities import overtaking_opportunities
