@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.report.text_templates import cell
 from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.text_templates import cell
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
 from drivelint.sql.store import column_comments, lifetimes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from markdown_it import MarkdownIt
 
-from drivelint.report.text_templates import text_template
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

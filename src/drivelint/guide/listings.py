@@ -6,8 +6,8 @@ import re
 
 from drivelint.catalogue import load_rules
 from drivelint.reasons.reason_text import shared_texts
-from drivelint.report.text_templates import cell, text_template
 from drivelint.resources import folder
+from drivelint.result.text_templates import cell, text_template
 
 _MACRO = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\([^)]*\))", re.MULTILINE)
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
 from drivelint.guide import dictionary, html
-from drivelint.report.text_templates import cell, text_template
 from drivelint.result.files import publish
+from drivelint.result.text_templates import cell, text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

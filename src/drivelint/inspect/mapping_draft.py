@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
-from drivelint.report.text_templates import text_template
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

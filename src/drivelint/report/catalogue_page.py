@@ -14,8 +14,8 @@ import msgspec
 
 from drivelint.errors import RuleError
 from drivelint.report import vocabulary
-from drivelint.report.text_templates import cell, text_template
 from drivelint.result.counts import grouped
+from drivelint.result.text_templates import cell, text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

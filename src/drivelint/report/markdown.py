@@ -12,10 +12,10 @@ import pyarrow.compute as pc
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import anchor
-from drivelint.report.text_templates import text_template
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.text import number, rule_name, seconds, subject, with_count
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
