@@ -8,14 +8,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
+from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
-from drivelint.report import vocabulary
 from drivelint.result.counts import grouped
 from drivelint.result.text_templates import cell, text_template
+from drivelint.road.signcodes import codes_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -23,6 +28,8 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
+_MANY = 8  # rules; more are counted
+_COMMENT = re.compile(r"--.*")
 _CITED = re.compile(r"\b(?:R|H)\d+")
 _NUMBER = re.compile(r"(H?)(\d+)(?:-(\d+))?")
 
@@ -104,11 +111,51 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
         packs=packs,
         clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
         applies=_applies,
-        column_values=vocabulary.COLUMN_VALUES,
-        conditions=vocabulary.condition_table(rules),
-        events=vocabulary.event_table(rules),
-        map_features=vocabulary.map_feature_table(rules),
+        asking=lambda asked, reads: _asking(rules, asked, reads),
+        column_values={
+            "actor_class": ACTOR_CLASSES,
+            "indicator": INDICATORS,
+            "brake_light": BRAKE_LIGHTS,
+            "state of a signal": SIGNAL_STATES,
+        },
+        condition_values=DRIVE_CONDITION_VALUES,
+        condition_texts=CONDITION_TEXTS,
+        events=EVENTS,
+        on_off_events=ON_OFF_EVENTS,
+        map_features=map_features()["feature"],
+        signs={kind: _sign(kind, part) for kind, part in map_features()["name_parts"].items()},
     )
+
+
+@cache
+def map_features() -> dict[str, Any]:
+    """Return what stands in `map_features.toml`: `name_parts` of signals, and each `feature`."""
+    return tomllib.loads((files(__package__) / "map_features.toml").read_text(encoding="utf-8"))
+
+
+def _sign(kind: str, name_part: str) -> str:
+    """Return how a signal of this kind is recognised."""
+    codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
+    return f"`signal` {codes}; or {name_part} in its name"
+
+
+def _asking(rules: Iterable[Rule], asked: Sequence[str], reads: Sequence[str]) -> str:
+    """Return the ids of the rules, or how many there are, that require or are restricted by one of `asked`, or name one in their SQL.
+
+    The latter only of rules that read one of the tables `reads`, if any are given.
+    """
+    named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in asked))
+    ids = [
+        f"`{rule.id}`"
+        for rule in rules
+        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(asked)
+        or ((not reads or not {*rule.reads}.isdisjoint(reads)) and named.search(_sql_without_comments(rule)))
+    ]
+    return f"{len(ids)} rules" if len(ids) > _MANY else ", ".join(ids) or "no rule yet"
+
+
+def _sql_without_comments(rule: Rule) -> str:
+    return _COMMENT.sub("", "\n".join(rule.sections.values()))
 
 
 def _applies(rule: Rule) -> str:
