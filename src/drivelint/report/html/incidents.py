@@ -45,28 +45,6 @@ class FindingLine(NamedTuple):
     standing: BaselineStatus | None
 
 
-class Incident(NamedTuple):
-    """The findings and near misses of one ego at one time, with their plan view, if there is one.
-
-    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened; `map_href`: the place
-    on a map of the world, empty where it is not known.
-    """
-
-    anchor: str
-    time: str
-    t: int
-    keys: str
-    leading: bool
-    ego_id: str
-    objects: list[str]
-    kind: str
-    severity: str
-    titles: list[str]
-    plan: dict[str, Any] | None
-    map_href: str
-    cards: list[tuple[Row, list[FindingLine]]]
-
-
 def finding_line(
     row: Row,
     kind: str,
@@ -125,11 +103,16 @@ def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
 
 def incidents(
     lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, leading: Collection[Key]
-) -> list[Incident]:
-    """Return the moments of one drive, in time order, from its findings and near misses; `leading`: those that lead."""
+) -> list[dict[str, Any]]:
+    """Return the moments of one drive, in time order, from its findings and near misses.
+
+    Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
+    of a second since the drive's start; `leading`: it is among those that tell what happened, which are given; `map_href`: the place on
+    a map of the world, empty where it is not known.
+    """
     groups = grouped(lines, lambda line: incident_key(line.row))
     return [
-        _moment(at, found, pictures.get(at), start_ns, leads=at in leading)
+        _moment(at, found, start_ns) | {"plan": pictures.get(at), "leading": at in leading}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
@@ -150,27 +133,23 @@ def _objects(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(
-    at: Key, found: Sequence[FindingLine], picture: dict[str, Any] | None, start_ns: int, *, leads: bool
-) -> Incident:
+def _moment(at: Key, found: Sequence[FindingLine], start_ns: int) -> dict[str, Any]:
     failed = [line for line in found if line.kind == "fail"]
     gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = grouped(found, lambda line: line.row["rule_id"])
-    return Incident(
-        anchor=anchor("moment", *at),
-        time=found[0].time,
-        t=centiseconds(at[2], start_ns),
-        keys=" ".join(sorted({name for line in found for name in line.keys.split()})),
-        leading=leads,
-        ego_id=at[1],
-        objects=sorted(_objects(found)),
-        kind="fail" if failed else "near",
-        severity=gravest[0].row["severity"],
-        titles=list(dict.fromkeys(line.rule["title"] for line in gravest)),
-        plan=picture,
-        map_href=next(filter(None, map(_map_href, failed)), ""),
-        cards=[(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
-    )
+    return {
+        "anchor": anchor("moment", *at),
+        "time": found[0].time,
+        "t": centiseconds(at[2], start_ns),
+        "keys": " ".join(sorted({name for line in found for name in line.keys.split()})),
+        "ego_id": at[1],
+        "objects": sorted(_objects(found)),
+        "kind": "fail" if failed else "near",
+        "severity": gravest[0].row["severity"],
+        "titles": list(dict.fromkeys(line.rule["title"] for line in gravest)),
+        "map_href": next(filter(None, map(_map_href, failed)), ""),
+        "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
+    }
 
 
 def _map_href(line: FindingLine) -> str:

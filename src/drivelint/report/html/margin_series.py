@@ -30,23 +30,20 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
-    steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
+    steps = [
+        {
+            "time": f"{(t[i] - start_ns) / 1e9:.2f}",
+            **{name: row[name][i] for name in ("observed", "required", "margin", "holds")},
+            "worst": i == worst,
+        }
+        for i in range(first, min(first + _ROWS, len(t)))
+    ]
     measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
     return {
         "chart": _chart(row, worst, unit, start_ns) if measured else None,
         "unit": unit or "",
         "steps": steps,
         "n_steps": len(t),
-    }
-
-
-def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> dict[str, Any]:
-    """Return one judged step in words."""
-    return {
-        "time": f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}",
-        **{name: number(row[name][i]) for name in ("observed", "required", "margin")},
-        "kept": {True: "yes", False: "no", None: "unknown"}[row["holds"][i]],
-        "worst": worst,
     }
 
 

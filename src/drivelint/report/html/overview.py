@@ -136,7 +136,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
             "file_name": section["file_name"],
             "who": who[:_STORY_PARTIES],
             "n_more": len(who[_STORY_PARTIES:]),
-            "moments": [moment for moment in section["moments"] if moment.leading],
+            "moments": [moment for moment in section["moments"] if moment["leading"]],
         }
         told += [summary] if summary["moments"] else []
     return told
@@ -147,6 +147,8 @@ def first_page_texts(
 ) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
-    leading = [line for story in told for moment in story["moments"] for _, lines_ in moment.cards for line in lines_]
+    leading = [
+        line for story in told for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_
+    ]
     profiles = {line.row["profile"] or "" for line in lines}
     return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

@@ -35,7 +35,7 @@ from drivelint.result.text import number
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Incident, Key
+    from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.report.html.timeline import Timeline
     from drivelint.result.model import Result
     from drivelint.result.text import Row
@@ -96,7 +96,6 @@ def content(result: Result) -> dict[str, Any]:
     ]
     totals = counts.total(result.verdicts)
     broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
-    tracks = replays([scenes[at] for at in drawn], spaces, starts, road)
     return {
         "outcome": exit_status(result),
         "headline": overview.headline(result),
@@ -121,8 +120,6 @@ def content(result: Result) -> dict[str, Any]:
         "filters": _filters(lines, rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
         "open": reason_groups(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
-        "km": sum(row["km"] for row in drives),
-        "n_egos": sum(row["n_egos"] for row in drives),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [
             {
@@ -139,7 +136,7 @@ def content(result: Result) -> dict[str, Any]:
         "brief": len(drives) > MAX_DETAILED_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
-        "replays_of": {anchor("drive", drive_id): text for drive_id, text in tracks.items()},
+        "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
         "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
@@ -241,7 +238,7 @@ def _clock(row: Row) -> TimeAxis:
 def _section(
     row: Row,
     tracks: Sequence[Timeline],
-    seen: Sequence[Incident],
+    seen: Sequence[Row],
     involved: Sequence[dict[str, Any]],
     *,
     unfolded: bool,
@@ -249,13 +246,12 @@ def _section(
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = separate_shared_rules(tracks)
-    without = sorted({m.ego_id for m in seen} - {t.ego_id for t in tracks})
+    without = sorted({m["ego_id"] for m in seen} - {t.ego_id for t in tracks})
     tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
-    egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
+    egos = [{"timeline": t, "moments": [m for m in seen if m["ego_id"] == t.ego_id]} for t in tracks]
     missing = grouped(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
-        "anchor": anchor("drive", row["drive_id"]),
         "folded": folded,
         "parties": involved,
         "missing": [
@@ -277,7 +273,6 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     return [
         {
             **rule,
-            "anchor": anchor("rule", rule_id),
             "verdicts": told[rule_id],
             "worst": number(margins.get(rule_id), rule["unit"]),
         }
