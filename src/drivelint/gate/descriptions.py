@@ -64,8 +64,7 @@ def difference_text(
     difference: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None
 ) -> str:
     """Return a difference as text for a person."""
-    filters: dict[str, Any] = {"finding_line": finding_line, "plural": plural}
-    text = text_template(__file__, "difference.txt.j2", **filters).render(
+    text = text_template(__file__, "difference.txt.j2", finding_line=finding_line).render(
         diff=difference,
         verdicts=counts.VERDICTS,
         headline=headline(difference),

@@ -73,7 +73,11 @@ def _drive(
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
-            entries.append(_entry("changed", now, was, has, LookupResult("fail", f"a part of {was.id}, which was one")))
+            entries.append(
+                _entry(
+                    "changed", now, was, has, LookupResult("fail", f"a part of {was.row['finding_id']}, which was one")
+                )
+            )
         else:
             said = had.verdict_at(base_id, now, same_log=same_log)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
@@ -82,7 +86,13 @@ def _drive(
         wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
         if wholes:
             gone.append(
-                _entry("changed", ours[wholes[0]], was, has, LookupResult("fail", f"{was.id} is a part of it now"))
+                _entry(
+                    "changed",
+                    ours[wholes[0]],
+                    was,
+                    has,
+                    LookupResult("fail", f"{was.row['finding_id']} is a part of it now"),
+                )
             )
         else:
             said = _noting_rule(has.verdict_at(drive_id, was, same_log=same_log), was, had, has)
@@ -133,7 +143,7 @@ def _entry(
     return ComparedFinding(
         standing=standing,
         **{name: at.row[name] for name in same},
-        base_id=None if was is None else was.id,
+        base_id=None if was is None else was.row["finding_id"],
         stable=lookup.is_stable(at.row["rule_id"]),
         t_s=round(at.worst, 3),
         base_margin=None if was is None else was.row["margin"],

@@ -9,7 +9,7 @@ from drivelint import __version__, guide
 from drivelint.errors import UsageError
 from drivelint.guide import dictionary, html
 from drivelint.result.files import publish
-from drivelint.result.text_templates import cell, text_template
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -59,8 +59,8 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
     pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
-    pages["commands"] = text_template(__file__, "commands.md.j2", shown=_shown, cell=cell).render(commands=commands)
-    index = text_template(__file__, "index.md.j2", cell=cell)
+    pages["commands"] = text_template(__file__, "commands.md.j2", shown=_shown).render(commands=commands)
+    index = text_template(__file__, "index.md.j2")
     pages["index"] = index.render(topics=guide.topics(), reference=REFERENCE_PAGES)
     navigation = [
         ("Guides", [(topic.name, topic.title) for topic in guide.topics()]),

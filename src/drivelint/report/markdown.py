@@ -14,7 +14,6 @@ from drivelint.phrases import plural
 from drivelint.report.html.anchors import anchor
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import number, rule_name, seconds, subject, with_count
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
@@ -82,13 +81,7 @@ def _parts(template: str, **values: Any) -> list[str]:
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,
         "headline": descriptions.headline,
-        "number": number,
-        "plural": plural,
-        "rule_name": rule_name,
-        "seconds": seconds,
         "short": _short,
-        "subject": subject,
-        "with_count": with_count,
     }
     text = text_template(__file__, template, **filters).render(
         most=MAX_ROWS, end_part=_END_PART, anchor=anchor, **values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import rich.progress
 
 
-class Progress(Protocol):
-    """Listener of the pipeline: progress and diagnostics, never results."""
+class Progress:
+    """Listener of the pipeline: progress and diagnostics, never results. This one ignores what it is told."""
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage of `total` units of work (None: not known)."""
@@ -25,17 +25,8 @@ class Progress(Protocol):
         """Print a line for a person who waits."""
 
 
-class Silent:
+class Silent(Progress):
     """A `Progress` that nobody listens to."""
-
-    def stage(self, name: str, total: int | None = None) -> None:
-        """Ignore the stage."""
-
-    def advance(self, n: int = 1) -> None:
-        """Ignore the work done."""
-
-    def note(self, text: str) -> None:
-        """Ignore the note."""
 
 
 class NotePrinter(Silent):
@@ -46,7 +37,7 @@ class NotePrinter(Silent):
         print(f"drivelint: {text}", file=sys.stderr, flush=True)
 
 
-class Bar:
+class Bar(Progress):
     """A `Progress` drawn with rich."""
 
     def __init__(self, progress: rich.progress.Progress) -> None:

@@ -1,11 +1,17 @@
-"""The Jinja templates of what is text, not HTML: they lie beside the modules that fill them in."""
+"""The Jinja templates of what is text, not HTML: they lie beside the modules that fill them in.
+
+They have the phrases of `drivelint.result.text` as filters.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from drivelint.phrases import plural
+from drivelint.result.text import number, rule_name, seconds, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +22,7 @@ if TYPE_CHECKING:
 def text_template(
     module_file: str, name: str, finalize: Callable[[Any], Any] | None = None, **filters: Callable[..., Any]
 ) -> Template:
-    """Return the template `name` beside a module (its `__file__`), with these filters; nothing that it shows is escaped.
+    """Return the template `name` beside a module (its `__file__`), with these filters more; nothing that it shows is escaped.
 
     `finalize`: what is done to each value that is filled in.
     """
@@ -28,10 +34,21 @@ def text_template(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= filters
+    environment.filters |= _FILTERS | filters
     return environment.get_template(name)
 
 
 def cell(value: Any) -> Any:
     """Return what may stand in a cell of a table in Markdown, on one line; what is no text is returned as it is."""
     return value.replace("|", "\\|").replace("\n", " ") if isinstance(value, str) else value
+
+
+_FILTERS: Final[dict[str, Callable[..., Any]]] = {
+    "cell": cell,
+    "number": number,
+    "plural": plural,
+    "rule_name": rule_name,
+    "seconds": seconds,
+    "subject": subject,
+    "with_count": with_count,
+}

@@ -214,7 +214,7 @@ def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, s
 
 def _near(row: Row, clock: TimeAxis) -> dict[str, str]:
     at = clock.at(row["t_worst_ns"])
-    return {"kind": "near", **_extent(at, at), "href": "", "title": f"near miss, {_title(row, clock)}"}
+    return {"kind": "near", **_extent(at, at), "title": f"near miss, {_title(row, clock)}"}
 
 
 def _extent(start: float, end: float) -> dict[str, str]:
