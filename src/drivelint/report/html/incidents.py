@@ -12,7 +12,7 @@ from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import measure, non_breaking, number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
     from drivelint.report.html.road import Road
@@ -91,7 +91,7 @@ def incident_key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
+def _in_summary(lines: Iterable[FindingLine]) -> set[Key]:
     """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
     first: dict[str, tuple[int, float, Key]] = {}
     for row in (line.row for line in lines if line.kind == "fail"):
@@ -102,15 +102,15 @@ def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
 
 
 def incidents(
-    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, leading: Collection[Key]
+    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int
 ) -> list[dict[str, Any]]:
     """Return the moments of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
-    of a second since the drive's start; `leading`: it is among those that tell what happened, which are given; `map_href`: the place on
-    a map of the world, empty where it is not known.
+    of a second since the drive's start; `leading`: it is among those that tell what happened; `on_earth`: a finding
+    whose longitude and latitude are known, None for none.
     """
-    groups = grouped(lines, lambda line: incident_key(line.row))
+    groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
         _moment(at, found, start_ns) | {"plan": pictures.get(at), "leading": at in leading}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
@@ -147,16 +147,9 @@ def _moment(at: Key, found: Sequence[FindingLine], start_ns: int) -> dict[str, A
         "kind": "fail" if failed else "near",
         "severity": gravest[0].row["severity"],
         "titles": list(dict.fromkeys(line.rule["title"] for line in gravest)),
-        "map_href": next(filter(None, map(_map_href, failed)), ""),
+        "on_earth": next((line.row for line in failed if None not in {line.row["lon"], line.row["lat"]}), None),
         "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
     }
-
-
-def _map_href(line: FindingLine) -> str:
-    lon, lat = line.row["lon"], line.row["lat"]
-    if lon is None or lat is None:
-        return ""
-    return f"https://www.openstreetmap.org/?mlat={lat:.6f}&mlon={lon:.6f}#map=18/{lat:.6f}/{lon:.6f}"
 
 
 def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:

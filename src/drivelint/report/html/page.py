@@ -11,7 +11,7 @@ from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_logs
-from drivelint.report.html.incidents import finding_line, incidents, incidents_in_summary, plan_views
+from drivelint.report.html.incidents import finding_line, incidents, plan_views
 from drivelint.report.html.involved_actors import involved_actors
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.overtakes import overtake_views
@@ -26,7 +26,7 @@ from drivelint.report.html.reasons import (
 )
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.timeline import TimeAxis, empty_timeline, separate_shared_rules, timelines
+from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.result import counts
 from drivelint.result.counts import grouped
 from drivelint.result.model import exit_status
@@ -84,11 +84,9 @@ def content(result: Result) -> dict[str, Any]:
     sections = [
         _section(
             row,
-            timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
-            incidents(
-                mine := listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]], incidents_in_summary(mine)
-            ),
-            involved_actors(mine, scenes),
+            timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
+            incidents(listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]]),
+            involved_actors(listed.get(row["drive_id"], []), scenes),
             unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )
         for row in drives
@@ -229,10 +227,6 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
         "standing": sorted({(line.standing.filter_key, line.standing.label) for line in lines if line.standing}),
         "drive": [(d, d) for d in drives] if len(drives) > 1 else [],
     }
-
-
-def _clock(row: Row) -> TimeAxis:
-    return TimeAxis(row["t_start_ns"] or 0, max(row["duration_s"] or 0.0, 1e-3))
 
 
 def _section(

@@ -92,16 +92,13 @@ class TimeAxis(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row],
-    findings: Sequence[Row],
-    rules: Mapping[str, Row],
-    anchors: Mapping[str, str],
-    clock: TimeAxis,
+    drive: Row, verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str]
 ) -> list[Timeline]:
     """Return a timeline for every ego of one drive, in the order of the verdicts.
 
     `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
     """
+    clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
     found = grouped(findings, lambda row: row["ego_id"])
     return [
         _timeline(told, found.get(ego, []), rules, anchors, clock)
