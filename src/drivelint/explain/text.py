@@ -22,7 +22,7 @@ from drivelint.sql import store
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from drivelint.explain.model import Explanation, TableRows
+    from drivelint.explain.model import Explanation, Row
 
 EXPLAIN_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
@@ -56,7 +56,7 @@ def render(found: Explanation, width: int) -> Group:
         ("What would decide it", said["decides"]),
         ("What the rule asks", said["asks"]),
         ("How it was judged", [*said["judged"], *_sql(found)]),
-        ("What it was judged on", _rows(found)),
+        ("What it was judged on", said["rows"]),
         ("Margin over time" if found.rule["sense"] != "holds" else "Over time", _series(found, width)),
         ("What would change it", said["changes"]),
         ("How sure it is", said["sure"]),
@@ -91,7 +91,9 @@ def _prose(found: Explanation) -> dict[str, list[str]]:
     template = text_template(
         __file__,
         "explanation.txt.j2",
-        finalize=lambda told: told.replace("\n", " ") if isinstance(told, str) else told,
+        # a line break in a value ends no line of the template
+        finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
+        cells=lambda row, table: _cells(found, table, row),
         measure=_measure,
         seconds=lambda t_ns: seconds(t_ns, start_ns),
         value=_value,
@@ -118,35 +120,19 @@ def _sql(found: Explanation) -> list[str]:
     return [f"|{line}" for name, sql in found.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
 
 
-def _rows(found: Explanation) -> list[str]:
-    text = "\n".join(found.sql.values())
-    at = "" if found.decides_ns is None else f", at {seconds(found.decides_ns, found.drive['t_start_ns'])}"
+def _cells(found: Explanation, table: str, row: Row) -> list[str]:
+    """Return the columns of a row that the rule names, and the one that is asked for, each with its value and what it means."""
     condition = None if "finding_id" in found.verdict else condition_of(found.verdict["reason_code"])
-    asked = {"ego_condition": condition, "ego_state": "lanelet_id"} if condition else {}
-    lines = [f"From {found.source}{at}:"]
-    for table in found.rows:
-        lines += _table(table, text, found.drive["t_start_ns"] or 0, asked.get(table.table))
-    return lines if found.rows else []
-
-
-def _table(table: TableRows, sql: str, start_ns: int, asked: str | None) -> list[str]:
-    """Return the columns that the rule names, and the one that is asked for, each with what it means."""
-    if not table.rows:
-        return [f"{table.table}: no row: there is nothing of that kind here."]
-    comments = store.column_comments().get(table.table, {})
-    lines = []
-    for row in table.rows:
-        named = [
-            column
-            for column in row
-            if column == asked or table.table == "capability" or re.search(rf"\b{column}\b", sql)
-        ] or list(row)
-        lines.append(f"{table.table}:")
-        wide = max(len(column) for column in named)
-        for column in named:
-            value = _cell(column, row[column], start_ns)
-            lines.append(f"|  {column:<{wide}}  {value:<12}  {_comment(comments.get(column, ''))}")
-    return [*lines, *([f"... and {table.more} more rows of {table.table}."] if table.more else [])]
+    asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
+    sql = "\n".join(found.sql.values())
+    named = [
+        column for column in row if column == asked or table == "capability" or re.search(rf"\b{column}\b", sql)
+    ] or list(row)
+    wide, comments = max(map(len, named)), store.column_comments().get(table, {})
+    return [
+        f"{column:<{wide}}  {_cell(column, row[column], found.drive['t_start_ns'] or 0):<12}  {_comment(comments.get(column, ''))}"
+        for column in named
+    ]
 
 
 def _cell(column: str, value: Any, start_ns: int) -> str:
@@ -178,7 +164,7 @@ def _folded(lines: list[str], width: int) -> list[str]:
     folded: list[str] = []
     for line in lines:
         if line.startswith("|"):
-            folded.append(f"  {line[1:]}")
+            folded.append(f"  {line[1:]}".replace("\v", "\n"))
         else:
             folded += textwrap.wrap(
                 line, width, initial_indent="  ", subsequent_indent="    " if line[:2] == "- " else "  "
