@@ -10,7 +10,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from drivelint.report.html.log_notes import notes_on_logs
+from drivelint.report.html.explanations import notes_on_logs
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import drive, finding, result, verdict

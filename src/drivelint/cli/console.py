@@ -34,15 +34,11 @@ def run_interruptible(job: Callable[[], T]) -> T:
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
     """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
-    from drivelint.report.progress import NotePrinter, Silent
+    from drivelint.report.progress import NotePrinter, Silent, bar
 
     if quiet:
         return nullcontext(Silent())
-    if not sys.stderr.isatty():
-        return nullcontext(NotePrinter())
-    from drivelint.report.console import bar
-
-    return bar()
+    return bar() if sys.stderr.isatty() else nullcontext(NotePrinter())
 
 
 def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:

@@ -12,7 +12,7 @@ from drivelint.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from drivelint.guide.command_page import Command
+    from drivelint.guide.site import Command
 
 
 def docs(
@@ -67,7 +67,7 @@ def docs(
 
 def _commands(command: Any, name: str) -> Iterator[Command]:
     """Yield the commands under a group, depth first, with what their help says."""
-    from drivelint.guide.command_page import Command
+    from drivelint.guide.site import Command
 
     if hasattr(command, "commands"):
         for word, each in command.commands.items():

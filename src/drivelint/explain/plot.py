@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from drivelint.result.text import seconds
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -34,7 +36,7 @@ def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: st
     measured = any(column.margin is not None for column in columns)
     label = max(9, len(unit) + 8)
     body = _bars(columns, height, label, unit) if measured else [" " * label + " " + _strip(columns)]
-    first, last = (_seconds(step.t_ns, start_ns) for step in (steps[0], steps[-1]))
+    first, last = (seconds(step.t_ns, start_ns) for step in (steps[0], steps[-1]))
     axis = " " * label + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
     return [*body, axis]
 
@@ -93,7 +95,3 @@ def _down(margin: float | None, base: float, size: float) -> str:
 
 def _number(value: float, unit: str) -> str:
     return f"{value:+.3g} {unit}"
-
-
-def _seconds(t_ns: int, start_ns: int) -> str:
-    return f"{(t_ns - start_ns) / 1e9:.2f} s"

@@ -11,6 +11,7 @@ import msgspec
 from drivelint.phrases import plural
 from drivelint.result import counts
 from drivelint.result.text import number
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -63,22 +64,17 @@ def difference_text(
     difference: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None
 ) -> str:
     """Return a difference as text for a person."""
-    waived = gate.waived if gate else {}
-    blocks = [list(_table(difference)), [headline(difference)]]
-    for standing, title in DIFF_STATUS_TITLES.items():
-        entries = difference.with_diff_status(standing)
-        if entries:
-            lines = [f"{title} ({len(entries)})"]
-            lines += [
-                f"  {finding_line(e)}{' (waived)' if e.finding_id in waived else ''}" for e in entries[:MAX_LINES]
-            ]
-            blocks.append([*lines, *_more(len(entries))])
-    if difference.opened:
-        blocks.append(list(_opened(difference.opened)))
-    if difference.new_only or difference.base_only:
-        blocks.append(list(_drives(difference)))
-    blocks.append([exit_summary(failing, fail_on)])
-    return "\n\n".join("\n".join(block) for block in blocks)
+    text = text_template(__file__, "difference.txt.j2", finding_line=finding_line).render(
+        diff=difference,
+        verdicts=counts.VERDICTS,
+        headline=headline(difference),
+        titles=DIFF_STATUS_TITLES,
+        waived=gate.waived if gate else {},
+        groups=group_by_reason(difference.opened),
+        exit=exit_summary(failing, fail_on),
+        most=MAX_LINES,
+    )
+    return text.removesuffix("\n")
 
 
 def exit_summary(failing: Sequence[ComparedFinding], fail_on: str) -> str:
@@ -172,32 +168,3 @@ def group_by_reason(opened: Iterable[NewUnknowns]) -> list[tuple[str, list[str],
         rules, n = found.get(each.reason, (set(), 0))
         found[each.reason] = (rules | {each.rule_id}, n + each.n - each.base_n)
     return [(reason, sorted(rules), n) for reason, (rules, n) in sorted(found.items(), key=lambda i: (-i[1][1], i[0]))]
-
-
-def _table(difference: Difference) -> Iterator[str]:
-    names = (difference.base_name, difference.name)
-    width = max(len(name) for name in names)
-    heads = ["n/a" if verdict == "not_applicable" else verdict for verdict in counts.VERDICTS]
-    yield " " * width + "".join(f"  {head:>7}" for head in heads)
-    for name, told in zip(names, (difference.base_verdicts, difference.verdicts), strict=True):
-        yield f"{name:<{width}}" + "".join(f"  {told[verdict]:>7}" for verdict in counts.VERDICTS)
-
-
-def _opened(opened: Sequence[NewUnknowns]) -> Iterator[str]:
-    groups = group_by_reason(opened)
-    yield f"More is unknown than was ({sum(n for _, _, n in groups)} verdicts): unknown is not pass"
-    for reason, rules, n in groups[:MAX_LINES]:
-        few = ", ".join(rules[:3]) + (f" and {len(rules) - 3} more rules" if len(rules) > 3 else "")
-        yield f"  {n}: {few}: {reason}"
-    yield from _more(len(groups))
-
-
-def _drives(difference: Difference) -> Iterator[str]:
-    for title, names in (("Only in the newer result", difference.new_only), ("Only in the base", difference.base_only)):
-        if names:
-            few = ", ".join(names[:MAX_LINES])
-            yield f"{title} ({plural(len(names), 'drive')}): {few}{' ...' if len(names) > MAX_LINES else ''}"
-
-
-def _more(n: int) -> list[str]:
-    return [f"  ... and {n - MAX_LINES} more: --format json has them all"] if n > MAX_LINES else []

@@ -28,11 +28,6 @@ class TimedFinding(NamedTuple):
     end: float
     worst: float
 
-    @property
-    def id(self) -> str:
-        """Its finding_id."""
-        return str(self.row["finding_id"])
-
 
 def seconds_since_start(t_ns: int, drive: Row) -> float:
     """Return a time of a drive as seconds since its first time stamp."""
@@ -81,7 +76,7 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
     for j, had in enumerate(base):
         groups[finding_key(had.row)].append(j)
     pairs = [
-        (had.id != now.id, abs(had.worst - now.worst), gap_s(had, now), i, j)
+        (had.row["finding_id"] != now.row["finding_id"], abs(had.worst - now.worst), gap_s(had, now), i, j)
         for i, now in enumerate(new)
         for j in groups.get(finding_key(now.row), ())
         for had in (base[j],)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.report.catalogue_page import table
 from drivelint.result import geometry
 from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
 from drivelint.sql.store import column_comments, lifetimes
@@ -24,12 +24,6 @@ _SAYS: Final = """Every table that drivelint fills, with the meaning of each col
 Distances are metres, speeds metres per second, angles radians, and times integer nanoseconds of the log's own clock. NULL
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
-"""
-INTRODUCTION: Final = f"# The data dictionary\n\n{_SAYS}"
-DERIVATIONS_INTRODUCTION: Final = """## How the tables are derived
-
-Each derived table is filled by one SELECT, `queries/derive/<table>.sql`. A table of a level reads recorded tables and tables
-of lower levels. The tables that it reads stand behind it.
 """
 _MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _GROUPS: Final = {
@@ -54,11 +48,19 @@ _LIVES: Final = {
 def page() -> str:
     """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading here."""
     read = tables_read()
-    parts = [INTRODUCTION, DERIVATIONS_INTRODUCTION, _levels(read)]
-    for file, heading in _GROUPS.items():
-        parts.append(f"## {heading}\n\nTables: {_links(column_comments(file))}.\n")
-        parts += [_section(name, read) for name in column_comments(file)]
-    return "\n".join(parts)
+    filters: dict[str, Any] = {
+        "about": _about,
+        "columns": _columns,
+        "escaped": escaped,
+        "facts": lambda name: " ".join(_facts(name, read, _links, "`")),
+        "links": _links,
+    }
+    return text_template(__file__, "dictionary.md.j2", **filters).render(
+        says=_SAYS,
+        levels=derivation_levels(read),
+        read=read,
+        groups={heading: column_comments(file) for file, heading in _GROUPS.items()},
+    )
 
 
 def text() -> str:
@@ -114,19 +116,6 @@ def derivation_levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
     return [[name for name in sorted(level) if level[name] == n] for n in range(1, max(level.values()) + 1)]
 
 
-def _levels(read: Mapping[str, tuple[str, ...]]) -> str:
-    lines = []
-    for n, tables in enumerate(derivation_levels(read), 1):
-        lines.append(f"* Level {n}")
-        lines += [f"    * {_link(name)}" + (f": {_links(read[name])}" if read[name] else "") for name in tables]
-    return "\n".join(lines) + "\n"
-
-
-def _section(name: str, read: Mapping[str, tuple[str, ...]]) -> str:
-    about = f"{escaped(_about(name))}\n\n" if _about(name) else ""
-    return f"### {name}\n\n{about}{' '.join(_facts(name, read, _links, '`'))}\n\n{_columns(name)}"
-
-
 def _facts(
     name: str, read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
 ) -> list[str]:
@@ -158,14 +147,13 @@ def _about(name: str) -> str:
 
 
 def _columns(name: str, *, in_file: bool = False) -> str:
-    rows = [
-        (f"`{column}`", escaped(_types()[name, column]), escaped(comment))
-        for column, comment in column_comments()[name].items()
-    ]
+    lines = ["| column | type | meaning |", "|---|---|---|"]
+    for column, comment in column_comments()[name].items():
+        lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
     if in_file and name in geometry.SHAPES:
         shape = geometry.SHAPES[name]
-        rows.append((f"`{geometry.COLUMN}`", "GEOMETRY", escaped(f"{shape.kind}: {shape.comment}")))
-    return table(("column", "type", "meaning"), rows)
+        lines.append(f"| `{geometry.COLUMN}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
+    return "\n".join(lines) + "\n"
 
 
 @cache
@@ -176,9 +164,5 @@ def _types() -> dict[tuple[str, str], str]:
     return {(name, column): kind if nullable else f"{kind} NOT NULL" for name, column, kind, nullable in rows}
 
 
-def _link(name: str) -> str:
-    return f"[{name}](#{name})"
-
-
 def _links(names: Iterable[str]) -> str:
-    return ", ".join(map(_link, names))
+    return ", ".join(f"[{name}](#{name})" for name in names)

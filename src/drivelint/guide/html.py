@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from markdown_it import MarkdownIt
+
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -16,25 +17,6 @@ if TYPE_CHECKING:
     from markdown_it.token import Token
 
 STYLESHEET: Final = "style.css"
-_PAGE: Final = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}: drivelint</title>
-<link rel="stylesheet" href="{stylesheet}">
-</head>
-<body>
-<header><a href="index.html">drivelint</a> <a class="jump" href="#pages">all pages</a></header>
-<main>
-{body}</main>
-<nav id="pages" aria-label="pages">
-{pages}
-</nav>
-<footer>{footer}</footer>
-</body>
-</html>
-"""
 _LONG: Final = 60
 """Characters beyond which a cell should not be narrow."""
 _ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
@@ -52,21 +34,9 @@ def page(markdown: str, *, name: str, pages: Iterable[tuple[str, Sequence[tuple[
     body = body.replace("&lt;br&gt;", "<br>")  # the only HTML that the catalogue's cells have
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
     title = re.search(r"^# (.+)$", markdown, re.MULTILINE)
-    return _PAGE.format(
-        title=escape(title[1] if title else name),
-        stylesheet=STYLESHEET,
-        body=body,
-        pages="\n".join(_navigation(heading, listed, name) for heading, listed in pages),
-        footer=escape(footer),
+    return text_template(__file__, "page.html.j2").render(
+        title=title[1] if title else name, stylesheet=STYLESHEET, body=body, name=name, pages=pages, footer=footer
     )
-
-
-def _navigation(heading: str, pages: Sequence[tuple[str, str]], current: str) -> str:
-    items = "".join(
-        f'<li><a href="{name}.html"{" aria-current=page" if name == current else ""}>{escape(title)}</a></li>'
-        for name, title in pages
-    )
-    return f"<p>{escape(heading)}</p>\n<ul>{items}</ul>"
 
 
 def _name_headings(tokens: Sequence[Token]) -> None:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import re
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
-from drivelint.guide import command_page, dictionary, html
-from drivelint.report.catalogue_page import table
+from drivelint.guide import dictionary, html
 from drivelint.result.files import publish
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
-
-    from drivelint.guide.command_page import Command
 
 PICTURES: Final = ("log.svg",)
 """The pictures of the guides."""
@@ -34,6 +33,20 @@ REFERENCE_PAGES: Final = {
 """Page -> its title and what it has."""
 
 
+class Command(NamedTuple):
+    """One command: how it is called, what it does, and (name, meaning) of its arguments and options."""
+
+    usage: str
+    about: str
+    arguments: tuple[tuple[str, str], ...]
+    options: tuple[tuple[str, str], ...]
+
+    @property
+    def name(self) -> str:
+        """The words before the arguments, such as `drivelint rules list`."""
+        return self.usage.partition(" [")[0].partition(" {")[0]
+
+
 def write(folder: Path, commands: Iterable[Command]) -> Path:
     """Write the site into `folder`; return its first page. Errors: `UsageError` where `folder` is a file, `OutputError`."""
     if folder.exists() and not folder.is_dir():
@@ -46,8 +59,9 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
     pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
-    pages["commands"] = command_page.page(commands)
-    pages["index"] = _index()
+    pages["commands"] = text_template(__file__, "commands.md.j2", shown=_shown).render(commands=commands)
+    index = text_template(__file__, "index.md.j2")
+    pages["index"] = index.render(topics=guide.topics(), reference=REFERENCE_PAGES)
     navigation = [
         ("Guides", [(topic.name, topic.title) for topic in guide.topics()]),
         ("Reference", [(name, title) for name, (title, _) in REFERENCE_PAGES.items()]),
@@ -61,12 +75,6 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     return files
 
 
-def _index() -> str:
-    guides = [(f"[{topic.title}]({topic.name}.md)", topic.sentence) for topic in guide.topics()]
-    others = [(f"[{title}]({name}.md)", has) for name, (title, has) in REFERENCE_PAGES.items()]
-    return (
-        "# drivelint\n\ndrivelint checks recorded drives against the rules of the road. Give it a log and a map; it says *pass*, *fail* or "
-        "*unknown* for every rule, with the evidence.\n\n"
-        f"## Guides\n\n{table(('guide', 'what it is for'), guides)}\n"
-        f"## Reference\n\n{table(('page', 'what it has'), others)}"
-    )
+def _shown(text: str) -> str:
+    """Return help text as Markdown, the options in it as code."""
+    return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", dictionary.escaped(text))

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
+from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -52,7 +53,15 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
         found.pop("speed", None)
     if sum(name in found for name in REQUIRED_FIELDS) < 3:
         return None
-    return "\n".join([*_head(found), *_columns(found), *_words(found)])
+    of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
+    draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
+        found=found,
+        time_unit=("time" in found and _unit(found["time"], dict(TIME_UNITS))) or "s",
+        units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
+        order=_ORDER,
+        required=REQUIRED_FIELDS,
+    )
+    return draft.removesuffix("\n")
 
 
 def _meaning(column: str) -> str | None:
@@ -88,53 +97,6 @@ def _unit(column: str, known: Mapping[str, float]) -> str | None:
     in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
     named = [*in_brackets, *(_UNIT_WORDS.get(word) for word in sorted(_split(column)))]
     return next((unit for unit in named if unit in known), None)
-
-
-def _head(found: Mapping[str, str]) -> list[str]:
-    time = found.get("time")
-    lines = ['description = "what this table is"', "", "[time]"]
-    lines.append(f"column = {_text(time)}" if time else '# column = ""  # which column is the time?')
-    return [*lines, f'unit = "{(time and _unit(time, dict(TIME_UNITS))) or "s"}"']
-
-
-def _columns(found: Mapping[str, str]) -> list[str]:
-    lines = ["", "[columns]"]
-    for name in _ORDER:
-        if name in found:
-            units = UNITS.get(FIELD_QUANTITIES.get(name, ""), {})
-            unit = _unit(found[name], units)
-            column = _text(found[name])
-            if name == "yaw" and unit is None:
-                lines.append(f'yaw = {{ column = {column}, unit = "rad" }}  # or "deg"')
-                continue
-            lines.append(
-                f'{name} = {{ column = {column}, unit = "{unit}" }}'
-                if unit and unit != next(iter(units))
-                else f"{name} = {column}"
-            )
-        elif name in REQUIRED_FIELDS:
-            lines.append(f'# {name} = ""  # which column?')
-        elif name in {"length", "width"}:
-            lines.append(f"# {name} = {4.8 if name == 'length' else 1.8}  # metres, if all vehicles are alike")
-        elif name == "yaw":
-            lines.append('# yaw = ""  # the heading: without it no box can be placed')
-    return lines
-
-
-def _words(found: Mapping[str, str]) -> list[str]:
-    lines = []
-    if "class" in found:
-        lines += [
-            "",
-            "[class]",
-            f"column = {_text(found['class'])}",
-            '# values = { "text in the column" = "car" }',
-            'default = "vehicle"',
-        ]
-    if "indicator" in found:
-        lines += ["", "[indicator]", f"column = {_text(found['indicator'])}"]
-        lines.append('values = { off = "off", left = "left", right = "right", hazard = "hazard" }')
-    return [*lines, "", "[ego]", 'ids = []  # such as ["1"]']
 
 
 def _text(value: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Group
 from rich.padding import Padding
@@ -12,8 +12,8 @@ from rich.text import Text
 
 from drivelint.formats.registry import FORMATS
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
-from drivelint.inspect.rules_text import decidable_rules
 from drivelint.phrases import listed, plural
+from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         Column,
         Content,
         Drive,
+        Ego,
         Inspection,
         MapRegistration,
         Quality,
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
+_NAMED: Final = 6
+"""Egos that a line names before it says how many more there are."""
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _TOLD: Final = "read through"
 """How notes of the readers begin that the content tells anyway."""
@@ -61,7 +64,7 @@ def render(found: Inspection, trace: str) -> Group:
         lines += _drive(found.drive)
     parts: list[RenderableType] = [_title(found), _labelled(lines)]
     if found.drive is not None:
-        parts.append(decidable_rules(found.drive, found.file.name))
+        parts.append(_decidable_rules(found.drive, found.file.name))
     if (draft := found.content.draft_mapping) is not None:
         save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
         parts += [
@@ -89,14 +92,28 @@ def _size(n: int) -> str:
 
 def _labelled(lines: Sequence[Line]) -> Table:
     """Return lines with their labels in a column of their own, each label once."""
-    grid = Table.grid(padding=(0, 2, 0, 0), expand=False)
-    grid.add_column(style="bold", no_wrap=True)
-    grid.add_column(overflow="fold", ratio=1)
+    grid = _grid("bold", no_wrap=True)
     previous = None
     for label, text in lines:
         grid.add_row("" if label == previous else label, text)
         previous = label
     return grid
+
+
+def _grid(style: str, **label: Any) -> Table:
+    """Return a grid of labels in this style and texts."""
+    grid = Table.grid(padding=(0, 2, 0, 0))
+    grid.add_column(style=style, **label)
+    grid.add_column(overflow="fold", ratio=1)
+    return grid
+
+
+def _first_of(label: str, texts: Sequence[Text]) -> Iterator[Line]:
+    """Yield the first texts, and how many more there are."""
+    for text in texts[:MAX_ROWS]:
+        yield label, text
+    if len(texts) > MAX_ROWS:
+        yield label, Text(f"and {len(texts) - MAX_ROWS} more", style="dim")
 
 
 def _content(content: Content) -> Iterator[Line]:
@@ -168,18 +185,14 @@ def _drive(drive: Drive) -> Iterator[Line]:
 def _egos(drive: Drive) -> Iterator[Line]:
     if not drive.egos:
         yield "ego", Text("none: the log does not say who it is; choose one. The longest way first:", style="yellow")
-        for actor in drive.candidates[:MAX_ROWS]:
-            yield "ego", Text(f"--ego {actor.actor_id}  {_actor(actor)}")
-        if len(drive.candidates) > MAX_ROWS:
-            yield "ego", Text(f"and {len(drive.candidates) - MAX_ROWS} more", style="dim")
+        yield from _first_of("ego", [Text(f"--ego {a.actor_id}  {_actor(a)}") for a in drive.candidates])
         return
-    if len(drive.egos) > 1:
-        yield "egos", Text(f"{len(drive.egos)}: {drive.ego_source}")
-    for ego in drive.egos[:MAX_ROWS]:
-        line = Text(f"{ego.actor.actor_id}: {_actor(ego.actor)}")
-        yield ("ego", line.append(f"; {drive.ego_source}")) if len(drive.egos) == 1 else ("egos", line)
-    if len(drive.egos) > MAX_ROWS:
-        yield "egos", Text(f"and {len(drive.egos) - MAX_ROWS} more", style="dim")
+    egos = [Text(f"{ego.actor.actor_id}: {_actor(ego.actor)}") for ego in drive.egos]
+    if len(egos) == 1:
+        yield "ego", egos[0].append(f"; {drive.ego_source}")
+        return
+    yield "egos", Text(f"{len(egos)}: {drive.ego_source}")
+    yield from _first_of("egos", egos)
 
 
 def _actor(actor: Actor) -> str:
@@ -208,10 +221,7 @@ def _road(drive: Drive) -> Iterator[Line]:
     good = len(fits) - len(bad)
     share = "none" if not good else f"{good} of {len(fits)}" if bad else "all"
     yield "fit", Text(f"{share} of the egos lie well on the map", style="yellow" if bad else "green")
-    for ego, fit in bad[:MAX_ROWS]:
-        yield "fit", Text(f"ego {ego.actor.actor_id}: {fit.reason}", style="yellow")
-    if len(bad) > MAX_ROWS:
-        yield "fit", Text(f"and {len(bad) - MAX_ROWS} more", style="dim")
+    yield from _first_of("fit", [Text(f"ego {ego.actor.actor_id}: {fit.reason}", style="yellow") for ego, fit in bad])
 
 
 def _map(road: Road) -> Text:
@@ -234,10 +244,70 @@ def _fit(fit: MapRegistration) -> Text:
 def _quality(found: Sequence[Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in found):
         yield "data", Text("nothing that speaks against it", style="green")
-    for finding in found[:MAX_ROWS]:
-        about, info = "map: " if finding.about == "map" else "", finding.severity == "info"
-        at = "" if finding.first_at_s is None or info else f" (first at {finding.first_at_s:.2f} s)"
-        text = Text(f"{finding.severity}: ", style=_STYLE[finding.severity])
-        yield "data", text.append(f"{about}{finding.message}{at}", style="dim" if info else "default")
-    if len(found) > MAX_ROWS:
-        yield "data", Text(f"and {len(found) - MAX_ROWS} more", style="dim")
+    yield from _first_of("data", [_finding(finding) for finding in found])
+
+
+def _finding(found: Quality) -> Text:
+    about, info = "map: " if found.about == "map" else "", found.severity == "info"
+    at = "" if found.first_at_s is None or info else f" (first at {found.first_at_s:.2f} s)"
+    text = Text(f"{found.severity}: ", style=_STYLE[found.severity])
+    return text.append(f"{about}{found.message}{at}", style="dim" if info else "default")
+
+
+def _decidable_rules(drive: Drive, log: str) -> Group:
+    """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
+    egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
+    alike = grouped(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
+    parts: list[RenderableType] = []
+    for egos in sorted(alike.values(), key=lambda group: -len(group[0].can)):
+        parts += _about(drive, egos, log)
+    return Group(*parts)
+
+
+def _about(drive: Drive, egos: list[Ego], log: str) -> list[RenderableType]:
+    ego, n = egos[0], len(drive.rules)
+    selection = listed(drive.selection, _NAMED)
+    who = ""
+    if not drive.egos:
+        who = f" with --ego {ego.actor.actor_id}"
+    elif len(drive.egos) > 1:
+        who = f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _NAMED)}"
+    style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
+    parts: list[RenderableType] = [
+        Text(f"{log} can decide {len(ego.can)} of {n} rules ({selection}){who}.", style=style)
+    ]
+    if ego.can:
+        parts.append(Text(f"It can: {', '.join(_short(rule, drive) for rule in ego.can)}.", style="dim"))
+    if ego.missing:
+        parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
+        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego)]
+    return parts
+
+
+def _short(rule_id: str, drive: Drive) -> str:
+    """Return a rule's id without its pack where all are of one."""
+    packs = {rule.partition(".")[0] for rule in drive.rules}
+    return rule_id.partition(".")[2] if len(packs) == 1 else rule_id
+
+
+def _by_signal(ego: Ego) -> Table:
+    grid = _grid("yellow", overflow="fold")
+    for item in ego.missing:
+        waiting = f"{plural(len(item.rules), 'rule')} wait{'s' if len(item.rules) == 1 else ''} for it"
+        alone = ""
+        if len(item.alone) < len(item.rules):
+            alone = f", {len(item.alone)} of them for nothing else" if item.alone else ", and for something else too"
+        text = Text(item.provide)
+        text.append(f"\nNow: {item.reason}. {waiting}{alone}.", style="dim")
+        grid.add_row(item.signal, text)
+    return grid
+
+
+def _by_rule(ego: Ego) -> Table:
+    """Return the rules that wait for the same together."""
+    grid = _grid("yellow", overflow="fold")
+    waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))
+    for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
+        ids = (f"{rule.rule_id}{' (can be broken, not kept)' if rule.breach_only else ''}" for rule in rules)
+        grid.add_row(" + ".join(missing), Text(", ".join(ids)))
+    return grid

@@ -5,29 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
-from drivelint.reasons.signals import SIGNAL_OF_CONDITION, how_to_provide
+from drivelint.reasons.signals import SIGNAL_OF_CONDITION, TEXTS, how_to_provide
 
-_NAMED = "{advice}"
 _SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
 _A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
-REMEDIES: Final = {
-    "lost_near_ego": "record {object} for as long as the ego, or until it is out of the ego's reach",
-    "lost_in_range": "record {object} for as long as the ego, or say with check --sensor-range how far the recorder sees",
-    "lost_on_road": "record {object} for as long as the ego",
-    "window_truncated": "a log that has the ego, and whoever is near it, over all of that time",
-    "log_hole": "a log without that hole",
-    "reference_time_unknown": _NAMED,
-    "anchor_unknown": _NAMED,
-    "only_a_bound": _NAMED,
-    "beyond_sensor_range": "sensors that reach further (check --sensor-range, if they do)",
-    "ego_not_placed": "the ego's position and heading at every step",
-    "indicator_unknown": "the ego's indicators at every step",
-    "missing_step": _NAMED,
-    "null_value": _NAMED,
-    "applies_unknown": _NAMED,
-}
-"""Reason code -> what to do; `{advice}`: what its cause asks for."""
+REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
@@ -40,7 +23,7 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
             how_to_provide({**SIGNAL_OF_CONDITION, "engaged": "mode_engaged"}.get(condition, condition), log_format)
             + _AGAIN
         )
-    return REMEDIES.get(code, _NAMED).format(
+    return REMEDIES.get(code, "{advice}").format(
         object="the object" if object_id is None else f"object {object_id}",
         advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
     )

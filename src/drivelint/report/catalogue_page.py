@@ -8,13 +8,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
+from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
+from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
-from drivelint.report import vocabulary
 from drivelint.result.counts import grouped
+from drivelint.result.text_templates import cell, text_template
+from drivelint.road.signcodes import codes_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -22,32 +28,10 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
+_MANY = 8  # rules; more are counted
+_COMMENT = re.compile(r"--.*")
 _CITED = re.compile(r"\b(?:R|H)\d+")
 _NUMBER = re.compile(r"(H?)(\d+)(?:-(\d+))?")
-
-INTRODUCTION = """# The rule catalogue
-
-Written by `drivelint rules page`; edit the rules, not this page. A rule is a `.sql` file in `assertions/<pack>/` with its
-cases beside it; `drivelint rules show ID` prints one with its SQL. Only *stable* rules gate; a *draft* is checked when it
-is asked for. *law* names the nation whose law a rule is: in a drive of another nation it is not applicable. Packs are never
-merged into one verdict: they ask different things of the same gap. At the end: [what a log can say](#what-a-log-can-say) and
-[what a map must have](#what-a-map-must-have).
-"""
-LOG_INTRODUCTION = """## What a log can say
-
-The words of its tables and of `--env CONDITION=VALUE`, in capital or small letters. What is not said is not known.
-"""
-CONDITIONS_INTRODUCTION = """What holds in the whole drive: `drive_condition.parquet` (`condition`, `value`), or `--env`, which counts more.
-"""
-EVENTS_INTRODUCTION = """What the ego declares: `declared_event.parquet` (`actor_id`, `t_ns`, `event`, `value`). An event that is on or
-off holds until it is declared again, and is not known before the first time. Where a log never declares a look or a decision,
-rules that ask for one are unknown.
-"""
-MAP_INTRODUCTION = """## What a map must have
-
-In OpenDRIVE's terms. A `signal` is recognised by its `country` and `type` (no country: OpenDRIVE's and the German numbers), else by its
-name, in capital or small letters. What a map does not say is not known.
-"""
 
 
 class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -121,48 +105,57 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
     """Return the page for rules whose packs lie in `folder` (for its clauses.toml files)."""
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = grouped(rules, lambda rule: rule.pack)
-    parts = [INTRODUCTION, _overview(packs)]
-    for pack, mine in packs.items():
-        parts.append(_pack(pack, mine))
-        if known := read_clauses(folder / pack):
-            parts.append(_clauses(clause_coverage(rules, known)))
-    parts += [LOG_INTRODUCTION, "\n".join(vocabulary.column_value_lines()) + "\n"]
-    parts += [CONDITIONS_INTRODUCTION, table(*vocabulary.condition_table(rules))]
-    parts += [EVENTS_INTRODUCTION, table(*vocabulary.event_table(rules))]
-    parts += [MAP_INTRODUCTION, table(*vocabulary.map_feature_table(rules))]
-    return "\n".join(parts)
+    known = {pack: read_clauses(folder / pack) for pack in packs}
+    return text_template(__file__, "catalogue.md.j2", finalize=cell).render(
+        rules=rules,
+        packs=packs,
+        clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
+        applies=_applies,
+        asking=lambda asked, reads: _asking(rules, asked, reads),
+        column_values={
+            "actor_class": ACTOR_CLASSES,
+            "indicator": INDICATORS,
+            "brake_light": BRAKE_LIGHTS,
+            "state of a signal": SIGNAL_STATES,
+        },
+        condition_values=DRIVE_CONDITION_VALUES,
+        condition_texts=CONDITION_TEXTS,
+        events=EVENTS,
+        on_off_events=ON_OFF_EVENTS,
+        map_features=map_features()["feature"],
+        signs={kind: _sign(kind, part) for kind, part in map_features()["name_parts"].items()},
+    )
 
 
-def _overview(packs: dict[str, list[Rule]]) -> str:
-    total = [rule for mine in packs.values() for rule in mine]
-    counted = [*((f"[`{pack}`](#{pack})", mine) for pack, mine in packs.items()), ("all", total)]
-    rows = [
-        (name, str(len(mine)), *(str(sum(rule.status == s for rule in mine)) for s in ("stable", "draft")))
-        for name, mine in counted
-    ]
-    return table(("pack", "rules", "stable", "draft"), rows)
+@cache
+def map_features() -> dict[str, Any]:
+    """Return what stands in `map_features.toml`: `name_parts` of signals, and each `feature`."""
+    return tomllib.loads((files(__package__) / "map_features.toml").read_text(encoding="utf-8"))
 
 
-def _pack(pack: str, rules: Sequence[Rule]) -> str:
-    rows = [
-        (
-            f"`{rule.id.removeprefix(pack + '.')}`",
-            rule.hypothesis,
-            f"{_kind(rule)}; {rule.severity}, {rule.legal}" + ("" if rule.status == "stable" else f"; *{rule.status}*"),
-            ", ".join(f"`{signal}`" for signal in rule.requires) or "positions",
-            _numbers(rule),
-            rule.clause,
-        )
+def _sign(kind: str, name_part: str) -> str:
+    """Return how a signal of this kind is recognised."""
+    codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
+    return f"`signal` {codes}; or {name_part} in its name"
+
+
+def _asking(rules: Iterable[Rule], asked: Sequence[str], reads: Sequence[str]) -> str:
+    """Return the ids of the rules, or how many there are, that require or are restricted by one of `asked`, or name one in their SQL.
+
+    The latter only of rules that read one of the tables `reads`, if any are given.
+    """
+    named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in asked))
+    ids = [
+        f"`{rule.id}`"
         for rule in rules
+        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(asked)
+        or ((not reads or not {*rule.reads}.isdisjoint(reads)) and named.search(_sql_without_comments(rule)))
     ]
-    return f"## {pack}\n\n" + table(("rule", "asserts", "kind", "needs", "numbers", "from"), rows)
+    return f"{len(ids)} rules" if len(ids) > _MANY else ", ".join(ids) or "no rule yet"
 
 
-def _kind(rule: Rule) -> str:
-    length = f"{rule.params[rule.window_s].default:g}" if isinstance(rule.window_s, str) else rule.window_s
-    window = "" if length is None else f" {rule.quantifier} within {length} s"
-    applies = _applies(rule)
-    return rule.kind + window + (f", [{applies}]" if applies else "")
+def _sql_without_comments(rule: Rule) -> str:
+    return _COMMENT.sub("", "\n".join(rule.sections.values()))
 
 
 def _applies(rule: Rule) -> str:
@@ -173,40 +166,3 @@ def _applies(rule: Rule) -> str:
         if value not in {None, ()}
     ]
     return ", ".join(said)
-
-
-def _numbers(rule: Rule) -> str:
-    def one(name: str, default: float | bool | str, unit: str) -> str:
-        shown = f"{default:g}" if isinstance(default, float | int) and not isinstance(default, bool) else str(default)
-        return f"`{name}` {shown} {unit}".rstrip()
-
-    said = [
-        f"{one(name, p.default, p.unit)}: {p.why}" + (f" ({p.source})" if p.source else "")
-        for name, p in rule.params.items()
-    ]
-    return "<br>".join(said) or "none of its own"
-
-
-def _clauses(rows: Sequence[ClauseCoverage]) -> str:
-    def ids(names: Sequence[str]) -> str:
-        return "<br>".join(f"`{name}`" for name in names)
-
-    body = [(r.clause.of, r.clause.about, ids(r.covered), ids(r.drafted), r.clause.why) for r in rows]
-    counts = (
-        sum(bool(r.covered) for r in rows),
-        sum(bool(r.drafted) and not r.covered for r in rows),
-        sum(not r.covered and not r.drafted for r in rows),
-    )
-    return (
-        "### By clause of the Highway Code\n\n"
-        f"Of {len(rows)} entries {counts[0]} are covered, {counts[1]} drafted only, {counts[2]} undecidable from a trace. "
-        "The last column says what is left open.\n\n"
-        + table(("clause", "about", "covered by", "drafted", "not decided"), body)
-    )
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table; cells are Markdown, on one line each."""
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    lines += ["| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"

@@ -66,13 +66,11 @@ def _cases(result: Result) -> dict[str, list[Case]]:
     found: dict[CaseKey, list[str]] = defaultdict(list)
     passed: dict[CaseKey, list[str]] = defaultdict(list)
     for row in result.findings.to_pylist():
-        text, reason_not_gating = (
-            line(row, starts.get(row["drive_id"])),
-            descriptions.reason_not_gating(result.gate, row["finding_id"]),
-        )
-        (passed if reason_not_gating else found)[_key(row)].append(
-            f"{reason_not_gating}: {text}" if reason_not_gating else text
-        )
+        text = line(row, starts.get(row["drive_id"]))
+        if reason_not_gating := descriptions.reason_not_gating(result.gate, row["finding_id"]):
+            passed[_key(row)].append(f"{reason_not_gating}: {text}")
+        else:
+            found[_key(row)].append(text)
     reasons: dict[CaseKey, dict[str, list[str]]] = defaultdict(dict)
     for row in _reasons(result.verdicts):
         reasons[_key(row)].setdefault(row["verdict"], []).append(with_count(row["reason"], row["count_all"]))

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import sys
-from typing import Protocol
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import rich.progress
 
 
-class Progress(Protocol):
-    """Listener of the pipeline: progress and diagnostics, never results."""
+class Progress:
+    """Listener of the pipeline: progress and diagnostics, never results. This one ignores what it is told."""
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage of `total` units of work (None: not known)."""
@@ -19,17 +25,8 @@ class Progress(Protocol):
         """Print a line for a person who waits."""
 
 
-class Silent:
+class Silent(Progress):
     """A `Progress` that nobody listens to."""
-
-    def stage(self, name: str, total: int | None = None) -> None:
-        """Ignore the stage."""
-
-    def advance(self, n: int = 1) -> None:
-        """Ignore the work done."""
-
-    def note(self, text: str) -> None:
-        """Ignore the note."""
 
 
 class NotePrinter(Silent):
@@ -38,3 +35,40 @@ class NotePrinter(Silent):
     def note(self, text: str) -> None:
         """Print the note."""
         print(f"drivelint: {text}", file=sys.stderr, flush=True)
+
+
+class Bar(Progress):
+    """A `Progress` drawn with rich."""
+
+    def __init__(self, progress: rich.progress.Progress) -> None:
+        self._progress = progress
+        self._task = self._progress.add_task("starting", total=None)
+
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Begin a stage: its name beside an empty bar."""
+        self._progress.reset(self._task, description=name, total=total)
+
+    def advance(self, n: int = 1) -> None:
+        """Move the bar by `n` units."""
+        self._progress.advance(self._task, n)
+
+    def note(self, text: str) -> None:
+        """Print a line above the bar."""
+        self._progress.console.print(text, markup=False, highlight=False)
+
+
+@contextmanager
+def bar() -> Iterator[Bar]:
+    """Show a bar on a terminal's stderr, which goes away at the end."""
+    from rich import progress as drawn
+    from rich.console import Console
+
+    columns = (
+        drawn.SpinnerColumn(),
+        drawn.TextColumn("{task.description}"),
+        drawn.BarColumn(),
+        drawn.MofNCompleteColumn(),
+        drawn.TimeElapsedColumn(),
+    )
+    with drawn.Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        yield Bar(progress)

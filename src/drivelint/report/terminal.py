@@ -20,7 +20,7 @@ from drivelint.result.model import exit_status
 from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rich.console import RenderableType
 
@@ -68,9 +68,7 @@ def _drives(result: Result, *, wide: bool) -> Table:
     rows = result.drives.to_pylist()
     title = "Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})"
     table = _table(title, "bold", {"drive": 1})
-    for column in ("km", "time") if wide else ():
-        table.add_column(column, justify="right", no_wrap=True)
-    _count_columns(table)
+    _number_columns(table, [*(("km", "time") if wide else ()), *_HEAD.values()])
     for row in rows[:MAX_ROWS]:
         name = Text(row["drive_id"], style="" if row["status"] == "judged" else "yellow")
         if row["lossy"]:
@@ -86,7 +84,7 @@ def _rules(result: Result, *, wide: bool) -> Table:
     table = _table("Rules", "bold", {"rule": 1})
     if wide:
         table.add_column("severity")
-    _count_columns(table)
+    _number_columns(table, _HEAD.values())
     for row in result.rules.to_pylist():
         name = Text(row["rule_id"])
         if row["status"] != "stable":
@@ -144,12 +142,11 @@ def _measured(
         return None
     table = _table(_title(title, rows.num_rows), style)
     table.show_header = wide
-    table.add_column("time", justify="right", no_wrap=True)
+    _number_columns(table, ["time"])
     table.add_column("rule [profile]", overflow="fold", ratio=2)
     if wide:
         table.add_column("object", overflow="fold")
-        for column in ("observed", "required", "margin"):
-            table.add_column(column, justify="right", no_wrap=True)
+        _number_columns(table, ["observed", "required", "margin"])
     egos = len(pc.unique(rows["ego_id"])) > 1
     previous = None
     for row in rows.slice(0, MAX_ROWS).to_pylist():
@@ -245,9 +242,9 @@ def _title(title: str, n: int) -> str:
     return f"{title} ({n})" if n <= MAX_ROWS else f"{title} (first {MAX_ROWS} of {n})"
 
 
-def _count_columns(table: Table) -> None:
-    for verdict in counts.VERDICTS:
-        table.add_column(_HEAD[verdict], justify="right", no_wrap=True)
+def _number_columns(table: Table, names: Iterable[str]) -> None:
+    for name in names:
+        table.add_column(name, justify="right", no_wrap=True)
 
 
 def _count_cells(told: dict[str, Any]) -> list[Text]:

@@ -25,6 +25,11 @@ def non_breaking(text: str) -> str:
     return text.replace(" ", "\u00a0", 1)
 
 
+def measure(value: float | None, unit: str | None = None) -> str:
+    """Return a measured value and its unit with a no-break space between them."""
+    return non_breaking(number(value, unit))
+
+
 def seconds(t_ns: int | None, start_ns: int | None) -> str:
     """Return a time on the log's clock as seconds since the drive's first time stamp."""
     return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"

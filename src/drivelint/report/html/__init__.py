@@ -19,8 +19,9 @@ from markupsafe import Markup
 
 from drivelint import __version__
 from drivelint.report.html import page
+from drivelint.report.html.anchors import anchor
 from drivelint.result.schemas import OUTPUT_VERSION
-from drivelint.result.text import number
+from drivelint.result.text import measure, number
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -55,11 +56,13 @@ def _environment() -> Environment:
             f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}; img-src data:; "
             "base-uri 'none'; form-action 'none'"
         ),
+        anchor=anchor,
         number=number,
         version=__version__,
         duckdb_version=duckdb.__version__,
         output_schema=OUTPUT_VERSION,
     )
+    environment.filters["measure"] = measure
     return environment
 
 

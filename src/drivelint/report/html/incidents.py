@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.anchors import drive_anchor, finding_anchor, incident_anchor, rule_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.result.counts import SEVERITIES, grouped
-from drivelint.result.text import NONE, non_breaking, number, seconds
+from drivelint.result.text import measure, non_breaking, number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
     from drivelint.report.html.road import Road
@@ -35,51 +35,14 @@ class FindingLine(NamedTuple):
     kind: str
     anchor: str
     href: str
-    drive_href: str
     keys: str
-    object_id: str
     time: str
     stretch: str
-    observed: str
     required: str
-    margin: str
-    missed: str
-    sense: str
     gauge: dict[str, str] | None
     told: str
     course: dict[str, Any] | None
     standing: BaselineStatus | None
-
-
-class RuleCard(NamedTuple):
-    """The findings and near misses of one rule in an incident."""
-
-    rule: Row
-    href: str
-    lines: list[FindingLine]
-
-
-class Incident(NamedTuple):
-    """The findings and near misses of one ego at one time, with their plan view or the reason why there is none.
-
-    `t`: hundredths of a second since the drive's start; `leading`: it is among those that tell what happened; `map_href`: the place
-    on a map of the world, empty where it is not known.
-    """
-
-    anchor: str
-    time: str
-    t: int
-    keys: str
-    leading: bool
-    ego_id: str
-    objects: list[str]
-    kind: str
-    severity: str
-    titles: list[str]
-    plan: dict[str, Any] | None
-    no_plan: str
-    map_href: str
-    cards: list[RuleCard]
 
 
 def finding_line(
@@ -98,23 +61,17 @@ def finding_line(
     required = number(row["required"], unit)
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
-    anchor = finding_anchor(row) if linked and kind == "fail" else ""
+    place = anchor("finding", row["finding_id"]) if linked and kind == "fail" else ""
     return FindingLine(
         row,
         rule,
         kind,
-        anchor=anchor,
-        href=f"#{anchor or incident_anchor(*incident_key(row))}" if linked else "",
-        drive_href="#" + drive_anchor(row["drive_id"]) if linked else "",
+        anchor=place,
+        href=f"#{place or anchor('moment', *incident_key(row))}" if linked else "",
         keys=" ".join((kind, row["severity"], rule["pack"], *([status.filter_key] if status else []))),
-        object_id=NONE if row["object_id"] is None else row["object_id"],
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
-        observed=non_breaking(number(row["observed"], unit)),
         required=required,
-        margin=non_breaking(number(row["margin"], unit)),
-        missed=NONE if row["margin"] is None else non_breaking(number(abs(row["margin"]), unit)),
-        sense=sense or "",
         gauge=_gauge(row["observed"], row["required"]),
         told=_told(row, rule, required) if sense else row["reason"],
         course=series,
@@ -125,7 +82,7 @@ def finding_line(
 def _told(row: Row, rule: Row, required: str) -> str:
     """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
     what = f"{rule['observes']} " if rule["observes"] else ""
-    said = f"{what}{non_breaking(number(row['observed'], row['unit']))}, must be {required}"
+    said = f"{what}{measure(row['observed'], row['unit'])}, must be {required}"
     return said if row["reason_measures"] else f"{said} ({row['reason']})"
 
 
@@ -134,7 +91,7 @@ def incident_key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
+def _in_summary(lines: Iterable[FindingLine]) -> set[Key]:
     """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
     first: dict[str, tuple[int, float, Key]] = {}
     for row in (line.row for line in lines if line.kind == "fail"):
@@ -145,12 +102,17 @@ def incidents_in_summary(lines: Iterable[FindingLine]) -> set[Key]:
 
 
 def incidents(
-    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int, leading: Collection[Key]
-) -> list[Incident]:
-    """Return the moments of one drive, in time order, from its findings and near misses; `leading`: those that lead."""
-    groups = grouped(lines, lambda line: incident_key(line.row))
+    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int
+) -> list[dict[str, Any]]:
+    """Return the moments of one drive, in time order, from its findings and near misses.
+
+    Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
+    of a second since the drive's start; `leading`: it is among those that tell what happened; `on_earth`: a finding
+    whose longitude and latitude are known, None for none.
+    """
+    groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
-        _moment(at, found, pictures.get(at), start_ns, leads=at in leading)
+        _moment(at, found, start_ns) | {"plan": pictures.get(at), "leading": at in leading}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
@@ -171,38 +133,23 @@ def _objects(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(
-    at: Key, found: Sequence[FindingLine], picture: dict[str, Any] | None, start_ns: int, *, leads: bool
-) -> Incident:
+def _moment(at: Key, found: Sequence[FindingLine], start_ns: int) -> dict[str, Any]:
     failed = [line for line in found if line.kind == "fail"]
     gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = grouped(found, lambda line: line.row["rule_id"])
-    return Incident(
-        anchor=incident_anchor(*at),
-        time=found[0].time,
-        t=centiseconds(at[2], start_ns),
-        keys=" ".join(sorted({name for line in found for name in line.keys.split()})),
-        leading=leads,
-        ego_id=at[1],
-        objects=sorted(_objects(found)),
-        kind="fail" if failed else "near",
-        severity=gravest[0].row["severity"],
-        titles=list(dict.fromkeys(line.rule["title"] for line in gravest)),
-        plan=picture,
-        no_plan="" if picture else "No picture: the ego's position is not known here, or too many findings are worse.",
-        map_href=next(filter(None, map(_map_href, failed)), ""),
-        cards=[
-            RuleCard(lines[0].rule, "#" + rule_anchor(rule_id), lines)
-            for rule_id, lines in sorted(cards.items(), key=_weight)
-        ],
-    )
-
-
-def _map_href(line: FindingLine) -> str:
-    lon, lat = line.row["lon"], line.row["lat"]
-    if lon is None or lat is None:
-        return ""
-    return f"https://www.openstreetmap.org/?mlat={lat:.6f}&mlon={lon:.6f}#map=18/{lat:.6f}/{lon:.6f}"
+    return {
+        "anchor": anchor("moment", *at),
+        "time": found[0].time,
+        "t": centiseconds(at[2], start_ns),
+        "keys": " ".join(sorted({name for line in found for name in line.keys.split()})),
+        "ego_id": at[1],
+        "objects": sorted(_objects(found)),
+        "kind": "fail" if failed else "near",
+        "severity": gravest[0].row["severity"],
+        "titles": list(dict.fromkeys(line.rule["title"] for line in gravest)),
+        "on_earth": next((line.row for line in failed if None not in {line.row["lon"], line.row["lat"]}), None),
+        "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
+    }
 
 
 def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:

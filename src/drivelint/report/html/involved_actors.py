@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from drivelint.report.html.incidents import incident_key
-from drivelint.result.text import NONE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.result.text import Row
-
-_STANDS_MPS: Final = 0.1
 
 
 def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
@@ -37,8 +34,8 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
         {
             "name": f"{'object' if is_object else 'ego'} {who}",
             "what": _kind(seen[who]),
-            "size": _size(seen[who]),
-            "speeds": _speeds(seen[who]),
+            "sized": next((a for a in seen[who] if None not in {a["length_m"], a["width_m"]}), None),
+            "speeds": [a["speed_mps"] for a in seen[who] if a["speed_mps"] is not None],
             "n": n,
         }
         for (is_object, who), n in order
@@ -48,19 +45,3 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
 
 def _kind(actors: Sequence[Row]) -> str:
     return next((a["actor_class"] for a in actors if a["actor_class"]), "of unknown kind").replace("_", " ")
-
-
-def _size(actors: Sequence[Row]) -> str:
-    known = [a for a in actors if a["length_m"] is not None and a["width_m"] is not None]
-    return f"{known[0]['length_m']:.2f} m by {known[0]['width_m']:.2f} m" if known else NONE
-
-
-def _speeds(actors: Sequence[Row]) -> str:
-    speeds = [a["speed_mps"] for a in actors if a["speed_mps"] is not None]
-    if not speeds:
-        return NONE
-    low, high = min(speeds), max(speeds)
-    if high < _STANDS_MPS:
-        return "standing"
-    usual = f" (up to {high * 3.6:.0f} km/h, {high * 2.23694:.0f} mph)"
-    return (f"{high:.1f} m/s" if high - low < _STANDS_MPS else f"{low:.1f} to {high:.1f} m/s") + usual

@@ -30,7 +30,14 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
     first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
-    steps = [_step(row, i, start_ns, worst=i == worst) for i in range(first, min(first + _ROWS, len(t)))]
+    steps = [
+        {
+            "time": f"{(t[i] - start_ns) / 1e9:.2f}",
+            **{name: row[name][i] for name in ("observed", "required", "margin", "holds")},
+            "worst": i == worst,
+        }
+        for i in range(first, min(first + _ROWS, len(t)))
+    ]
     measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
     return {
         "chart": _chart(row, worst, unit, start_ns) if measured else None,
@@ -40,30 +47,20 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
     }
 
 
-def _step(row: Row, i: int, start_ns: int, *, worst: bool) -> dict[str, Any]:
-    """Return one judged step in words."""
-    return {
-        "time": f"{(row['t_ns'][i] - start_ns) / 1e9:.2f}",
-        **{name: number(row[name][i]) for name in ("observed", "required", "margin")},
-        "kept": {True: "yes", False: "no", None: "unknown"}[row["holds"][i]],
-        "worst": worst,
-    }
-
-
 def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, Any]:
     """Return lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends."""
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
-    y = axis_around(values, _BOTTOM, _TOP) if values else None
-    seen = [row["observed"][worst]] if row["observed"][worst] is not None else []
+    y = axis_around(values, _BOTTOM, _TOP)
+    seen = row["observed"][worst]
     return {
         "observed": _line(t, row["observed"], x, y),
         "required": _line(t, row["required"], x, y),
         "spans": _spans(t, row["holds"], x),
-        "worst": (num(x.at(t[worst])), num(y.at(seen[0]) if y and seen else (_TOP + _BOTTOM) / 2)),
+        "worst": (num(x.at(t[worst])), num((_TOP + _BOTTOM) / 2 if seen is None else y.at(seen))),
         "t_ticks": x.ticks(6),
-        "v_ticks": y.ticks(4) if y else [],
+        "v_ticks": y.ticks(4),
         "unit": unit or "",
         "t0": round(t[0] * 100),
         "t1": round(t[-1] * 100),
@@ -71,10 +68,8 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, A
     }
 
 
-def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis | None) -> str:
+def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis) -> str:
     """Return the path through the values, broken where there is none or where steps are missing."""
-    if y is None:
-        return ""
     gap = 3 * _typical(t)
     parts, last = [], None
     for at, value in zip(t, values, strict=True):
@@ -111,7 +106,7 @@ def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[di
 
 def _words(row: Row, t: Sequence[float], unit: str | None) -> str:
     seen = [v for v in row["observed"] if v is not None]
-    between = f"observed between {number(min(seen), unit)} and {number(max(seen), unit)}, " if seen else ""
+    between = f"observed between {number(min(seen), unit)} and {number(max(seen), unit)}, "
     failed = sum(kept is False for kept in row["holds"])
     last = next((v for v in reversed(row["required"]) if v is not None), None)
     required = "" if last is None else f"required {number(last, unit)} at the end, "

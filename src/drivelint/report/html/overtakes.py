@@ -5,9 +5,8 @@ from __future__ import annotations
 import statistics
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.anchors import overtake_anchor
 from drivelint.report.html.svg import Axis, num, percent
-from drivelint.result.text import non_breaking, number, seconds
+from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,9 +23,7 @@ ASSERTION_TITLES: Final = (
 )
 """The runtime assertions in the order of `overtake_record.stretches`: what must hold."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
-_SAID: Final = {"fail": "not kept", "pass": "kept", "unknown": "unknown", "not_applicable": "nobody was coming"}
 _VERDICT: Final = {"nobody": "not_applicable"}
-_STATUS: Final = {"truncated": "still out at the end of the recording", "lane_change": "stayed in the other lane"}
 _APART: Final = 20.0  # percent: so much room a label needs on a phone
 _THIN: Final = 0.6  # percent: a band is at least as wide
 _WORST: Final = ("fail", "unknown", "pass", "nobody")
@@ -34,7 +31,7 @@ _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D be
 _SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
 _LABELS: Final = 10
-_NOT_COMPUTED: Final = {"verdict": "unknown", "sda": "-", "spare": "-", "zone": "", "reason": "not computed"}
+_NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 
 
@@ -61,28 +58,14 @@ def _least_spare(row: Row) -> tuple[float, str, str, int]:
 
 
 def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any]:
-    cells = {p["profile"]: _cell(p) for p in row["profiles"]}
+    cells = {p["profile"]: p for p in row["profiles"]}
     stages = [stage for stage in _STAGES if any(s["stage"] == stage for s in row["stretches"])]
     clock = Axis(row["t0_ns"], max(row["t_end_ns"], row["t0_ns"] + 1), 0.0, 100.0)
-    given = (
-        ("lane", row["lane_width_m"], "m wide"),
-        ("ego", row["l_av_m"], "m long"),
-        ("passed", row["l_vbp_m"], "m long"),
-    )
     return {
         "row": row,
-        "anchor": overtake_anchor(row["drive_id"], row["ego_id"], row["occurrence"]),
         "time": seconds(row["t0_ns"], start_ns),
-        "ov_id": row["ov_id"] or "nobody seen",
-        "status": _STATUS.get(row["status"]) or row["status"],
-        "da": ("" if row["ov_id"] else "at least " if row["da_m"] is not None else "") + number(row["da_m"], "m"),
-        "speeds": ", ".join(
-            f"{who} {number(v, 'm/s')}"
-            for who, v in (("ego", row["v_av_mps"]), ("passed", row["v_vbp_mps"]), ("oncoming", row["v_ov_mps"]))
-        ),
-        "inputs": ", ".join(f"{what} {value:.2f} {unit}" for what, value, unit in given if value is not None),
         "cells": [cells.get(profile, _NOT_COMPUTED) for profile in profiles],
-        "stages": [stage.replace("_", " ") for stage in stages],
+        "stages": stages,
         "rows": [_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
         if stages
         else [],
@@ -104,20 +87,6 @@ def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     return [(percent(at), label) for at, label in kept]
 
 
-def _cell(p: Row) -> dict[str, Any]:
-    """Return what one profile says of an overtake."""
-    spare = "-"
-    if p["spare_m"] is not None:
-        spare = f"{'short by' if p['spare_m'] <= 0 else 'spare'} {non_breaking(number(abs(p['spare_m']), 'm'))}"
-    return {
-        "verdict": "unknown" if p["zone"] is None else "fail" if p["zone"] == "A" else "pass",
-        "sda": non_breaking(number(p["sda_m"], "m")),
-        "spare": spare,
-        "zone": p["zone"],
-        "reason": p["reason"] or "",
-    }
-
-
 def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
     """Return the stages as name, place and width."""
     drawn = []
@@ -125,7 +94,7 @@ def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]
         mine = [s for s in stretches if s["stage"] == stage]
         if mine:
             a, b = clock.at(min(s["t_start_ns"] for s in mine)), clock.at(max(s["t_end_ns"] for s in mine))
-            drawn.append((stage.replace("_", " "), percent(a), percent(b - a)))
+            drawn.append((stage, percent(a), percent(b - a)))
     return drawn
 
 
@@ -136,8 +105,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
         verdict = min((said for said, _ in mine), key=_WORST.index)
         deep = max((m for _, m in mine if m is not None), default=None)
-        worst = "nobody was coming" if verdict == "nobody" else _depth(deep)
-        cells.append((_VERDICT.get(verdict, verdict), worst))
+        cells.append((_VERDICT.get(verdict, verdict), deep))
     runs: list[list[Any]] = []
     for s in stretches:
         said = _VERDICT.get(s["said"][n], s["said"][n])
@@ -149,14 +117,8 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     bands = []
     for (said, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
-        bands.append((said, percent(min(a, 100.0 - _THIN)), percent(b - min(a, 100.0 - _THIN)), _SAID[said]))
+        bands.append((said, percent(min(a, 100.0 - _THIN)), percent(b - min(a, 100.0 - _THIN))))
     return {"title": ASSERTION_TITLES[n], "cells": cells, "bands": bands}
-
-
-def _depth(metres: float | None) -> str:
-    if metres is None:
-        return ""
-    return f"{'inside' if metres >= 0 else 'clear'} by {non_breaking(number(abs(metres), 'm'))}"
 
 
 def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
-from drivelint.report.html.anchors import rule_anchor
 from drivelint.result import counts
-from drivelint.result.text import non_breaking, number, seconds
+from drivelint.result.text import measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +60,7 @@ def contacts(result: Result, lines: Sequence[FindingLine]) -> dict[str, Any] | N
         who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
         depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
-        deep = f", {non_breaking(number(max(depths), 'm'))} deep" if depths else ""
+        deep = f", {measure(max(depths), 'm')} deep" if depths else ""
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
         named.append((said, hrefs.get(first["finding_id"], "")))
@@ -85,7 +84,6 @@ def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[Findi
     found = [
         {
             "rule": rules[rule_id],
-            "href": "#" + rule_anchor(rule_id),
             "n": len(rows),
             "n_drives": len({row["drive_id"] for row in rows}),
             "worst": min(shown.get(rule_id, []), key=_margin, default=None),
@@ -135,11 +133,10 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
         who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
         summary = {
             "drive_id": section["drive_id"],
-            "href": "#" + section["anchor"],
             "file_name": section["file_name"],
             "who": who[:_STORY_PARTIES],
             "n_more": len(who[_STORY_PARTIES:]),
-            "moments": [moment for moment in section["moments"] if moment.leading],
+            "moments": [moment for moment in section["moments"] if moment["leading"]],
         }
         told += [summary] if summary["moments"] else []
     return told
@@ -150,6 +147,8 @@ def first_page_texts(
 ) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
-    leading = [line for story in told for moment in story["moments"] for card in moment.cards for line in card.lines]
+    leading = [
+        line for story in told for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_
+    ]
     profiles = {line.row["profile"] or "" for line in lines}
     return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

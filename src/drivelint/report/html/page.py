@@ -8,12 +8,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.report.html import overview
-from drivelint.report.html.anchors import drive_anchor, rule_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
-from drivelint.report.html.glossary import glossary_entries
-from drivelint.report.html.incidents import finding_line, incidents, incidents_in_summary, plan_views
+from drivelint.report.html.explanations import glossary_entries, notes_on_logs
+from drivelint.report.html.incidents import finding_line, incidents, plan_views
 from drivelint.report.html.involved_actors import involved_actors
-from drivelint.report.html.log_notes import notes_on_logs
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.overtakes import overtake_views
 from drivelint.report.html.overtaking_opportunities import overtaking_opportunities
@@ -27,7 +26,7 @@ from drivelint.report.html.reasons import (
 )
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
-from drivelint.report.html.timeline import TimeAxis, empty_timeline, separate_shared_rules, timelines
+from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.result import counts
 from drivelint.result.counts import grouped
 from drivelint.result.model import exit_status
@@ -36,7 +35,7 @@ from drivelint.result.text import number
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Incident, Key
+    from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.report.html.timeline import Timeline
     from drivelint.result.model import Result
     from drivelint.result.text import Row
@@ -85,11 +84,9 @@ def content(result: Result) -> dict[str, Any]:
     sections = [
         _section(
             row,
-            timelines(verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors, _clock(row)),
-            incidents(
-                mine := listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]], incidents_in_summary(mine)
-            ),
-            involved_actors(mine, scenes),
+            timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
+            incidents(listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]]),
+            involved_actors(listed.get(row["drive_id"], []), scenes),
             unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )
         for row in drives
@@ -97,7 +94,6 @@ def content(result: Result) -> dict[str, Any]:
     ]
     totals = counts.total(result.verdicts)
     broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
-    tracks = replays([scenes[at] for at in drawn], spaces, starts, road)
     return {
         "outcome": exit_status(result),
         "headline": overview.headline(result),
@@ -122,13 +118,11 @@ def content(result: Result) -> dict[str, Any]:
         "filters": _filters(lines, rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
         "open": reason_groups(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
-        "km": sum(row["km"] for row in drives),
-        "n_egos": sum(row["n_egos"] for row in drives),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
         "drives": [
             {
                 **row,
-                "href": "#" + drive_anchor(row["drive_id"]) if row["drive_id"] in shown else "",
+                "href": "#" + anchor("drive", row["drive_id"]) if row["drive_id"] in shown else "",
                 "verdicts": told[row["drive_id"]],
                 "near": sum(line.kind == "near" for line in listed.get(row["drive_id"], [])),
                 "warnings": sum(check["severity"] != "info" for check in row["quality"]),
@@ -140,7 +134,7 @@ def content(result: Result) -> dict[str, Any]:
         "brief": len(drives) > MAX_DETAILED_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
-        "replays_of": {drive_anchor(drive_id): text for drive_id, text in tracks.items()},
+        "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
         "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
@@ -235,14 +229,10 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
     }
 
 
-def _clock(row: Row) -> TimeAxis:
-    return TimeAxis(row["t_start_ns"] or 0, max(row["duration_s"] or 0.0, 1e-3))
-
-
 def _section(
     row: Row,
     tracks: Sequence[Timeline],
-    seen: Sequence[Incident],
+    seen: Sequence[Row],
     involved: Sequence[dict[str, Any]],
     *,
     unfolded: bool,
@@ -250,13 +240,12 @@ def _section(
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = separate_shared_rules(tracks)
-    without = sorted({m.ego_id for m in seen} - {t.ego_id for t in tracks})
+    without = sorted({m["ego_id"] for m in seen} - {t.ego_id for t in tracks})
     tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
-    egos = [{"timeline": t, "moments": [m for m in seen if m.ego_id == t.ego_id]} for t in tracks]
+    egos = [{"timeline": t, "moments": [m for m in seen if m["ego_id"] == t.ego_id]} for t in tracks]
     missing = grouped(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
-        "anchor": drive_anchor(row["drive_id"]),
         "folded": folded,
         "parties": involved,
         "missing": [
@@ -278,7 +267,6 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     return [
         {
             **rule,
-            "anchor": rule_anchor(rule_id),
             "verdicts": told[rule_id],
             "worst": number(margins.get(rule_id), rule["unit"]),
         }

@@ -69,7 +69,7 @@ class _View:
 
 
 def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequence[Row]) -> dict[str, Any]:
-    """Return the plan view of a row of the table `scene` as the template draws it, in drawing order, with a description in words.
+    """Return the plan view of a row of the table `scene` as the template draws it, in drawing order, and describes it in words.
 
     `concerned`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
     """
@@ -99,7 +99,10 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
         "texts": texts,
         "scale_px": num(bar_m * view.scale),
         "scale_m": bar_m,
-        "words": _words(ego, met, told, around),
+        "ego": ego,
+        "met": met,
+        "told": told,
+        "around": around,
     }
 
 
@@ -239,21 +242,3 @@ def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, s
         "kind": "ego" if actor is ego else "met" if actor in met else "other",
         "actor": actor["actor_id"],
     }
-
-
-def _words(
-    ego: Row,
-    met: Sequence[Row],
-    told: Sequence[str],
-    spaces: Sequence[Row],
-) -> str:
-    """Return the picture in words."""
-    speeds = [f"ego {ego['actor_id']} at {_speed(ego)}", *(f"{a['actor_id']} at {_speed(a)}" for a in met)]
-    names = {ego["actor_id"]: "ego"}
-    lengths = [f"{names.get(s['actor_id'], s['actor_id'])} {s['length_m']:.1f} m" for s in spaces]
-    return "; ".join([", ".join(speeds), *told, *([f"danger spaces: {', '.join(lengths)}"] if lengths else [])])
-
-
-def _speed(actor: Row) -> str:
-    v = actor["speed_mps"]
-    return "unknown speed" if v is None else f"{v:.1f} m/s"

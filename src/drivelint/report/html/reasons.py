@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.phrases import plural
-from drivelint.report.html.anchors import rule_anchor
+from drivelint.report.html.anchors import anchor
 from drivelint.result import counts
 
 if TYPE_CHECKING:
@@ -61,7 +61,8 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[st
             "why": summarise_reasons(verdict_reason(row) for row in told),
             "provide": can_be_provided(told[0]["reason_code"]),
             "rules": [
-                (titles.get(rule, rule), "#" + rule_anchor(rule)) for rule in sorted({row["rule_id"] for row in told})
+                (titles.get(rule, rule), "#" + anchor("rule", rule))
+                for rule in sorted({row["rule_id"] for row in told})
             ],
             "n": sum(row["count_all"] for row in told),
             "n_drives": len({row["drive_id"] for row in told}),

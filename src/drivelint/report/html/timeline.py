@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.report.html.anchors import finding_anchor, rule_anchor, timeline_axis_id
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
 from drivelint.report.html.svg import percent
 from drivelint.result.counts import SEVERITIES, grouped
@@ -32,7 +32,6 @@ class TimelineRow(NamedTuple):
     """
 
     rule_id: str
-    href: str
     title: str
     profile: str | None
     verdict: str
@@ -93,16 +92,13 @@ class TimeAxis(NamedTuple):
 
 
 def timelines(
-    verdicts: Iterable[Row],
-    findings: Sequence[Row],
-    rules: Mapping[str, Row],
-    anchors: Mapping[str, str],
-    clock: TimeAxis,
+    drive: Row, verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str]
 ) -> list[Timeline]:
     """Return a timeline for every ego of one drive, in the order of the verdicts.
 
     `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
     """
+    clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
     found = grouped(findings, lambda row: row["ego_id"])
     return [
         _timeline(told, found.get(ego, []), rules, anchors, clock)
@@ -127,7 +123,7 @@ def _timeline(
     folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
     for key, told in grouped(verdicts, _rule_and_profile).items():
         rule_id, profile = key
-        rule, href = rules[rule_id], f"#{rule_anchor(rule_id)}"
+        rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
         if worst == "not_applicable" or all(_is_missing(row) for row in told):
             reason = verdict_reason(told[0])
@@ -135,14 +131,14 @@ def _timeline(
             continue
         marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
         near = [_near(row, clock) for row in told if row["near_miss"]]
-        stands = sorted({anchors.get(finding_anchor(row), "") for row in found.get(key, [])})
+        stands = sorted({anchors.get(anchor("finding", row["finding_id"]), "") for row in found.get(key, [])})
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
-        rows.append(TimelineRow(rule_id, href, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
+        rows.append(TimelineRow(rule_id, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
     rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
     order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
         ego,
-        timeline_axis_id(verdicts[0]["drive_id"], ego),
+        anchor("grid", verdicts[0]["drive_id"], ego),
         f"{clock.tick_step_s() / clock.duration_s:.5f}",
         clock.ticks(),
         rows,
@@ -207,15 +203,15 @@ def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
 
 
 def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, str]:
-    anchor = finding_anchor(row)
+    place = anchor("finding", row["finding_id"])
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
-    href = f"#{anchor}" if anchor in anchors else ""
+    href = f"#{place}" if place in anchors else ""
     return {"kind": "fail", **_extent(start, end), "href": href, "title": _title(row, clock)}
 
 
 def _near(row: Row, clock: TimeAxis) -> dict[str, str]:
     at = clock.at(row["t_worst_ns"])
-    return {"kind": "near", **_extent(at, at), "href": "", "title": f"near miss, {_title(row, clock)}"}
+    return {"kind": "near", **_extent(at, at), "title": f"near miss, {_title(row, clock)}"}
 
 
 def _extent(start: float, end: float) -> dict[str, str]:

@@ -1,0 +1,54 @@
+"""The Jinja templates of what is text, not HTML: they lie beside the modules that fill them in.
+
+They have the phrases of `drivelint.result.text` as filters.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from drivelint.phrases import plural
+from drivelint.result.text import number, rule_name, seconds, subject, with_count
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from jinja2 import Template
+
+
+def text_template(
+    module_file: str, name: str, finalize: Callable[[Any], Any] | None = None, **filters: Callable[..., Any]
+) -> Template:
+    """Return the template `name` beside a module (its `__file__`), with these filters more; nothing that it shows is escaped.
+
+    `finalize`: what is done to each value that is filled in.
+    """
+    environment = Environment(  # noqa: S701 - no HTML
+        loader=FileSystemLoader(Path(module_file).parent),
+        finalize=finalize,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= _FILTERS | filters
+    return environment.get_template(name)
+
+
+def cell(value: Any) -> Any:
+    """Return what may stand in a cell of a table in Markdown, on one line; what is no text is returned as it is."""
+    return value.replace("|", "\\|").replace("\n", " ") if isinstance(value, str) else value
+
+
+_FILTERS: Final[dict[str, Callable[..., Any]]] = {
+    "cell": cell,
+    "number": number,
+    "plural": plural,
+    "rule_name": rule_name,
+    "seconds": seconds,
+    "subject": subject,
+    "with_count": with_count,
+}
