@@ -75,9 +75,6 @@ WITH _closed_rule AS (
     LEFT JOIN _tracked o USING (drive_id, ego_id, object_id)
     LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
 )
-SELECT n.*, coalesce(n.reason, c.because) AS cause
--- the condition of the left side is in a key: beside the keys it would make the join a nested loop
-FROM _closed_rule n LEFT JOIN _cause c
-    ON c.key.drive_id = CASE WHEN n.verdict = 'unknown' AND n.reason IS NULL AND tells_no_cause(n.code) THEN n.drive_id END
-    AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
+SELECT n.*, coalesce(n.reason, CASE WHEN n.verdict = 'unknown' AND tells_no_cause(n.code) THEN c.because END) AS cause
+FROM _closed_rule n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
     AND c.key.object_id = coalesce(n.object_id, '') AND c.key.of_hidden = n.of_hidden AND c.key.of_lanes = n.of_lanes

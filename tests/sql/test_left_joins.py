@@ -13,15 +13,20 @@ import pytest
 from drivelint import catalogue
 from drivelint.sql import syntax
 from drivelint.sql.derivations import derivations
+from tests.sql import selects
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-QUERIES = {name: each.sql for name, each in derivations().items()} | {
-    f"{rule_id}@{section}": sql
-    for rule_id, rule in catalogue.load_rules(()).items()
-    for section, sql in rule.sections.items()
-}
+QUERIES = (
+    {name: each.sql for name, each in derivations().items()}
+    | {
+        f"{rule_id}@{section}": sql
+        for rule_id, rule in catalogue.load_rules(()).items()
+        for section, sql in rule.sections.items()
+    }
+    | selects.fixed()
+)
 
 
 def nodes(tree: Any) -> Iterator[dict[str, Any]]:
@@ -62,6 +67,12 @@ def doubtful(sql: str) -> list[str]:
 @pytest.mark.parametrize("name", QUERIES)
 def test_outer_joins_compare_both_sides(name: str) -> None:
     assert doubtful(QUERIES[name]) == []
+
+
+def test_those_of_the_statements_of_rules_too() -> None:
+    statements = selects.of_rules()
+    assert {name: found for name, sql in statements.items() if (found := doubtful(sql))} == {}
+    assert len(statements) > 100
 
 
 @pytest.mark.parametrize(

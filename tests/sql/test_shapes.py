@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MILLIMETRE = 0.001
 FAR = 400_000.0  # a map in metres of a national grid
 
-Box = tuple[float, float, float, float, float]
+Box = tuple[float, ...]  # x, y, yaw, length, width
 places = st.floats(-40.0, 40.0)
 boxes = st.tuples(places, places, st.floats(-math.pi, math.pi), st.floats(0.1, 25.0), st.floats(0.1, 4.0))
 pairs = st.lists(st.tuples(boxes, boxes), min_size=1, max_size=40)

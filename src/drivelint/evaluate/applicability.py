@@ -23,25 +23,23 @@ def has_conditions(rule: Rule) -> bool:
     return bool(rule.applies.restricting) or rule.applies.restricts_speed_limit
 
 
-def condition_joins(rule: Rule, alias: str, time: str, check_engagement: bool) -> str:
-    """Return the joins that the conditions, and with `check_engagement` `ENGAGED`, need for rows with these keys and time; '' for none."""
-    if not (has_conditions(rule) or check_engagement):
-        return ""
-    same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
-    condition = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}"
-    return f"{condition} LEFT JOIN _watched w ON {same.format('w', alias)}" if check_engagement else condition
+def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict[str, str]:
+    """Return the fragments about rows with these keys and time.
 
-
-def in_force_sql(rule: Rule, check_engagement: bool) -> str:
-    """Return whether the rule is in force: true, false or NULL. One condition that is false settles it."""
-    return " AND ".join(_terms(rule, check_engagement).values()) or "true"
-
-
-def unknown_reason_sql(rule: Rule, check_engagement: bool) -> str:
-    """Return the reason code of the first condition that is not known, or NULL."""
+    `in_force`: whether the rule is in force there, true, false or NULL: one condition that is false settles it. `doubt`: the reason code
+    of the first condition that is not known, or NULL. `condition_joins`: the joins that they need, and with `check_engagement` `ENGAGED`.
+    """
     terms = _terms(rule, check_engagement)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
-    return f"CASE {whens} END" if terms else "NULL::VARCHAR"
+    same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
+    joins = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}" if terms else ""
+    if check_engagement:
+        joins += f" LEFT JOIN _watched w ON {same.format('w', alias)}"
+    return {
+        "in_force": " AND ".join(terms.values()) or "true",
+        "doubt": f"CASE {whens} END" if terms else "NULL::VARCHAR",
+        "condition_joins": joins,
+    }
 
 
 def bound_values(rule: Rule) -> dict[str, object]:

@@ -14,8 +14,6 @@ from drivelint.sql.statements import statement
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-_SAME = "a.drive_id = b.drive_id AND a.ego_id = b.ego_id AND a.t_ns = b.t_ns"
-
 
 def has_default_grid(rule: Rule) -> bool:
     """Whether a rule is an invariant that neither brings its own grid nor needs each step looked at."""
@@ -40,46 +38,37 @@ def first_pass_sql(rule: Rule, partial: bool) -> str:
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
-    """CTEs ending in `_grid`: drive_id, ego_id, t_ns, object_id, label, k, seg, applies, doubt and why (the code and the author's
-    reason where it is NULL)."""
-    if "applies" not in rule.sections:
-        grid = "_pair_grid" if rule.per_object else "_step_grid"
-        first = f"_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies, NULL::VARCHAR AS why FROM {grid})"
-    else:
-        own = rule.columns["applies"]
-        who = "object_id" if "object_id" in own else "NULL::VARCHAR AS object_id"
-        label = "episode::VARCHAR AS label" if "episode" in own else "NULL::VARCHAR AS label"
-        three = "applies" if "applies" in own else "true"
-        why = f"min(reason) FILTER (({three}) IS NULL)" if "reason" in own else "NULL::VARCHAR"
-        crowd = rule.per_object and "object_id" not in own
-        first = f"""_applies AS (
-{rule.sections["applies"]}
-), _distinct AS (
-    SELECT drive_id, ego_id, t_ns, {who}, {label}, CASE WHEN bool_or(coalesce({three}, false)) THEN true
-        WHEN bool_or({three} IS NULL) THEN NULL
-        ELSE false END AS applies, {why} AS why
-    FROM _applies GROUP BY ALL
-), _base AS (
-    SELECT a.drive_id, a.ego_id, a.t_ns, {"p" if crowd else "a"}.object_id, a.label, b.k, b.seg, a.applies, a.why
-    FROM _distinct a LEFT JOIN step b ON {_SAME}
-    {"JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else ""})"""
+    """Return CTEs ending in `_grid`; `unsettled`: only the groups that a first pass did not settle."""
     keep = ""
     if unsettled:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
         keep += " ON a.drive_id = _u.drive_id AND a.ego_id = _u.ego_id"
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
-    joins = applicability.condition_joins(rule, "a", "a.t_ns", check_engagement)
-    if not joins:
-        return f"""{first}, _grid AS (SELECT a.*, CASE WHEN a.applies IS NULL THEN 'applies_unknown' END AS doubt
-            FROM _base a
-    {subject_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
-    return f"""{first}, _restricted AS (
-    SELECT a.* EXCLUDE (applies), a.applies AND {applicability.in_force_sql(rule, check_engagement)} AS applies,
-        CASE WHEN a.applies IS NULL THEN 'applies_unknown'
-            ELSE {applicability.unknown_reason_sql(rule, check_engagement)} END AS doubt
-    FROM _base a
-    {joins}
-), _grid AS (SELECT a.* FROM _restricted a{subject_join(partial, "a")}{keep} WHERE a.applies IS DISTINCT FROM false)"""
+    return statement(
+        "judging/grid",
+        base=_base(rule),
+        todo=subject_join(partial, "a"),
+        unsettled=keep,
+        **applicability.fragments(rule, "a", "a.t_ns", check_engagement),
+    )
+
+
+def _base(rule: Rule) -> str:
+    if "applies" not in rule.sections:
+        return statement("judging/grid_by_default", grid="_pair_grid" if rule.per_object else "_step_grid")
+    own = rule.columns["applies"]
+    three = "applies" if "applies" in own else "true"
+    crowd = rule.per_object and "object_id" not in own
+    return statement(
+        "judging/grid_of_author",
+        author=rule.sections["applies"],
+        author_object="object_id" if "object_id" in own else "NULL::VARCHAR",
+        label="episode::VARCHAR" if "episode" in own else "NULL::VARCHAR",
+        applies=three,
+        why=f"min(reason) FILTER (({three}) IS NULL)" if "reason" in own else "NULL::VARCHAR",
+        object="p.object_id" if crowd else "a.object_id",
+        objects="JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else "",
+    )
 
 
 def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
@@ -117,7 +106,6 @@ def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     return rule_statement(
         "outcome_of_lost_objects",
         rule,
-        condition_joins=applicability.condition_joins(rule, "l", "l.t_from_ns", check_engagement),
         todo=subject_join(partial, "l"),
-        in_force=applicability.in_force_sql(rule, check_engagement),
+        **applicability.fragments(rule, "l", "l.t_from_ns", check_engagement),
     )

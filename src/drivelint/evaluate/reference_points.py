@@ -39,9 +39,7 @@ def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
         own_object="r.object_id" if own_object else "NULL",
         start="r.t_ns - $_window_ns" if has_window and rule.kind == "precondition" else "r.t_ns",
         end="r.t_ns + $_window_ns" if has_window and rule.kind == "postcondition" else "r.t_ns",
-        in_force=applicability.in_force_sql(rule, check_engagement),
-        doubt=applicability.unknown_reason_sql(rule, check_engagement),
-        condition_joins=applicability.condition_joins(rule, "r", "r.t_ns", check_engagement),
+        **applicability.fragments(rule, "r", "r.t_ns", check_engagement),
     )
 
 
@@ -66,11 +64,11 @@ def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> st
     if check_engagement:
         human = f"({applicability.ENGAGED}) IS DISTINCT FROM true"
         why_human = "CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
-        joins = applicability.condition_joins(rule, "g", "g.t_ns", True)
+        joins = applicability.fragments(rule, "g", "g.t_ns", check_engagement)["condition_joins"]
     series = ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"
     if rule.combine != "each":
-        decides = step_by_rank(2, 0, 1) if rule.combine == "all" else step_by_rank(0, 2, 1, "-")
-        decides = decides.replace("'observed': observed", "'who': object_id, 'gain': gain, 'observed': observed")
+        whose = "'who': object_id, 'gain': gain, "
+        decides = step_by_rank(2, 0, 1, "", whose) if rule.combine == "all" else step_by_rank(0, 2, 1, "-", whose)
         series = statement("judging/combined_objects", deciding_object=decides)
     return rule_statement(
         "judged_of_references",

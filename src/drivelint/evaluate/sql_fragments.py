@@ -137,24 +137,26 @@ def deciding_step(rule: Rule) -> str:
     if rule.sense == "holds":
         good, unknown, bad = (0, 1, 2) if eventually else (2, 1, 0)
     sign = "-" if eventually else ""
-    return step_by_rank(good, bad, unknown, sign, combined=rule.combine != "each")
+    return step_by_rank(good, bad, unknown, sign, _who(rule))
 
 
-def step_by_rank(good: int, bad: int, unknown: int, sign: str = "", *, combined: bool = False) -> str:
-    """Return the aggregate that picks a step by these ranks, then by margin, time and (combined) object."""
-    who = "'who': coalesce(who, ''), " if combined else ""
+def step_by_rank(good: int, bad: int, unknown: int, sign: str, whose: str) -> str:
+    """Return the aggregate that picks a step by these ranks, then by margin, time and `whose`: fields for the object, or ''."""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
         f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, unknown_time_ns()), "
-        f"{who}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
+        f"{whose}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )
 
 
 def first_unknown_step(rule: Rule) -> str:
     """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason, observed, required)."""
-    who = "'who': coalesce(who, ''), " if rule.combine != "each" else ""
     return (
-        f"min({{'t': coalesce(t_ns, unknown_time_ns()), 'code': coalesce(code, 'null_value'), {who}'reason': reason, "
+        f"min({{'t': coalesce(t_ns, unknown_time_ns()), 'code': coalesce(code, 'null_value'), {_who(rule)}'reason': reason, "
         "'observed': observed, 'required': required}) "
         "FILTER (holds IS NULL)"
     )
+
+
+def _who(rule: Rule) -> str:
+    return "'who': coalesce(who, ''), " if rule.combine != "each" else ""

@@ -15,6 +15,7 @@ from drivelint.result.schemas import OUTPUT_VERSION, conform
 from drivelint.sql.store import column_comments
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     import pyarrow as pa
@@ -29,18 +30,23 @@ class OutputError(DriveLintError):
 
 
 def parquet_bytes(rows: pa.Table, table: str) -> bytes:
-    """Return a schema table as Parquet: the same bytes for the same rows, whatever their chunks and metadata were.
+    """Return an output table as Parquet; its columns are those of `schemas/`, whatever the chunks and metadata of `rows` were."""
+    about = {"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_VERSION)}
+    return described_parquet(conform(rows, table), table, about)
+
+
+def described_parquet(rows: pa.Table, table: str, about: Mapping[str, str]) -> bytes:
+    """Return a table of `schemas/` as Parquet with the metadata `about`: the same bytes for the same rows.
 
     Every column carries its comment from `schemas/` as Arrow field metadata (`comment`). Tables that have a geometry are GeoParquet.
     """
     comments = column_comments()[table]
-    rows = conform(rows, table)
-    described = rows.schema.with_metadata({"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_VERSION)})
+    described = rows.schema.with_metadata(about)
     for i, field in enumerate(rows.schema):
         described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
     sink = io.BytesIO()
     pq.write_table(
-        with_geometry(rows.cast(described), table),
+        with_geometry(rows.cast(described).combine_chunks(), table),
         sink,
         version="2.6",
         data_page_version="1.0",

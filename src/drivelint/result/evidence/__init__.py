@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.result.evidence import lane_shapes, overtaking, surroundings
+from drivelint.reasons.reason_table import make_reason_table
+from drivelint.result.evidence import lane_shapes, surroundings
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql.statements import statement
 
@@ -35,7 +36,9 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
     surroundings.gather(con)
     lane_shapes.gather(con)
     con.execute(statement("evidence/track"), {"step_ns": surroundings.PATH_STEP_NS})
-    overtaking.gather(con)
+    make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
+    con.execute(statement("evidence/overtake_record"))
+    con.execute(statement("evidence/opportunity_record"))
 
 
 def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:

@@ -1,0 +1,2 @@
+-- part of `grid.sql`
+_base AS (SELECT *, NULL::VARCHAR AS label, true AS applies, NULL::VARCHAR AS why FROM {grid})

@@ -1,0 +1,64 @@
+"""The statements that Python runs by name: each is a whole, or part of one that is; none is forgotten; they are planned as hash joins."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pytest
+
+from drivelint.reasons.reason_table import make_reason_table
+from drivelint.sql import store, syntax
+from drivelint.sql.statements import statement, texts
+from tests.sql import selects
+
+SOURCE = Path(__file__).resolve().parents[2] / "src" / "drivelint"
+IN_ORDER = {
+    "judging": "macros sentences tables todo watched grid_group blind closed named failed verdict finding margin course",
+    "evidence": "every_moment moment around scene danger_space_edge near_lane lane lane_point overtake_record opportunity_record "
+    "drive overtake_space chain_point",
+    "inspect": "registration quality",
+}
+VALUES: dict[str, Any] = {
+    "_objects": True, "per_rule": 1, "least_m": 1.0, "most_m": 1.0, "first_no": 0, "end_no": 1, "path_ns": 1, "step_ns": 1,
+    "ids": ["a"], "only": None, "losses": [],
+}  # fmt: skip
+
+
+def test_fragments_are_replaced_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "drivelint.sql.statements.texts", lambda _part: {"x": "SELECT {'a': {value}}, format('{}', 1) -- {value}"}
+    )
+    assert statement("part/x", value="{value}") == "SELECT {'a': {value}}, format('{}', 1) -- {value}"
+    with pytest.raises(KeyError, match="value"):
+        statement("part/x")
+
+
+@pytest.mark.parametrize("name", selects.fixed())
+def test_a_fixed_statement_is_read(name: str) -> None:
+    assert syntax.tables_read(syntax.parse_select(selects.fixed()[name], name))
+
+
+def test_python_runs_every_statement() -> None:
+    sources = "\n".join(file.read_text(encoding="utf-8") for file in SOURCE.rglob("*.py"))
+    named = set(re.findall(r'"(?:\w+/)?(\w+)"', sources)) | {"cover_of_windows", "cover_of_points"}
+    assert {f"{part}/{name}" for part in selects.PARTS for name in texts(part) if name not in named} == set()
+
+
+def test_the_plans_join_on_keys() -> None:
+    con = store.connect(threads=1)
+    nested = set()
+    for part, names in IN_ORDER.items():
+        for name in names.split():
+            if name == "verdict":
+                make_reason_table(con, "SELECT NULL AS rule_no, NULL AS cause, NULL AS start_ns")
+            for parsed in con.extract_statements(statement(f"{part}/{name}")):
+                values = {key: VALUES[key] for key in parsed.named_parameters}
+                if selects.select(parsed.query) and parsed.type != duckdb.StatementType.CREATE_FUNC:
+                    (explained,) = con.extract_statements(f"EXPLAIN {parsed.query}")
+                    if any("BLOCKWISE_NL" in plan for _, plan in con.execute(explained, values).fetchall()):
+                        nested.add(f"{part}/{name}")
+                con.execute(parsed, values)
+    assert nested == set()
