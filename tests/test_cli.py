@@ -145,7 +145,7 @@ def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.Complet
     assert "Findings" not in done.stderr
     assert {path.name for path in out.iterdir()} == {
         "verdicts.parquet", "findings.parquet", "drives.parquet", "rules.parquet", "scenes.parquet", "lanes.parquet",
-        "courses.parquet", "opportunities.parquet", "overtakes.parquet", "spaces.parquet",
+        "courses.parquet", "opportunities.parquet", "overtakes.parquet", "spaces.parquet", "tracks.parquet",
         "report.html", "summary.json", "junit.xml", "run.json", "annotated",
     }  # fmt: skip
 

@@ -27,6 +27,7 @@ from drivelint.evaluate import evaluate
 from drivelint.formats import read_trace
 from drivelint.report.progress import Silent
 from drivelint.result.files import OutputError, parquet_bytes
+from drivelint.result.geometry import without_geometry
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
 from tests.annotate.files import seeking, streaming, verify
@@ -99,7 +100,8 @@ def later(source: Path, target: Path, by_ns: int) -> None:
 
 
 def rows(out: Path, table: str, drive: str) -> list[dict[str, Any]]:
-    return [row for row in pq.read_table(out / f"{table}.parquet").to_pylist() if row["drive_id"] == drive]
+    found = without_geometry(pq.read_table(out / f"{table}.parquet"))
+    return [row for row in found.to_pylist() if row["drive_id"] == drive]
 
 
 def known(row: Mapping[str, Any]) -> dict[str, Any]:

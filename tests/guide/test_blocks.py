@@ -24,12 +24,14 @@ from drivelint.errors import TraceError
 from drivelint.formats import registry
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
+from tests.derive.overtake_scene import scene
 from tests.guide.blocks import PAGES, Block, blocks
+from tests.scenes import derived, drive
 from tests.shared_data import ROOT, shared
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 NAMES = [page.name for page in PAGES]
-MARKS = {"", "run", "prints", "file", "command", "workflow"}
+MARKS = {"", "run", "prints", "file", "command", "workflow", "condition"}
 
 
 @pytest.fixture(scope="module")
@@ -123,6 +125,20 @@ def test_a_block_without_a_mark_is_no_code(name: str) -> None:
     """What could be run is run; the rest is text."""
     (page,) = (page for page in PAGES if page.name == name)
     assert [block.body for block in blocks(page) if not block.mark and block.language != "text"] == []
+
+
+def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
+    """On a straight road: an object ahead in the ego's way is in the danger space if its rear is nearer than the ego can stop."""
+    (block,) = (block for page in PAGES for block in blocks(page) if block.word == "condition")
+    way, actors = scene()
+    con = derived(drive(actors, way.environment), tables=["pair", "ego_state"])
+    found = con.execute(f"""
+        SELECT c.holds, p.rear_s_m - e.front_s_m > stopping_distance_m(e.speed_mps) OR p.front_s_m < e.front_s_m AS is_clear
+        FROM ({block.body}) c JOIN pair p USING (drive_id, ego_id, t_ns, object_id) JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        WHERE abs(e.heading_diff_rad) < 0.001 AND abs(p.d_m - e.d_m) < 0.5
+    """).fetchall()
+    assert {holds for holds, _ in found} == {True, False}
+    assert [holds for holds, is_clear in found if holds != is_clear] == []
 
 
 def test_files_of_the_repository_are_shown_as_they_are() -> None:
