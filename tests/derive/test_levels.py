@@ -150,7 +150,7 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
         moving("back", high, t, 320 - 15 * t, high.other),
         moving("lead", low, t, 260 + 14 * t, low.own),
         moving("met", low, t, 580 - 15 * t, low.other),
-        standing("stands", high, t, 200 - high.own, high.own),
+        standing("stands", high, t, 200 + low.own, high.own),
     ]
     scene = drive([ego, *others], low.environment)
     known = lifted(
@@ -159,7 +159,8 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
 
     def passed(it: Drive) -> set[tuple[object, ...]]:
         found = judged([it], rules=["ukhc", "criticality", "rss", "stvo"])
-        return {(r["rule_id"], r["profile"], r["object_id"], r["occurrence"]) for r in found if r["verdict"] == "pass"}
+        # an unknown in between parts one occurrence into two, so occurrences are not counted
+        return {(r["rule_id"], r["profile"], r["object_id"]) for r in found if r["verdict"] == "pass"}
 
     before, after = passed(known), passed(scene)
     assert before
