@@ -175,8 +175,12 @@ pair_over_road AS MATERIALIZED (
 ),
 -- An ego that stands has several samples at one station: the lowest height is taken.
 ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
+-- Actors with a height, and whether it is that of a vehicle on a road. A simulator may let a vehicle fall through the ground.
 actor_height AS (
-    SELECT s.drive_id, s.actor_id, a.height_m, bool_or(is_measured_height(s.z_m, a.height_m)) AS is_measured
+    SELECT
+        s.drive_id, s.actor_id, a.height_m,
+        bool_or(is_measured_height(s.z_m, a.height_m))
+            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * avg(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured
     FROM state_dynamics s
     JOIN actor a USING (drive_id, actor_id)
     WHERE s.z_m IS NOT NULL

@@ -76,7 +76,8 @@ class Road:
         """Return the road's height at stations of the path."""
         del branch  # a branch begins on the road's level and stays there
         at, height = zip(*(self.heights or ((0.0, 0.0),)), strict=True)
-        return np.interp(np.asarray(station, np.float64), at, height)
+        found: NDArray[np.float64] = np.interp(np.asarray(station, np.float64), at, height)
+        return found
 
     def driven_on_the(self, hand: Handedness) -> Road:
         """Return the same road driven on the other side."""

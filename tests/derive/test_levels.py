@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+import pyarrow as pa
 import pytest
 
+from tests import blinding
 from tests.derive.bridge_scenes import bridge, lifted
 from tests.scenes import derived, drive, judged, moving, road, rows, standing, times
 
@@ -137,6 +140,23 @@ def test_without_a_map_height_alone_decides(hand: str) -> None:
     t = times(2.0)
     pair_ = [moving("ego", low, t, 100 + 10 * t, low.own), moving("high", low, t, 100 + 10 * t, low.own + 5)]
     assert verdicts(lifted(drive(pair_, None), {"ego": 0.0, "high": 6.0}), CRASH) == {"pass"}
+
+
+@HANDS
+def test_who_falls_through_the_ground_is_on_no_level(hand: str) -> None:
+    """As a simulator may let it: 6 m down at the crossing, 60 m at the end, is no road under the ego's."""
+
+    def sunk(depth_m: float) -> set[str]:
+        def change(states: pa.Table) -> pa.Table:
+            is_other = np.array(states["actor_id"].to_pylist()) == "over"
+            fall = np.maximum(states["t_ns"].to_numpy() / 1e9 - 4.0, 0.0) / 8.0
+            z = pa.array(np.where(is_other, 10.0 - 6.0 - depth_m * fall, 10.0 + fall))
+            return states.set_column(states.schema.get_field_index("z_m"), "z_m", z)
+
+        return verdicts(blinding.changed(crossing(hand), "actor_state", change), CRASH)
+
+    assert sunk(0.0) == {"pass"}
+    assert sunk(60.0) == {"unknown"}
 
 
 @HANDS
