@@ -46,7 +46,7 @@ CREATE TABLE lane_next (
 CREATE TABLE lane_apart (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    other_id VARCHAR NOT NULL         -- one of another road that lies over or under it, as far as the map tells: no junction or link joins the two, and their heights there differ by more than 2.5 m or are not known; each pair both ways round
+    other_id VARCHAR NOT NULL         -- one of another road that lies over or under it, as far as the map tells: no junction, link or common end joins the two (but decks may begin and end together), and their heights there differ by more than 2.5 m or are not known; each pair both ways round
 );
 
 -- lifetime: map
@@ -380,7 +380,7 @@ CREATE TABLE pair (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the ego's step
-    object_id VARCHAR NOT NULL,       -- an actor present, and no part of the ego: one row per step from its first to its last sample
+    object_id VARCHAR NOT NULL,       -- an actor present, and no part of the ego: one row per step from its first to its last sample, but none where it is over or under the ego's road by the heights of the log
     actor_class VARCHAR,              -- see road_user
     x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, a hole in its track, or off_level)
     y_m DOUBLE,                       -- its box centre
@@ -390,7 +390,7 @@ CREATE TABLE pair (
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
     distance_m DOUBLE,                -- centre to centre
-    off_level BOOLEAN NOT NULL,       -- over or under the ego's road there, or it may be: by its height, or by the map where heights are not recorded
+    off_level BOOLEAN NOT NULL,       -- over or under the ego's road there, or it may be: the map has another road there, or the heights of the log are not reliable; whoever is so by reliable heights has no row
     clearance_m DOUBLE,               -- box to box, the trailer's box being the ego's too; negative: depth of overlap; beyond 30 m a lower bound, and off_level, where an overlap in plan is NULL
     clearance_is_bound BOOLEAN,       -- clearance_m is only a lower bound
     s_m DOUBLE,                       -- station of its centre on the ego's running chain; NULL: not in the corridor's strip
@@ -432,6 +432,14 @@ CREATE TABLE lost_object (
     t_from_ns BIGINT NOT NULL,        -- unknown from here
     t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds, when it would have been recorded again
     code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range
+);
+
+-- lifetime: part
+CREATE TABLE track_off_level (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR NOT NULL,       -- an actor that pair has at some steps, but not at the last (or first) of its track: there it is over or under the ego's road
+    lost BOOLEAN NOT NULL             -- at the end of its track, or at its beginning (false)
 );
 
 -- lifetime: part

@@ -85,20 +85,25 @@ reached AS (
     WHERE r.hop < 5 AND r.between_m + m.length_m <= turning_way_m()
 ),
 joined_roads AS (SELECT DISTINCT environment_id, start.road AS road_id, b.road AS other_road_id FROM reached),
--- Lanes that begin or end in one point meet, too: the map may be cropped or lack the links.
 lanelet_tip AS (
-    SELECT environment_id, lanelet_id, min({'k': k, 'x': x_m, 'y': y_m}) AS f, max({'k': k, 'x': x_m, 'y': y_m}) AS l FROM lane_point GROUP BY ALL
+    SELECT p.environment_id, p.lanelet_id, min({'k': p.k, 'x': p.x_m, 'y': p.y_m, 'z': h.z_m}) AS f, max({'k': p.k, 'x': p.x_m, 'y': p.y_m, 'z': h.z_m}) AS l
+    FROM lane_point p
+    LEFT JOIN segment_height h USING (environment_id, lanelet_id, k)
+    GROUP BY ALL
 ),
+-- Lanes that begin or end in one point meet, too: the map may be cropped or lack the links. Two lanes that begin together and end together
+-- do not: one of them may be the other one's upper deck.
 lane_pair AS (
     SELECT o.environment_id, o.lanelet_id, o.other_id
     FROM unjoined_overlap o
     ANTI JOIN joined_roads USING (environment_id, road_id, other_road_id)
     JOIN lanelet_tip a ON a.environment_id = o.environment_id AND a.lanelet_id = o.lanelet_id
     JOIN lanelet_tip b ON b.environment_id = o.environment_id AND b.lanelet_id = o.other_id
-    WHERE least(
-        (a.f.x - b.f.x) ** 2 + (a.f.y - b.f.y) ** 2, (a.l.x - b.l.x) ** 2 + (a.l.y - b.l.y) ** 2,
-        (a.f.x - b.l.x) ** 2 + (a.f.y - b.l.y) ** 2, (a.l.x - b.f.x) ** 2 + (a.l.y - b.f.y) ** 2
-    ) > 1
+    CROSS JOIN LATERAL (
+        SELECT
+            is_one_point(a.f, b.f) AS begin_together, is_one_point(a.l, b.l) AS end_together, is_one_point(a.f, b.l) OR is_one_point(a.l, b.f) AS is_continued
+    ) t
+    WHERE begin_together = end_together AND NOT is_continued
 )
 SELECT environment_id, lanelet_id, other_id FROM lane_pair
 UNION

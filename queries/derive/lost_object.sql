@@ -10,6 +10,7 @@ ended_track AS (
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)
     LEFT JOIN track_end r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.object_id = n.object_id AND r.t_ns = n.t_last_ns AND r.lost
+    ANTI JOIN (FROM track_off_level WHERE lost) l ON l.drive_id = n.drive_id AND l.ego_id = n.ego_id AND l.object_id = n.object_id
     WHERE n.t_last_ns + c.max_gap_ns < c.t_end_ns
 )
 SELECT e.drive_id, e.ego_id, e.object_id, e.t_last_ns + 1 AS t_from_ns, coalesce(least(e.plain_ns, e.t_end_ns), e.t_end_ns) AS t_to_ns,

@@ -1,7 +1,7 @@
 -- The ego and every other actor, one row per ego step from the actor's first sample to its last. An actor whose sample has another time
 -- than the step is moved on by its own velocity while the sample is fresh. After that the actor is present but not placed. An actor that is
--- over or under the ego's road, or may be, is not placed either: in plan it is on the road, but it is not known whether the ego meets it
--- there.
+-- over or under the ego's road by the heights of the log has no row: the ego does not meet it there. An actor that may be over or under the
+-- road is not placed: in plan it is on the road, but it is not known whether the ego meets it there.
 WITH sample_at_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_sample_ns, s.x_m, s.y_m, s.z_m,
@@ -164,7 +164,7 @@ object_place AS (
 -- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map can tell the level
 drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
 pair_over_road AS MATERIALIZED (
-    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, a.z_m, p.s_m, p.lane_heading_diff_rad, p.lanelet_id
+    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, p.lane_heading_diff_rad, p.lanelet_id
     FROM (
         SELECT * FROM pair_offset WHERE z_m IS NOT NULL
         UNION ALL
@@ -174,25 +174,49 @@ pair_over_road AS MATERIALIZED (
     WHERE abs(p.d_m) - coalesce(a.object_half_length_m * abs(sin(p.lane_heading_diff_rad)) + a.object_half_width_m * abs(cos(p.lane_heading_diff_rad)), 0.0) < p.half_width_m + greatest(coalesce(p.over_width_m, 0.0), 2 * p.half_width_m)
 ),
 -- An ego that stands has several samples at one station: the lowest height is taken.
-ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min(z_m) AS z_m FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
--- The object's height against the ego's, where the ego comes nearest to that place, before or after.
-height_difference AS (
+ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min({'z_m': z_m, 't_ns': t_ns}) AS lowest FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
+-- Actors with a height, and whether it is that of a vehicle on a road. A simulator may let a vehicle fall through the ground.
+actor_height AS (
     SELECT
-        pair_no, abs(dz_m) > level_m() + steepest() * along_m AS is_apart, abs(dz_m) <= level_m() AND steepest() * along_m <= level_m() AS is_same
+        s.drive_id, s.actor_id, a.height_m,
+        bool_or(is_measured_height(s.z_m, a.height_m))
+            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * avg(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured
+    FROM state_dynamics s
+    JOIN actor a USING (drive_id, actor_id)
+    WHERE s.z_m IS NOT NULL
+    GROUP BY ALL
+),
+pair_with_height AS MATERIALIZED (
+    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.t_ns, a.z_m, a.ego_z_m, a.distance_m, p.s_m, level_gap_m(e.height_m, o.height_m) AS level_gap_m, e.is_measured AND o.is_measured AS is_measured
+    FROM pair_offset a
+    JOIN actor_height e ON e.drive_id = a.drive_id AND e.actor_id = a.ego_id
+    JOIN actor_height o ON o.drive_id = a.drive_id AND o.actor_id = a.object_id
+    LEFT JOIN object_place p USING (pair_no)
+    WHERE a.z_m IS NOT NULL
+),
+-- The object's height against the ego's, where the ego comes nearest to that place, before or after. If the object has no position on the
+-- corridor, its height against the ego's at that step.
+height_difference AS MATERIALIZED (
+    SELECT
+        pair_no, abs(dz_m) > level_gap_m + steepest() * along_m AS is_apart, abs(dz_m) <= level_m() AND steepest() * along_m <= level_m() AS is_same,
+        is_measured AND abs(dz_m) < highest_m() AND abs(dz_m) > level_gap_m + steepest() * along_m + height_drift_mps() * later_s AS is_surely_apart
     FROM (
         SELECT
-            o.pair_no, o.z_m - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.z_m ELSE b.z_m END AS dz_m,
+            o.pair_no, o.level_gap_m, o.is_measured, o.z_m - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.lowest.z_m ELSE b.lowest.z_m END AS dz_m,
+            abs(o.t_ns - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.lowest.t_ns ELSE b.lowest.t_ns END) / 1e9 AS later_s,
             -- least() ignores NULL, which is right here.
             least(a.s_m - o.s_m, o.s_m - b.s_m) AS along_m
-        FROM pair_over_road o
+        FROM pair_with_height o
         ASOF LEFT JOIN ego_height b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.s_m <= o.s_m
         ASOF LEFT JOIN ego_height a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.s_m >= o.s_m
-        WHERE o.z_m IS NOT NULL
+        WHERE o.s_m IS NOT NULL
+        UNION ALL
+        SELECT pair_no, level_gap_m, is_measured, z_m - ego_z_m, 0.0, distance_m FROM pair_with_height WHERE s_m IS NULL
     )
 ),
 -- Pairs on different levels, or possibly so.
 pair_off_level AS (
-    SELECT pair_no FROM height_difference WHERE is_apart
+    SELECT pair_no FROM height_difference SEMI JOIN pair_over_road USING (pair_no) WHERE is_apart
     UNION
     -- The object is in a lane over or under the ego's, as far as the map tells, unless it heads along the ego's lane and not along that
     -- other one.
@@ -245,7 +269,8 @@ pair_with_place AS (
         -- If the object has no position on the corridor, its level matters only in a contact.
         o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
     FROM combined_clearance c
-    LEFT JOIN pair_off_level o USING (pair_no)
+    ANTI JOIN (FROM height_difference WHERE is_surely_apart) h ON h.pair_no = c.pair_no
+    LEFT JOIN pair_off_level o ON o.pair_no = c.pair_no
     -- The join is by keys alone: a condition of the left side would make it a nested loop.
     LEFT JOIN object_place p ON p.pair_no = CASE WHEN o.pair_no IS NULL THEN c.pair_no END
 )

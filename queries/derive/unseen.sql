@@ -53,6 +53,7 @@ sighting AS (
     LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
     LEFT JOIN ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
     LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
+    ANTI JOIN track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = v.lost
     WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
 ),
 judged_sighting AS (

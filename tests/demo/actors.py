@@ -88,10 +88,19 @@ class Actor:
         """Follow the branch instead of the road."""
         return replace(self, leaves=True)
 
+    def on_the_other_level(self) -> Actor:
+        """Follow the road that lies over or under the first one."""
+        return replace(self, leaves=True)
+
 
 def car() -> Actor:
     """Return a car of the paper's size."""
     return Actor(Body("car", 4.8, 1.8, 1.5))
+
+
+def lorry() -> Actor:
+    """Return a lorry without a trailer."""
+    return Actor(Body("truck", 12.0, 2.5, 4.0))
 
 
 def cyclist() -> Actor:

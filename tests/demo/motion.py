@@ -26,7 +26,7 @@ _TOUCH_M = 0.02  # bodies give way by this much before both stand
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """An actor's motion, arrays of one value per tick: station, offset (nearside positive), pose, speed, lights."""
+    """An actor's motion, arrays of one value per tick: station, offset (nearside positive), pose, height of the road, speed, lights."""
 
     actor: Actor
     t_s: Floats
@@ -35,13 +35,14 @@ class Track:
     x: Floats
     y: Floats
     yaw: Floats
+    ground: Floats
     speed: Floats
     light: NDArray[np.str_]
     brakes: NDArray[np.bool_]
 
     def at(self, rows: NDArray[np.intp]) -> Track:
         """Return the track at these ticks."""
-        names = ("t_s", "station", "offset", "x", "y", "yaw", "speed", "light", "brakes")
+        names = ("t_s", "station", "offset", "x", "y", "yaw", "ground", "speed", "light", "brakes")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
     def stopped_at(self, tick: int) -> Track:
@@ -71,7 +72,8 @@ def actor_track(actor: Actor, road: Road, duration_s: float) -> Track:
     yaw = heading + drift + (0.0 if along > 0 else np.pi)
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
     brakes = np.diff(speed, prepend=speed[0]) * TICKS_PER_S < -_BRAKES_MPS2
-    return Track(actor, t, station, d, x, y, yaw, speed, _lights(actor, road, t), brakes)
+    ground = road.height_m(station, branch=actor.leaves)
+    return Track(actor, t, station, d, x, y, yaw, ground, speed, _lights(actor, road, t), brakes)
 
 
 def _speeds(actor: Actor, t: Floats) -> Floats:
@@ -111,8 +113,9 @@ def half_extents(body: Body, drift: Floats) -> tuple[Floats, Floats]:
 
 
 def separation(a: Track, b: Track) -> Floats:
-    """Return the largest gap of two boxes over their four axes at every tick; negative: they overlap, by that depth."""
-    gaps = []
+    """Return the largest gap of two boxes over their four axes and in height at every tick; negative: they overlap, by that depth."""
+    heights = [track.ground + track.actor.body.height_m / 2 for track in (a, b)]
+    gaps = [np.abs(heights[1] - heights[0]) - (a.actor.body.height_m + b.actor.body.height_m) / 2]
     for yaw in (a.yaw, a.yaw + np.pi / 2, b.yaw, b.yaw + np.pi / 2):
         apart = np.abs((b.x - a.x) * np.cos(yaw) + (b.y - a.y) * np.sin(yaw))
         gaps.append(apart - half_extents(a.actor.body, a.yaw - yaw)[0] - half_extents(b.actor.body, b.yaw - yaw)[0])

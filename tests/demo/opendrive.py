@@ -97,10 +97,26 @@ def _element(
         *([f"    <link>{link}</link>"] if link else []),
         *limits,
         "    <planView>", *geometry, "    </planView>",
+        *_elevation(road),
         f"    <lanes>{offset}", *sections, "    </lanes>",
         *(["    <signals>", *signals, "    </signals>"] if signals else []),
         "  </road>",
     ])  # fmt: skip
+
+
+def _elevation(road: Road) -> list[str]:
+    """Return the heights of a road, straight from each station to the next."""
+    if not road.heights:
+        return []
+    ends = [*road.heights[1:], (road.line.length_m + road.heights[-1][0], road.heights[-1][1])]
+    return [
+        "    <elevationProfile>",
+        *(
+            f'      <elevation s="{_n(s)}" a="{_n(z)}" b="{(z1 - z) / (s1 - s)!r}" c="0" d="0"/>'
+            for (s, z), (s1, z1) in zip(road.heights, ends, strict=True)
+        ),
+        "    </elevationProfile>",
+    ]
 
 
 def _numbers(road: Road) -> list[int]:

@@ -30,7 +30,7 @@ _DECIMALS: Final = {"yaw_rad": 6}  # of all others four: no machine's last bit s
 _NUMBERS: Final[dict[str, Callable[[Track], Floats | float]]] = {
     "x_m": lambda track: track.x,
     "y_m": lambda track: track.y,
-    "z_m": lambda track: track.actor.body.height_m / 2,
+    "z_m": lambda track: track.ground + track.actor.body.height_m / 2,
     "yaw_rad": lambda track: track.yaw,
     "vx_mps": lambda track: track.speed * np.cos(track.yaw),
     "vy_mps": lambda track: track.speed * np.sin(track.yaw),

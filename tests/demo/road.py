@@ -8,9 +8,14 @@ and right-hand traffic.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from tests.demo.line import Line, Piece
+import numpy as np
+
+from tests.demo.line import ORIGIN, Line, Piece, Pose
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
 
 LANE_WIDTH_M = 3.5
 SIDE_LANE_WIDTH_M = 2.0  # a footway's or a shoulder's width
@@ -32,6 +37,7 @@ class Road:
     """A two-way road. `lanes` and `oncoming` count driving lanes along and against its line.
 
     `limits_mph` and `centre` (the centre line's marking) hold from their stations on; `beside` lies beside the carriageway.
+    `heights`: the road's height (m) at some stations, even between them; none: the map does not say it, and the road lies at 0.
     """
 
     pieces: tuple[Piece, ...]
@@ -43,11 +49,13 @@ class Road:
     centre: tuple[tuple[float, str], ...] = ((0.0, "broken"),)
     beside: Literal["sidewalk", "shoulder"] = "sidewalk"
     signs: tuple[Sign, ...] = ()
+    start: Pose = ORIGIN
+    heights: tuple[tuple[float, float], ...] = ()
 
     @property
     def line(self) -> Line:
         """Return the centre line."""
-        return Line(self.pieces)
+        return Line(self.pieces, self.start)
 
     @property
     def nearside_factor(self) -> int:
@@ -63,6 +71,13 @@ class Road:
         if branch:
             raise ValueError("this road has no fork to leave by")
         return self.line
+
+    def height_m(self, station: ArrayLike, *, branch: bool) -> NDArray[np.float64]:
+        """Return the road's height at stations of the path."""
+        del branch  # a branch begins on the road's level and stays there
+        at, height = zip(*(self.heights or ((0.0, 0.0),)), strict=True)
+        found: NDArray[np.float64] = np.interp(np.asarray(station, np.float64), at, height)
+        return found
 
     def driven_on_the(self, hand: Handedness) -> Road:
         """Return the same road driven on the other side."""

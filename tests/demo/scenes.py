@@ -6,6 +6,7 @@ from typing import Final
 
 from tests.demo.actors import Actor, car, cyclist
 from tests.demo.fork import Fork, ForkedRoad
+from tests.demo.levels import level_scenes
 from tests.demo.line import left, right, straight
 from tests.demo.overtakes import OvertakeManner, overtakes, pass_parked_car
 from tests.demo.road import LANE_WIDTH_M, MPH, Road, Sign
@@ -44,7 +45,15 @@ GENTLE_OVERTAKE: Final = OvertakeManner(25 * MPH, 30.0, -40.0, 6.0)
 
 def all_scenes() -> tuple[Scene, ...]:
     """Return every scene, the paper's overtakes first."""
-    return (*overtakes(), *_lane_changes(), *_exits(), *_harder_overtakes(), *_cyclists(), _clean_drive())
+    return (
+        *overtakes(),
+        *_lane_changes(),
+        *_exits(),
+        *_harder_overtakes(),
+        *_cyclists(),
+        *level_scenes(),
+        _clean_drive(),
+    )
 
 
 def _lane_changes() -> list[Scene]:
