@@ -180,7 +180,7 @@ actor_height AS (
     SELECT
         s.drive_id, s.actor_id, a.height_m,
         bool_or(is_measured_height(s.z_m, a.height_m))
-            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * avg(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured
+            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * from_picometres(sum(to_picometres(s.speed_mps))) / count(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured
     FROM state_dynamics s
     JOIN actor a USING (drive_id, actor_id)
     WHERE s.z_m IS NOT NULL
