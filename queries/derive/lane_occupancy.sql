@@ -1,9 +1,9 @@
 -- Every lanelet that contains the centre of an actor's box: the grid cell gives the candidates, arithmetic decides. The tolerance sideways
--- is 2 cm, because the bounds of neighbouring lanes are chords of different curves. Of lanes over each other, an actor is on the one at its height, where the
--- log and the map have heights.
+-- is 2 cm, because the bounds of neighbouring lanes are chords of different curves. Of lanes over each other, an actor is on the one at its
+-- height, where the log and the map have heights.
 WITH lane_candidate AS (
     SELECT
-        a.drive_id, a.actor_id, a.t_ns, a.x_m, a.y_m, a.z_m, a.yaw_rad, c.* EXCLUDE (cell, footway),
+        a.drive_id, a.actor_id, a.t_ns, a.x_m, a.y_m, a.yaw_rad, c.* EXCLUDE (environment_id, cell, footway),
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM state_dynamics a
@@ -15,21 +15,29 @@ lane_place AS (
     FROM lane_candidate
     WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
 ),
-lane_match AS MATERIALIZED (
+lane_match AS (
     SELECT
-        drive_id, actor_id, t_ns, z_m, environment_id, k, u, lanelet_id, s0_m + u * len_m AS s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
+        drive_id, actor_id, t_ns, lanelet_id, s0_m + u * len_m AS s_m, d_m, hw0_m + u * (hw1_m - hw0_m) AS half_width_m,
         wrap_rad(yaw_rad - atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0))) AS heading_diff_rad, drivable
     FROM lane_place
     WHERE abs(d_m) <= hw0_m + u * (hw1_m - hw0_m) + 0.02
 ),
--- Lanes that lie over or under another one, under an actor with a height: how far the lane's height is from the actor's.
+-- Lanes that lie over or under another one, under an actor with a height: whether the lane has the actor's height there.
+lane_height AS (
+    SELECT p.environment_id, p.lanelet_id, p.s_m, p.z_m, lead(p.s_m) OVER w AS s_next_m, lead(p.z_m) OVER w AS z_next_m
+    FROM lane_point p
+    SEMI JOIN lane_apart a ON a.environment_id = p.environment_id AND a.lanelet_id = p.lanelet_id
+    WINDOW w AS (PARTITION BY p.environment_id, p.lanelet_id ORDER BY p.k)
+),
 match_height AS (
-    SELECT m.drive_id, m.actor_id, m.t_ns, m.environment_id, m.lanelet_id, same_level(m.z_m, p.z_m + m.u * (n.z_m - p.z_m)) AS is_same
-    FROM lane_match m
-    SEMI JOIN lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
-    JOIN lane_point p ON p.environment_id = m.environment_id AND p.lanelet_id = m.lanelet_id AND p.k = m.k
-    JOIN lane_point n ON n.environment_id = m.environment_id AND n.lanelet_id = m.lanelet_id AND n.k = m.k + 1
-    WHERE m.z_m IS NOT NULL
+    SELECT
+        m.drive_id, m.actor_id, m.t_ns, h.environment_id, m.lanelet_id,
+        same_level(s.z_m, h.z_m + coalesce((m.s_m - h.s_m) / (h.s_next_m - h.s_m) * (h.z_next_m - h.z_m), 0.0)) AS is_same
+    FROM state_dynamics s
+    JOIN lane_match m USING (drive_id, actor_id, t_ns)
+    JOIN data_log g ON g.drive_id = m.drive_id
+    ASOF JOIN lane_height h ON h.environment_id = g.environment_id AND h.lanelet_id = m.lanelet_id AND h.s_m <= m.s_m + 0.1
+    WHERE s.z_m IS NOT NULL
 ),
 match_off_level AS (
     SELECT DISTINCT m.drive_id, m.actor_id, m.t_ns, m.lanelet_id
@@ -37,6 +45,9 @@ match_off_level AS (
     JOIN lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
     JOIN (FROM match_height WHERE is_same) o ON o.drive_id = m.drive_id AND o.actor_id = m.actor_id AND o.t_ns = m.t_ns AND o.lanelet_id = a.other_id
 )
-SELECT * EXCLUDE (z_m, environment_id, k, u) FROM lane_match ANTI JOIN match_off_level USING (drive_id, actor_id, t_ns, lanelet_id)
+-- Lanes over each other are rare. Where there are none, all matches need not be hashed to find that out.
+SELECT * FROM lane_match WHERE (SELECT count(*) FROM match_off_level) = 0
+UNION ALL BY NAME
+SELECT * FROM lane_match ANTI JOIN match_off_level USING (drive_id, actor_id, t_ns, lanelet_id) WHERE (SELECT count(*) FROM match_off_level) > 0
 UNION ALL BY NAME
 SELECT drive_id, actor_id, t_ns FROM state_dynamics s ANTI JOIN lane_match f USING (drive_id, actor_id, t_ns)

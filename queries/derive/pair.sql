@@ -228,6 +228,15 @@ pair_off_level AS (
     ANTI JOIN (FROM height_difference WHERE is_same) h ON h.pair_no = v.pair_no
     WHERE coalesce(NOT along_lane(v.lane_heading_diff_rad) OR along_lane(o.heading_diff_rad), true)
 ),
+pair_level AS (
+    SELECT pair_no, bool_or(is_surely_apart) AS is_surely_apart
+    FROM (
+        SELECT pair_no, false AS is_surely_apart FROM pair_off_level
+        UNION ALL
+        SELECT pair_no, true FROM height_difference WHERE is_surely_apart
+    )
+    GROUP BY pair_no
+),
 -- ---- the trailer's box belongs to the ego, too: the nearer of the two boxes counts
 trailer_clearance AS (
     SELECT
@@ -269,10 +278,10 @@ pair_with_place AS (
         -- If the object has no position on the corridor, its level matters only in a contact.
         o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
     FROM combined_clearance c
-    ANTI JOIN (FROM height_difference WHERE is_surely_apart) h ON h.pair_no = c.pair_no
-    LEFT JOIN pair_off_level o ON o.pair_no = c.pair_no
+    LEFT JOIN pair_level o ON o.pair_no = c.pair_no
     -- The join is by keys alone: a condition of the left side would make it a nested loop.
     LEFT JOIN object_place p ON p.pair_no = CASE WHEN o.pair_no IS NULL THEN c.pair_no END
+    WHERE o.is_surely_apart IS DISTINCT FROM true
 )
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, off_level,
