@@ -24,9 +24,8 @@ from drivelint.errors import TraceError
 from drivelint.formats import registry
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
-from tests.derive.overtake_scene import scene
 from tests.guide.blocks import PAGES, Block, blocks
-from tests.scenes import derived, drive
+from tests.scenes import derived, drive, moving, road, times
 from tests.shared_data import ROOT, shared
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
@@ -130,7 +129,8 @@ def test_a_block_without_a_mark_is_no_code(name: str) -> None:
 def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
     """On a straight road: an object ahead in the ego's way is in the danger space if its rear is nearer than the ego can stop."""
     (block,) = (block for page in PAGES for block in blocks(page) if block.word == "condition")
-    way, actors = scene()
+    way, t = road(), times(6.0)
+    actors = [moving("ego", way, t, 50 + 12 * t, way.own), moving("slower", way, t, 105 + 4 * t, way.own)]
     con = derived(drive(actors, way.environment), tables=["pair", "ego_state"])
     found = con.execute(f"""
         SELECT c.holds, p.rear_s_m - e.front_s_m > stopping_distance_m(e.speed_mps) OR p.front_s_m < e.front_s_m AS is_clear
