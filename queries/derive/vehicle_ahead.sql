@@ -63,7 +63,7 @@ vehicle_or_doubt AS (
     ASOF LEFT JOIN lane_crossing x ON x.drive_id = m.drive_id AND x.ego_id = m.ego_id AND x.t_ns <= m.t_ns
     UNION ALL BY NAME
     -- An actor without a position on the corridor, or of unknown class, may be in the ego's way behind a lead that is beside that way.
-    SELECT l.drive_id, l.ego_id, l.t_ns, NULL::VARCHAR AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
+    SELECT l.drive_id, l.ego_id, l.t_ns, NULL AS object_id, false AS nearest, false AS known, l.ego_speed_mps, l.in_lane, 0.0 AS error_mps,
         least(d.least_m, d.late_m, c.unclassified_m, c.outside_m) AS free_m, l.ego_speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND c.outside_m IS NULL THEN 0.0 ELSE fastest_mps() END AS free_mps
     FROM lead l
     LEFT JOIN lane_summary c USING (drive_id, ego_id, t_ns)
@@ -75,7 +75,7 @@ vehicle_or_doubt AS (
     UNION ALL BY NAME
     -- No lead is known: an actor without a position on the corridor, or of unknown class, may be nearer than every vehicle that is seen.
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, NULL::VARCHAR AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
+        e.drive_id, e.ego_id, e.t_ns, NULL AS object_id, true AS nearest, false AS known, e.speed_mps AS ego_speed_mps, 0.0 AS error_mps,
         least(d.least_m, d.late_m, c.unclassified_m, c.gap_m) AS free_m,
         e.speed_mps + CASE WHEN d.along AND c.unclassified_m IS NULL AND NOT coalesce(c.has_oncoming, false) THEN 0.0 ELSE greatest(fastest_mps(), c.coming_mps) END AS free_mps
     FROM ego_state e
