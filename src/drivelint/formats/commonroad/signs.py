@@ -37,6 +37,7 @@ _LIMITS = frozenset({"speed_limit", "speed_zone"})
 _AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # where the lanelet's traffic waits
 _SPEEDS = _LIMITS | {"minimum_speed"}
 _STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # of these, the codes that limit the speed are known
+_FARTHEST_M = 1e9  # beyond it a coordinate is a mistake
 _FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
 # of additional plates, these give a direction or a reason; others restrict the sign above them
 _PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
@@ -225,11 +226,12 @@ def stop_line_stations(
 
 
 def points(parent: etree._Element | None) -> Floats:
-    """Return the points (n, 2) below an element. Errors: `ValueError` where one is not two finite numbers."""
-    found = [] if parent is None else [(p.findtext("x"), p.findtext("y")) for p in parent.iterfind(".//point")]
-    both = np.array([(float(x or "nan"), float(y or "nan")) for x, y in found], np.float64).reshape(-1, 2)
-    if not np.isfinite(both).all():
-        raise ValueError("a point without finite coordinates")
+    """Return the points (n, 2) below an element. Errors: `ValueError` naming the line of one that is not two finite numbers."""
+    found = [] if parent is None else list(parent.iterfind(".//point"))
+    both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
+    bad = np.flatnonzero(~(np.abs(both) < _FARTHEST_M).all(axis=1))
+    if len(bad):
+        raise ValueError(f"the point in line {found[bad[0]].sourceline} has no x and y that can be")
     return both
 
 
