@@ -6,7 +6,7 @@ Such maps have no roads: the lanes that lie side by side are taken as one, numbe
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
+FARTHEST_M: Final = 1e12  # beyond it a coordinate is a mistake, and GEOS may refuse to count with it
 _LONGEST_M = 100_000.0  # so is longer
 
 
@@ -175,8 +176,8 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
 def _check_bounds(left: Floats, right: Floats) -> None:
     if len(left) < 2 or len(right) < 2:
         raise UnbuildableError("a bound has fewer than two points")
-    if not (np.isfinite(left).all() and np.isfinite(right).all()):
-        raise UnbuildableError("a bound has a coordinate that is not finite")
+    if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
+        raise UnbuildableError("a bound has a coordinate that cannot be")
 
 
 def _line(left: Floats, right: Floats) -> LaneGeometry:

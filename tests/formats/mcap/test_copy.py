@@ -163,8 +163,10 @@ def test_a_damaged_summary_is_not_used(tmp_path: Path, opcode: Opcode, kind: str
     at = victim.at + 9 + (8 if opcode == Opcode.CHANNEL else 6)  # its topic or name
     data[at : at + 2] = damage
     path.write_bytes(data)
+    out = annotated(path)
+    assert others(streaming(out)) == expected
     if kind != "no CRCs" or damage != b"zz":
-        assert others(streaming(annotated(path))) == expected
+        assert others(seeking(out)) == expected
 
 
 def test_an_attachment_that_cannot_be_read_is_named_by_its_place(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats import safe_xml
-from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
 from drivelint.road.signcodes import kind_of, turns_of_direction
 
 if TYPE_CHECKING:
@@ -37,7 +37,6 @@ _LIMITS = frozenset({"speed_limit", "speed_zone"})
 _AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # where the lanelet's traffic waits
 _SPEEDS = _LIMITS | {"minimum_speed"}
 _STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # of these, the codes that limit the speed are known
-_FARTHEST_M = 1e9  # beyond it a coordinate is a mistake
 _FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
 # of additional plates, these give a direction or a reason; others restrict the sign above them
 _PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
@@ -229,7 +228,7 @@ def points(parent: etree._Element | None) -> Floats:
     """Return the points (n, 2) below an element. Errors: `ValueError` naming the line of one that is not two finite numbers."""
     found = [] if parent is None else list(parent.iterfind(".//point"))
     both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
-    bad = np.flatnonzero(~(np.abs(both) < _FARTHEST_M).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
     if len(bad):
         raise ValueError(f"the point in line {found[bad[0]].sourceline} has no x and y that can be")
     return both

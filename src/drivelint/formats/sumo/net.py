@@ -18,7 +18,14 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.right_of_way import control_rows
-from drivelint.road.boundary_lanes import BoundedLane, SpeedLimitSpan, build_lanes, crossings, map_from_bounds
+from drivelint.road.boundary_lanes import (
+    FARTHEST_M,
+    BoundedLane,
+    SpeedLimitSpan,
+    build_lanes,
+    crossings,
+    map_from_bounds,
+)
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -166,8 +173,8 @@ def _kind(allow: str | None, disallow: str | None) -> str:
 def _points(shape: str) -> Floats:
     """Return the points (n, 2) of a shape, heights left out, each once. Errors: `ValueError`."""
     points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
-    if points.shape[1:] != (2,) or not np.isfinite(points).all():
-        raise ValueError("a point without finite coordinates")
+    if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
+        raise ValueError("its shape is no line of points x,y")
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-3]]
     if len(points) < 2:
         raise ValueError("its shape has no length")
