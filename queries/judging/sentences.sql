@@ -31,10 +31,10 @@ WITH _parts AS (
                 || ': give --env carriageway=single.'
             WHEN 'area_unknown' THEN 'Whether this is a built-up area is not known' || if_at_time
                 || ': give a map with road types, or --env area=built_up.'
-            WHEN 'nation_unknown' THEN 'In which country this is is not known' || if_at_time || ': give --env nation=gb.'
+            WHEN 'nation_unknown' THEN 'The country is not known' || if_at_time || ': give --env nation=gb.'
             WHEN 'weather_unknown' THEN 'The weather is not known' || if_at_time || ': give --env weather=dry.'
             WHEN 'light_unknown' THEN 'Whether it is day or night is not known' || if_at_time || ': give --env light=day or light=night.'
-            WHEN 'vehicle_class_unknown' THEN 'Which class of vehicle the ego is is not known' || if_at_time
+            WHEN 'vehicle_class_unknown' THEN 'The ego''s class of vehicle is not known' || if_at_time
                 || ': give --env vehicle_class=car.'
             WHEN 'limit_unknown' THEN 'The speed limit is not known' || if_at_time || ': give a map with speed limits.'
             WHEN 'not_engaged' THEN 'The automated driver does not drive' || if_at_time || '.'

@@ -110,6 +110,21 @@ def test_a_rule_holds_where_all_its_conditions_do(
 
 
 @pytest.mark.parametrize(
+    ("applies", "words"),
+    [
+        ('nation = ["de"]', "The country is not known: give --env nation=gb."),
+        (
+            'vehicle_class = ["car"]',
+            "The ego's class of vehicle is not known: give --env vehicle_class=car.",
+        ),
+    ],
+)
+def test_the_words_of_an_unknown_condition(tmp_path: Path, applies: str, words: str) -> None:
+    (row,) = verdicts(at_event(tmp_path, applies), drive([12, 12, 12], at=0.1))
+    assert row["reason"] == words
+
+
+@pytest.mark.parametrize(
     ("law", "nation", "judged"),
     [
         ("de", "de", True),

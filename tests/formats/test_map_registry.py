@@ -53,6 +53,7 @@ def test_a_file_name_is_exactly_that_file(tmp_path: Path) -> None:
         ("<roads/>", "<roads>"),
         (b"\x89MCAP0\r\n", "not XML"),
         ("x,y\n1,2\n", "not XML"),
+        *((bytes([tag]) + b"ust a text, no map\n", "neither XML nor OSI") for tag in (0x4A, 0x52, 0x8A, 0x92, 0x9A)),
         (b"", "not XML"),
     ],
 )

@@ -6,7 +6,7 @@ Such maps have no roads: the lanes that lie side by side are taken as one, numbe
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
+FARTHEST_M: Final = 1e12  # beyond it a coordinate is a mistake, and GEOS may refuse to count with it
 _LONGEST_M = 100_000.0  # so is longer
 
 
@@ -172,12 +173,16 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
     return list(built.values())
 
 
-def _line(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
+def _check_bounds(left: Floats, right: Floats) -> None:
     if len(left) < 2 or len(right) < 2:
         raise UnbuildableError("a bound has fewer than two points")
-    if not (np.isfinite(left).all() and np.isfinite(right).all()):
-        raise UnbuildableError("a bound has a coordinate that is not finite")
+    if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
+        raise UnbuildableError("a bound has a coordinate that cannot be")
+
+
+def _line(left: Floats, right: Floats) -> LaneGeometry:
+    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
+    _check_bounds(left, right)
     left, right = _paired(left, right)
     centre = (left + right) / 2
     keep = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > 0.01]
@@ -363,16 +368,31 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     return driving_side.side_driven_on([line.course(np.full(len(line.s), np.nan)) for line in outside])
 
 
-def crossings(walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
-    """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across."""
+def crossings(
+    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> Rows:
+    """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across.
+
+    Report in `quality` a lane that lies across none, or of which the shape is not known.
+    """
     driven = [lane for lane in lanes if lane.drivable]
     lines = [shapely.LineString(lane.line.centre) for lane in driven]
     tree = shapely.STRtree(lines)
     rows = []
     for walk in walks:
+        try:
+            _check_bounds(walk.left, walk.right)
+        except UnbuildableError as error:
+            message = f"crossing {walk.lanelet_id} is left out: {error}"
+            quality.add("invalid_lane", "error", walk.lanelet_id, message)
+            continue
         kind = "zebra" if walk.kind == "zebra" else None
         area = shapely.Polygon(np.vstack([walk.right, walk.left[::-1]]) + offset).buffer(0.0)
-        for i in tree.query(area, predicate="intersects"):
+        crossed = tree.query(area, predicate="intersects")
+        if not len(crossed):
+            message = f"crossing {walk.lanelet_id} lies across no lane that vehicles drive on"
+            quality.add("object_without_lane", "info", None, message)
+        for i in crossed:
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))
             rows.append(crossing_row(walk.lanelet_id, driven[i].lanelet_id, s, kind))

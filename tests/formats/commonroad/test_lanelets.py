@@ -118,6 +118,22 @@ def test_a_lanelet_that_cannot_be_read_is_named() -> None:
     ] == [("invalid_lane", "9")]
 
 
+@pytest.mark.parametrize("x", ["nan", "1e300", "1 2"])
+@pytest.mark.parametrize("tag", ["stopLine", "trafficSign"])
+def test_a_sign_or_stop_line_at_no_place_is_refused_with_its_line(tag: str, x: str) -> None:
+    point = f"\n<point><x>{x}</x><y>0</y></point>"
+    stop = f"<stopLine>{point}</stopLine>" if tag == "stopLine" else '<trafficSignRef ref="5"/>'
+    sign = f'<trafficSign id="5"><position>{point if tag == "trafficSign" else ""}</position></trafficSign>'
+    with pytest.raises(MapError, match="of a sign, light or stop line, the point in line 2 has no x and y"):
+        load(scenario(lanelet(1, 0.0, stop), sign))
+
+
+def test_a_crossing_without_a_shape_is_named() -> None:
+    walk = '<lanelet id="9"><leftBound/><rightBound/><laneletType>crosswalk</laneletType></lanelet>'
+    found = load(scenario(lanelet(1, 0.0), walk)).tables["map_quality"].to_pylist()
+    assert [(r["check_id"], r["lanelet_id"]) for r in found if r["severity"] == "error"] == [("invalid_lane", "9")]
+
+
 @pytest.mark.parametrize(
     "text", ["<commonRoad/>", '<!DOCTYPE a [<!ENTITY b "c">]><commonRoad>&b;</commonRoad>', "<commonRoad>"]
 )

@@ -205,6 +205,17 @@ def test_a_lane_whose_bound_has_no_points_is_left_out_and_named() -> None:
     assert tables["lanelet"].num_rows == len(ids)
 
 
+@pytest.mark.parametrize("left", [[], [(10.0, -5.0)]])
+def test_a_crossing_whose_bound_is_no_line_is_left_out_and_named(left: list[tuple[float, float]]) -> None:
+    drawing = Drawing()
+    road(drawing)
+    walk = drawing.lanelet(drawing.way(left), drawing.way([(12.0, -5.0)]), subtype="crosswalk")
+    tables = drawing.load().tables
+    lost = {(r["check_id"], r["lanelet_id"]) for r in tables["map_quality"].to_pylist() if r["severity"] == "error"}
+    assert ("invalid_lane", str(walk)) in lost
+    assert tables["crossing"].num_rows == 0
+
+
 def test_a_stop_line_and_its_sign_hold_for_the_lanes_that_refer_to_them() -> None:
     drawing = Drawing(local=True, globe=False)
     line = drawing.way([(40.2, 1.0), (40.2, -4.5)], "stop_line", "solid")

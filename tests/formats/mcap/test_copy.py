@@ -150,6 +150,33 @@ def test_a_summary_that_counts_wrongly_is_not_believed(tmp_path: Path) -> None:
     assert others(streaming(out)) == streaming(path)
 
 
+@pytest.mark.parametrize("opcode", [Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS])
+@pytest.mark.parametrize("kind", ["zstd", "no CRCs", "no chunks"])
+@pytest.mark.parametrize("damage", [b"\xff\xfe", b"zz"])
+def test_a_damaged_summary_is_not_used(tmp_path: Path, opcode: Opcode, kind: str, damage: bytes) -> None:
+    """Of a log without CRCs, only what cannot be read is seen to be damaged."""
+    path = log(tmp_path / "log.mcap", **KINDS[kind])
+    expected = streaming(path)
+    data = bytearray(path.read_bytes())
+    (end,) = (r.at for r in records(bytes(data)) if r.opcode == Opcode.DATA_END)
+    victim = next(r for r in records(bytes(data)) if r.opcode == opcode and r.at > end)
+    at = victim.at + 9 + (8 if opcode == Opcode.CHANNEL else 6)  # its topic or name
+    data[at : at + 2] = damage
+    path.write_bytes(data)
+    out = annotated(path)
+    assert others(streaming(out)) == expected
+    if kind != "no CRCs" or damage != b"zz":
+        assert others(seeking(out)) == expected
+
+
+def test_an_attachment_that_cannot_be_read_is_named_by_its_place(tmp_path: Path) -> None:
+    path = log(tmp_path / "log.mcap")
+    data = path.read_bytes().replace(b"first.txt", b"\xffirst.txt")
+    path.write_bytes(data)
+    with pytest.raises(TraceError, match="damaged at byte"):
+        annotated(path)
+
+
 def test_message_indexes_that_lie_are_written_anew(tmp_path: Path) -> None:
     """An index that leaves a message out disagrees with the statistics: all are found again from the chunks."""
     path = log(tmp_path / "log.mcap")

@@ -201,7 +201,8 @@ def reversed_side(trace: Trace) -> None:
         (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
         (gap, "43 m between"),
         (reversed_side, "same order"),
-        (lambda trace: moved(trace, math.nan), "not finite"),
+        (lambda trace: moved(trace, math.nan), "cannot be"),
+        (lambda trace: moved(trace, 1e300), "cannot be"),
         (lambda trace: moved(trace, -1e9), "km long"),
     ],
 )

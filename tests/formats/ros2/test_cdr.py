@@ -149,6 +149,13 @@ def arrays(messages: list[bytes]) -> cdr.Table:
     return decoder(ros.BASE, "derived_object_msgs/ObjectArray", TREE).table(packets(messages))
 
 
+def test_an_empty_message_in_what_is_not_read_is_one_byte() -> None:
+    types = {"p/Top": "p/Item[] list\nuint8 after", "p/Item": "p/Empty e\nuint8 a", "p/Empty": ""}
+    data = bytes([0, 1, 0, 0, 2, 0, 0, 0, 0, 5, 0, 6, 7])
+    table = decoder(types, "p/Top", {"after": None}).table(packets([data]))
+    assert table.columns["after"].tolist() == [7]
+
+
 @pytest.mark.parametrize("length", range(len(WHOLE)))
 def test_cut_off(length: int) -> None:
     with pytest.raises(TraceError, match=r"log\.mcap: topic '/t', log time 1 ns, record at byte 1001: the derived"):

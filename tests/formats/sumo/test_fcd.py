@@ -29,27 +29,76 @@ def test_xml_csv_and_parquet_are_one_log(tmp_path: Path) -> None:
     assert {log(trace)["format"] for trace in found} == {"sumo-fcd"}
 
 
-def test_line_by_line_is_what_the_parser_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_line_by_line_is_what_the_parser_reads(tmp_path: Path) -> None:
     """Steps without vehicles, several vehicles a step: the fast way is taken, and reads the same."""
     text = xml(ROWS[:6]).replace("<fcd-export>\n", '<fcd-export>\n  <timestep time="0.00"/>\n')
     text = text.replace(
         "</fcd-export>", '  <timestep time="7.00"/>\n  <timestep time="8.00">\n  </timestep>\n</fcd-export>'
     )
     path = put(tmp_path / "a.xml", text)
-    content = path.read_bytes()
-    fast = sumo._lines(content, content.find(b"<fcd-export"))
+    fast = sumo._lines(path.read_bytes())
     assert fast is not None
     assert fast.column("timestep_time").to_pylist() == [float(row["time"]) for row in ROWS[:6]]
-    monkeypatch.setattr(sumo, "_lines", lambda *_: None)
-    slow = sumo._rows(path)
+    slow = sumo._parsed(path, path.read_bytes())
     assert fast.column_names == slow.column_names
     assert fast.column("timestep_time").to_pylist() == [float(t) for t in slow.column("timestep_time").to_pylist()]
     assert all(fast.column(name).to_pylist() == slow.column(name).to_pylist() for name in fast.column_names[1:])
-    for change in ("</timestep><timestep", '"/><vehicle', "<person "):
-        other = text.replace("</timestep>\n  <timestep", change, 1).replace(
-            "<vehicle ", change if "pers" in change else "<vehicle ", 1
-        )
-        assert sumo._lines(other.encode(), other.find("<fcd-export")) is None or change == '"/><vehicle'
+
+
+_ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0" signals="2" acceleration="0.5"/>\n'
+
+
+@pytest.mark.parametrize(
+    ("found", "change"),
+    [
+        ("  </timestep>\n  <timestep", "  </timestep><timestep"),
+        ("  </timestep>\n", "  </timestep>\n    " + _ROW),
+        ("<fcd-export>\n", '<fcd-export>\n  <timestep time="0.00"/>\n    ' + _ROW),
+        ("<fcd-export>\n", "<fcd-export>\n    " + _ROW),
+        ("<fcd-export>\n", '<fcd-export><timestep time="9.0">\n    ' + _ROW + "</timestep>\n"),
+        ("  </timestep>\n  <timestep", "  </timestep> <!--\n  --><timestep"),
+        ("  </timestep>\n", "  </timestep> <!-- -->\n"),
+        ("</fcd-export>", "</fcd-export><!-- </fcd-export>"),
+        ("/>\n    <vehicle", "/><vehicle"),
+        ('/>\n    <vehicle id="a.0"', '><param key="a"/></vehicle>\n    <vehicle id="a.0"'),
+        ('id="b.0"', 'id="b.0" id="c.0"'),
+        ('id="b.0"', 'id="b<0"'),
+        ('id="b.0"', 'id="b\t0"'),
+        ("vehicle id=", "v:vehicle id="),
+        ("<fcd-export>", '<!DOCTYPE a [<!ATTLIST vehicle lane CDATA "b">]><fcd-export>'),
+        ("<?xml version='1.0'?>", "<?xml version='1.0' encoding='latin1'?>"),
+        (' y="3.5"', " y='3.5'"),
+        (' y="3.5"', ' y = "3.5"'),
+        (' y="3.5"', ' y="3.5" x'),
+        ('time="0.10"', 'time="0.10" a="b"'),
+        ('time="0.10"', "time='0.10'"),
+        ('time="0.10"', 'time="1_0"'),
+        ('<timestep time="0.10"', '<TIMESTEP time="0.10"'),
+        ("    <vehicle", "    <![CDATA[<a/>]]><vehicle"),
+    ],
+)
+@pytest.mark.parametrize("n", [1, -1])
+def test_what_is_not_line_by_line_is_left_to_the_parser(found: str, change: str, n: int) -> None:
+    text = xml(ROWS[:6]).replace(found, change, n)
+    assert change in text
+    assert sumo._lines(text.encode()) is None
+
+
+@pytest.mark.parametrize("form", ["csv", "xml"])
+@pytest.mark.parametrize(
+    ("cell", "message"),
+    [
+        ({"x": "abc"}, "x of vehicles: Failed to parse string: 'abc'"),
+        ({"time": "12:3"}, "time of vehicles: "),
+        ({"time": ""}, "without a time that can be: "),
+        ({"time": "1e300"}, "without a time that can be: "),
+    ],
+)
+def test_a_cell_that_is_no_number_is_refused(tmp_path: Path, form: str, cell: dict[str, str], message: str) -> None:
+    rows = [*ROWS[:6], ROWS[6] | cell]
+    text = xml(rows) if form == "xml" else csv(ROWS[:6]) + ";".join(map(str, rows[6].values())) + "\n"
+    with pytest.raises(TraceError, match=message):
+        read(put(tmp_path / f"a.{form}", text), ego="a.0")
 
 
 def test_csv_written_anew_with_quotes(tmp_path: Path) -> None:
@@ -95,6 +144,20 @@ def test_without_signals_the_lights_are_unknown(tmp_path: Path) -> None:
     rows = [{k: v for k, v in row.items() if k != "signals"} for row in ROWS]
     trace = read(put(tmp_path / "a.xml", xml(rows)), ego="a.0")
     assert {(row["indicator"], row["brake_light"]) for row in states(trace)} == {(None, None)}
+
+
+def test_an_infinite_cell_is_unknown_and_said(tmp_path: Path) -> None:
+    rows = [ROWS[0], ROWS[1] | {"acceleration": "inf"}, *ROWS[2:]]
+    trace = read(put(tmp_path / "a.xml", xml(rows)), ego="a.0")
+    assert at(trace, "a.0", 0.0)["ax_mps2"] is None
+    assert quality(trace)["not_finite"]["n"] == 1
+
+
+@pytest.mark.parametrize("form", ["csv", "xml"])
+def test_a_log_without_types(tmp_path: Path, form: str) -> None:
+    rows = [{k: v for k, v in row.items() if k != "type"} for row in ROWS]
+    trace = read(put(tmp_path / f"a.{form}", (xml if form == "xml" else csv)(rows)), ego="a.0")
+    assert actors(trace)["a.0"]["actor_class"] is None
 
 
 def test_sizes_that_nobody_says_are_unknown(tmp_path: Path) -> None:

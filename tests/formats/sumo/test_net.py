@@ -191,8 +191,10 @@ def test_left_hand_nets_say_so() -> None:
 
 def test_what_is_broken_is_named() -> None:
     good = edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "y"))
-    for bad in ("0,0", "0,0 nan,1", "0,0 0,0", "x"):
-        found = net(good, edge("b", lane("b", 0, bad), ends=("x", "y")))
+    shapes = [lane("b", 0, shape) for shape in ("0,0", "0,0 nan,1", "0,0 0,0", "x", "", "0 1 2 3", "0,0 1")]
+    broken = [lane("b", 0, "0,9 9,9", f'width="{width}"') for width in ("nan", "inf", "0")]
+    for bad in (*shapes, *broken, lane("b", 0, "0,9 9,9").replace("13.89", "nan")):
+        found = net(good, edge("b", bad, ends=("x", "y")))
         assert (checks(found)["invalid_lane"], list(lanelets(found))) == (["b_0"], ["a_0"])
     with pytest.raises(MapError, match="has no lane that can be built"):
         net(edge("b", lane("b", 0, "0,0"), ends=("x", "y")))

@@ -80,13 +80,17 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     country = _country(root)
     by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", by_country)], quality)
-    lines = stop_line_stations(root, lanes, request.offset)
+    try:
+        lines = stop_line_stations(root, lanes, request.offset)
+        signals = signal_rows(root, signs, lanes, request.offset, lines)
+    except ValueError as error:
+        raise MapError(f"map {source.name}: of a sign, light or stop line, {error}: correct or remove it") from error
     furniture = {
-        "traffic_signal": signal_rows(root, signs, lanes, request.offset, lines),
+        "traffic_signal": signals,
         "stop_line": [
             stop_line_row(stop, name, s) for stop, name, s in sorted((f"{n}.stop", n, s) for n, s in lines.items())
         ],
-        "crossing": crossings(walks, lanes, request.offset),
+        "crossing": crossings(walks, lanes, request.offset, quality),
     }
     return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side)
 

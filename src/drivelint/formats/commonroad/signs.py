@@ -17,7 +17,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats import safe_xml
-from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
 from drivelint.road.signcodes import kind_of, turns_of_direction
 
 if TYPE_CHECKING:
@@ -225,11 +225,12 @@ def stop_line_stations(
 
 
 def points(parent: etree._Element | None) -> Floats:
-    """Return the points (n, 2) below an element. Errors: `ValueError` where one is not two finite numbers."""
-    found = [] if parent is None else [(p.findtext("x"), p.findtext("y")) for p in parent.iterfind(".//point")]
-    both = np.array([(float(x or "nan"), float(y or "nan")) for x, y in found], np.float64).reshape(-1, 2)
-    if not np.isfinite(both).all():
-        raise ValueError("a point without finite coordinates")
+    """Return the points (n, 2) below an element. Errors: `ValueError` naming the line of one that is not two finite numbers."""
+    found = [] if parent is None else list(parent.iterfind(".//point"))
+    both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
+    bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
+    if len(bad):
+        raise ValueError(f"the point in line {found[bad[0]].sourceline} has no x and y that can be")
     return both
 
 

@@ -15,7 +15,7 @@ from drivelint.road.signcodes import kind_of
 from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
@@ -32,7 +32,7 @@ def furniture(
     return {
         "traffic_signal": _signals(layers, lanes, offset),
         "stop_line": _stop_lines(layers, lanes, offset, quality),
-        "crossing": _crossings(layers, lanes, offset, quality),
+        "crossing": crossings(_walks(layers), lanes, offset, quality),
     }
 
 
@@ -151,15 +151,9 @@ def _referring(layers: Any) -> dict[int, set[str]]:
     return found
 
 
-def _crossings(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> Rows:
-    walks = []
+def _walks(layers: Any) -> Iterator[BoundedLane]:
     for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        left, right = xy(x.leftBound), xy(x.rightBound)
-        if attribute(x, "subtype") == "crosswalk" and np.isfinite(left).all() and np.isfinite(right).all():
+        if attribute(x, "subtype") == "crosswalk":
             marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
-            walks.append(BoundedLane(str(x.id), left, right, "zebra" if "zebra_marking" in marks else "crossing"))
-    rows = crossings(walks, lanes, offset)
-    for lost in sorted({walk.lanelet_id for walk in walks} - {row["crossing_id"] for row in rows}):
-        message = f"crossing {lost} lies across no lane that vehicles drive on"
-        quality.add("object_without_lane", "info", None, message)
-    return rows
+            kind = "zebra" if "zebra_marking" in marks else "crossing"
+            yield BoundedLane(str(x.id), xy(x.leftBound), xy(x.rightBound), kind)

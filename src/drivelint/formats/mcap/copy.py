@@ -12,18 +12,18 @@ import mmap
 import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
-from itertools import chain
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
 
 import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, MetadataIndex, Schema, Statistics
+from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, Footer, MetadataIndex, Schema, Statistics
 from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import MAGIC
+from drivelint.formats.mcap.reader import MAGIC, summary_is_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -111,6 +111,14 @@ class Original:
         """Return the error for a record that cannot be read."""
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
+    @contextmanager
+    def parsing(self, record: Record) -> Iterator[None]:
+        """Turn what the library raises of a record that cannot be understood into a `TraceError`."""
+        try:
+            yield
+        except (McapError, struct.error, ValueError) as error:
+            raise self.damage_error(record.at) from error
+
     def read(self, start: int, end: int) -> bytes:
         """Return bytes of the file."""
         try:
@@ -128,11 +136,9 @@ class Original:
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
-        try:
+        with self.parsing(record):
             stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
-        except McapError as error:
-            raise self.damage_error(record.at) from error
         at = 0
         while at < len(view):
             opcode, length = _HEAD.unpack_from(view, at)
@@ -160,21 +166,16 @@ class Original:
 
     def _survey(self) -> bool:
         """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
-        counts: Statistics | None = None
         named: set[int] = set()
         chunks: list[Record] = []
-        messages, behind_chunk = 0, False
+        data: list[Record] = []
+        summary: list[Record] = []
+        messages, behind_chunk, part = 0, False, data
         for record in self.records():
             behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
-            if record.opcode == Opcode.SCHEMA:
-                schema = Schema.read(self.stream(record))
-                self.schemas.setdefault(schema.id, schema)
-            elif record.opcode == Opcode.CHANNEL:
-                channel = Channel.read(self.stream(record))
-                self.channels.setdefault(channel.id, channel)
-            elif record.opcode == Opcode.STATISTICS:
-                counts = Statistics.read(self.stream(record))
-            elif record.opcode == Opcode.CHUNK:
+            if record.opcode in {Opcode.DATA_END, Opcode.FOOTER}:
+                part = summary
+            if record.opcode == Opcode.CHUNK:
                 chunks.append(record)
             elif record.opcode == Opcode.MESSAGE:
                 messages += 1
@@ -182,19 +183,49 @@ class Original:
                 channel_id, n = self.message_index_header(record)
                 named.add(channel_id)
                 messages += n
+            else:
+                part.append(record)
+        self.schemas, self.channels, _ = self._announced(data)
+        counts: Statistics | None = None
+        with suppress(TraceError):  # the data are enough
+            schemas, channels, counts = self._announced(summary)
+            self.schemas, self.channels = schemas | self.schemas, channels | self.channels
         if not chunks or self._agrees(counts, messages, named):
             return True
         self._look_inside(chunks)
         return False
 
+    def _announced(self, records: list[Record]) -> tuple[dict[int, Schema], dict[int, Channel], Statistics | None]:
+        """Return the schemas, channels and counts among records. Errors: `TraceError` for one that is damaged."""
+        schemas: dict[int, Schema] = {}
+        channels: dict[int, Channel] = {}
+        counts: Statistics | None = None
+        for record in records:
+            with self.parsing(record):
+                if record.opcode == Opcode.SCHEMA:
+                    schema = Schema.read(self.stream(record))
+                    schemas.setdefault(schema.id, schema)
+                elif record.opcode == Opcode.CHANNEL:
+                    channel = Channel.read(self.stream(record))
+                    channels.setdefault(channel.id, channel)
+                elif record.opcode == Opcode.STATISTICS:
+                    counts = Statistics.read(self.stream(record))
+                elif record.opcode == Opcode.FOOTER and not summary_is_whole(
+                    Footer.read(self.stream(record)), self._view, record.at, record.end
+                ):
+                    raise self.damage_error(record.at)
+        return schemas, channels, counts
+
     def _look_inside(self, chunks: list[Record]) -> None:
-        for opcode, _, body in chain.from_iterable(map(self.chunk_records, chunks)):
-            if opcode == Opcode.SCHEMA:
-                schema = Schema.read(ReadDataStream(io.BytesIO(body)))
-                self.schemas[schema.id] = schema
-            elif opcode == Opcode.CHANNEL:
-                channel = Channel.read(ReadDataStream(io.BytesIO(body)))
-                self.channels[channel.id] = channel
+        for chunk in chunks:
+            with self.parsing(chunk):
+                for opcode, _, body in self.chunk_records(chunk):
+                    if opcode == Opcode.SCHEMA:
+                        schema = Schema.read(ReadDataStream(io.BytesIO(body)))
+                        self.schemas[schema.id] = schema
+                    elif opcode == Opcode.CHANNEL:
+                        channel = Channel.read(ReadDataStream(io.BytesIO(body)))
+                        self.channels[channel.id] = channel
 
     def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
         """Whether the summary names every channel and schema, and the message indexes know of every message."""
@@ -286,6 +317,10 @@ class _Copy:
     def _note(self, record: Record) -> None:
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
+        with self._original.parsing(record):
+            self._index(record, head, start, length)
+
+    def _index(self, record: Record, head: ReadDataStream, start: int, length: int) -> None:
         if record.opcode == Opcode.CHUNK:
             begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
             self._chunk = record, ChunkIndex(

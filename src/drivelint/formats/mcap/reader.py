@@ -218,8 +218,7 @@ class Container:
     def _check_summary(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""
         footer = self._parsed(Footer.read, view[start:end], at)
-        begin = footer.summary_start or at
-        if footer.summary_crc and zlib.crc32(view[min(begin, at) : end - 4]) != footer.summary_crc:
+        if not summary_is_whole(footer, view, at, end):
             message = f"the index has a wrong CRC (footer at byte {at}): it is not used, the data are complete"
             self.findings.append(QualityFinding("index_damaged", "warning", message))
 
@@ -236,6 +235,12 @@ class Container:
             )
         message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
         self.findings.append(QualityFinding("trailing_bytes", "warning", message))
+
+
+def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> bool:
+    """Say whether the index has the CRC, if any, that the footer in bytes `at` to `end` of the file says."""
+    begin = min(footer.summary_start or at, at)
+    return not footer.summary_crc or zlib.crc32(view[begin : end - 4]) == footer.summary_crc
 
 
 def message_batches(

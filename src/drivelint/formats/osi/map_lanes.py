@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+from google.protobuf.message import DecodeError
 
 from drivelint.errors import MapError
 from drivelint.formats.osi import map_furniture as osi_furniture
@@ -38,7 +39,13 @@ _SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
     quality = MapQuality()
-    truth = message_class("GroundTruth").FromString(source.content)
+    try:
+        truth = message_class("GroundTruth").FromString(source.content)
+    except DecodeError as error:
+        begin = source.content[:24]
+        raise MapError(
+            f"map {source.name} is neither XML nor OSI's lanes (it begins with {begin!r}): give an OpenDRIVE file (.xodr)"
+        ) from error
     logical = osi_logical.read(truth, quality)
     physical = osi_physical.read(truth, quality)
     covers = _covers(logical, physical)

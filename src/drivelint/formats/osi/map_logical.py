@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.formats.osi import map_kinds as kinds
-from drivelint.road.boundary_lanes import BoundedLane, Mark, UnbuildableError, resampled
+from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, Mark, UnbuildableError, resampled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -127,7 +127,7 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
         line = bounds[name].boundary_line
         rows = [(p.position.x, p.position.y, p.position.z, p.s_position) for p in line]
         points = np.array(rows, np.float64).reshape(-1, 4)
-        if len(points) < 2 or not np.isfinite(points).all():
+        if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
             raise UnbuildableError(f"its {word} boundary {name} has fewer than two points with finite coordinates")
         parts.append(points)
     joined = np.vstack(parts)

@@ -14,7 +14,7 @@ import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M
-from drivelint.road.boundary_lanes import BoundedLane, UnbuildableError, both_marks, resampled, stations
+from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, UnbuildableError, both_marks, resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -93,8 +93,8 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
         raise UnbuildableError(f"it has {lacks}, and so no width")
     centre = _xyz(said.centerline)
-    if not all(np.isfinite(points).all() for points in (centre, *lines[0], *lines[1])):
-        raise UnbuildableError("a point of it has a coordinate that is not finite")
+    if not all((np.abs(points) < FARTHEST_M).all() for points in (centre, *lines[0], *lines[1])):
+        raise UnbuildableError("a point of it has a coordinate that cannot be")
     if len(centre) < 2:
         if any(i.value not in bounds for side in ids for i in side):
             raise UnbuildableError("it has no centre line, and not all of its boundaries are in the log")

@@ -147,7 +147,7 @@ class _Compiler:
 
     def _sizes(self, kind: str) -> list[int]:
         """Return the sizes of all primitives of a type, 0 for texts and sequences."""
-        found: list[int] = []
+        found: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
         for member in self._types[kind]:
             if member.count == SEQUENCE:
                 found.append(0)

@@ -57,7 +57,9 @@ _DEFAULTS = {
     "DEFAULT_VEHTYPE": _OF_CLASS["passenger"], "DEFAULT_PEDTYPE": _OF_CLASS["pedestrian"],
     "DEFAULT_BIKETYPE": _OF_CLASS["bicycle"], "DEFAULT_TAXITYPE": _OF_CLASS["taxi"],
 }  # fmt: skip
+_LONGEST_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
+_STEP = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
@@ -86,14 +88,17 @@ def read(probe: Probe) -> Recording:
     Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
     """
     path = probe.path
-    table = _rows(path)
-    nameless = pc.fill_null(pc.equal(_text(table, "id"), ""), fill_value=True).to_numpy()
+    table = _typed(path, _rows(path))
+    nameless = pc.equal(_text(table, "id"), "").to_numpy()
     # a step at which nobody is there is a row with its time alone
     filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
     table = table.filter(pa.array(~nameless)) if nameless.any() else table
     if not table.num_rows:
         raise TraceError(f"{path}: no vehicle in this log")
+    untimed = int((~(np.abs(_floats(table, "time")) < _LONGEST_S)).sum())
+    if untimed:
+        raise TraceError(f"{path}: rows of vehicles without a time that can be: {untimed}: write the log anew")
     types, notes = _types(path, probe.options.mapping)
     recording = _recording(table, types)
     recording.notes += notes
@@ -119,7 +124,7 @@ def _rows(path: Path) -> pa.Table:
         return _csv(path)
     content = path.read_bytes()
     # where all vehicles look like the first, line by line, else by the parser
-    lines = _lines(content, content.find(b"<fcd-export")) if b"&" not in content else None
+    lines = _lines(content)
     return _parsed(path, content) if lines is None else lines
 
 
@@ -130,7 +135,7 @@ def _is_csv(head: bytes) -> bool:
 
 def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
     ids = pc.dictionary_encode(_text(table, "id")).combine_chunks()
-    kinds = pc.dictionary_encode(pc.fill_null(_text(table, "type"), "")).combine_chunks()
+    kinds = pc.dictionary_encode(_text(table, "type")).combine_chunks()
     said = [types.get(name) or _DEFAULTS.get(name, VehicleType()) for name in kinds.dictionary.to_pylist()]
     code = kinds.indices.to_numpy()
     length, width = (np.array([getattr(t, side) for t in said], np.float64)[code] for side in ("length_m", "width_m"))
@@ -152,7 +157,7 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
         np.round(_floats(table, "time") * 1e9).astype(np.int64),
         numbers,
         {"actor_class": np.array(classes, np.int8)[code], **_lights(signals)},
-        np.zeros(len(table), np.bool_),
+        np.any([pc.is_inf(c).to_numpy() for c in table.columns if pa.types.is_floating(c.type)], axis=0),
     )
     recording = Recording("sumo-fcd", states)
     unknown = sorted({name for name, t in zip(kinds.dictionary.to_pylist(), said, strict=True) if np.isnan(t.length_m)})
@@ -166,8 +171,8 @@ def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
 
 
 def _lights(signals: Floats) -> dict[str, Codes]:
-    known = ~np.isnan(signals)
-    bits = np.nan_to_num(signals).astype(np.int64)
+    known = (signals >= 0) & (signals < 2**31)
+    bits = np.where(known, signals, 0).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)
     for bit, word in ((_RIGHT, "right"), (_LEFT, "left"), (_EMERGENCY, "hazard")):
         indicator[bits & bit > 0] = INDICATORS.index(word)
@@ -221,7 +226,7 @@ def _positive(text: str | None, default: float) -> float:
 
 def _text(table: pa.Table, name: str) -> pa.ChunkedArray:
     column = _column(table, name)
-    return pa.nulls(len(table), pa.string()) if column is None else pc.fill_null(column.cast(pa.string()), "")
+    return pa.chunked_array([pa.repeat("", len(table))]) if column is None else column
 
 
 def _column(table: pa.Table, name: str) -> pa.ChunkedArray | None:
@@ -230,14 +235,33 @@ def _column(table: pa.Table, name: str) -> pa.ChunkedArray | None:
 
 
 def _floats(table: pa.Table, name: str) -> Floats:
-    """Return a column as numbers, NaN where it is absent or empty."""
+    """Return a column of `_typed` as numbers, NaN where it is absent, empty or infinite."""
     column = _column(table, name)
-    if column is None:
-        return np.full(len(table), np.nan)
-    if pa.types.is_string(column.type) or pa.types.is_binary(column.type):
-        column = column.cast(pa.string())
-        column = pc.if_else(pc.equal(column, ""), pa.scalar(None, pa.string()), column)
-    return np.asarray(pc.fill_null(column.cast(pa.float64()), float("nan")).to_numpy(), np.float64)
+    values = np.full(len(table), np.nan) if column is None else np.asarray(column.to_numpy(), np.float64)
+    return np.where(np.isinf(values), np.nan, values)
+
+
+def _typed(path: Path, table: pa.Table) -> pa.Table:
+    """Return the columns that are read as texts and numbers, "" and NaN where one is empty. Errors: `TraceError`."""
+    made = {}
+    for name in ("time", *_FIELDS):
+        try:
+            column = _column(table, name)
+            if column is None:
+                continue
+            if name in {"id", "type"}:
+                column = pc.fill_null(column.cast(pa.string()), "")
+            else:
+                if pa.types.is_string(column.type) or pa.types.is_binary(column.type):
+                    column = column.cast(pa.string())
+                    column = pc.if_else(pc.equal(column, ""), pa.scalar(None, pa.string()), column)
+                column = pc.fill_null(column.cast(pa.float64()), math.nan)
+        except (pa.ArrowException, KeyError) as error:
+            raise TraceError(
+                f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log anew"
+            ) from error
+        made["timestep_time" if name == "time" else f"vehicle_{name}"] = column
+    return pa.table(made)
 
 
 def _csv(path: Path) -> pa.Table:
@@ -256,18 +280,21 @@ def _csv(path: Path) -> pa.Table:
         raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
 
 
-def _lines(content: bytes, begin: int) -> pa.Table | None:
-    """Read a log with an element on each line as a table that quotation marks cut; None where one looks otherwise."""
-    first = re.search(rb"^[ \t]*<vehicle [^\n]*/>(?=\r?$)", content[begin:], re.MULTILINE)
-    if first is None or not content.rstrip().endswith(b"</fcd-export>"):
+def _lines(content: bytes) -> pa.Table | None:
+    """Read a log with an element on each line as a table that quotation marks cut; None where anything looks otherwise."""
+    begin = content.find(b"<fcd-export")
+    first = re.search(rb'^[ \t]*<vehicle(?: +[\w:.-]+="[^"<\n]*")+ */>(?=\r?$)', content[begin:], re.MULTILINE)
+    if first is None or b"&" in content or not _is_plain(content[: content.find(b">", begin) + 1]):
         return None
     parts = first[0].decode("utf-8", "replace").split('"')
-    names = [part.strip().removeprefix("<vehicle ").removesuffix("=") for part in parts[:-1:2]]
+    names = [part.split()[-1].removesuffix("=") for part in parts[:-1:2]]
+    if len(set(names)) < len(names):
+        return None
     columns = [f"{i}" for i in range(len(parts))]
     others: list[tuple[int, str]] = []
 
     def other(row: Any) -> str:
-        others.append((row.number, row.text))
+        others.append((row.number, row.text.strip()))
         return "skip"
 
     wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in _FIELDS]
@@ -281,35 +308,50 @@ def _lines(content: bytes, begin: int) -> pa.Table | None:
                 column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
             ),
         )
+        times = _times(others, len(table))
     except pa.ArrowInvalid:
         return None
-    for column, literal in zip(columns[::2], parts[::2], strict=True):
-        if pc.any(pc.not_equal(table.column(column), literal)).as_py():
-            return None
-    return _timed(table, names, others)
-
-
-def _timed(table: pa.Table, names: list[str], others: list[tuple[int, str]]) -> pa.Table | None:
-    """Give each vehicle the time of the line with a step above it; None where the other lines are not those of steps."""
-    marks, stamps = [], []
-    for number, text in others:
-        line = text.strip()
-        if line.startswith("<timestep") and (step := re.fullmatch(r'<timestep\s+time="([^"<]*)"\s*/?>', line)):
-            marks.append(number)
-            stamps.append(float(step[1]))
-        elif line and not line.startswith(("</timestep>", "<fcd-export", "</fcd-export>")):
-            return None
-    taken = np.array([number for number, _ in others], np.int64)
-    # the n-th vehicle's line: so many lines of other kinds are above it
-    above = np.searchsorted(taken - np.arange(len(taken)), np.arange(table.num_rows) + 1, side="right")
-    at = np.searchsorted(np.array(marks, np.int64), np.arange(table.num_rows) + 1 + above) - 1
-    if not marks or (at < 0).any():
+    alike = (pc.equal(table.column(column), part) for column, part in zip(columns[::2], parts[::2], strict=True))
+    more = content.count(b"<", begin) > len(table) + len(others)  # elements than lines
+    if times is None or more or not all(pc.all(column).as_py() for column in alike):
         return None
-    made: dict[str, Any] = {"timestep_time": pa.array(np.array(stamps, np.float64)[at])}
-    for i, name in enumerate(names):
-        if name in _FIELDS:
-            made[f"vehicle_{name}"] = table.column(f"{2 * i + 1}")
-    return pa.table(made)
+    values = {f"vehicle_{name}": table.column(f"{2 * i + 1}") for i, name in enumerate(names) if name in _FIELDS}
+    table = pa.table({"timestep_time": times, **values})
+    # the parser makes blanks of tabs, and refuses other control characters
+    if any(pc.any(pc.match_substring_regex(_text(table, name), "[[:cntrl:]]")).as_py() for name in ("id", "type")):
+        return None
+    return table
+
+
+def _is_plain(head: bytes) -> bool:
+    """Say whether what stands before the first step, the tag of its element included, changes nothing in the lines that follow."""
+    try:
+        root = safe_xml.parse(head + b"</fcd-export>", "", TraceError)
+    except TraceError:
+        return False
+    return (root.getroottree().docinfo.encoding or "UTF-8").upper() in {"UTF-8", "US-ASCII"}
+
+
+def _times(others: list[tuple[int, str]], n: int) -> pa.Array | None:
+    """Return the times of `n` vehicles, that of the step around each; None where the other lines are not those of steps alone.
+
+    `others`: number and text of each line that is no vehicle's. Errors: `pa.ArrowInvalid` for a time that is no number.
+    """
+    stamps, counts = [""], [0]
+    order, above = "", 0
+    for number, line in others:
+        counts[-1] += number - above - 1
+        order += "v" if number > above + 1 else ""
+        above = number
+        if step := _STEP.fullmatch(line):
+            order += "empty " if step[2] else "begin "
+            stamps += [step[1]]
+            counts += [0]
+        else:
+            order += {"</timestep>": "end ", "</fcd-export>": "last"}.get(line, "first " if order == "" else "?")
+    if not re.fullmatch("first (empty |begin v*end )*last", order) or sum(counts) < n:
+        return None
+    return pa.array(stamps[1:], pa.string()).cast(pa.float64()).take(np.repeat(np.arange(len(stamps) - 1), counts[1:]))
 
 
 def _parsed(path: Path, content: bytes) -> pa.Table:

@@ -7,6 +7,7 @@ inside a junction. What a net has no word for, markings, kerbs and crossings' ki
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -17,7 +18,14 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.right_of_way import control_rows
-from drivelint.road.boundary_lanes import BoundedLane, SpeedLimitSpan, build_lanes, crossings, map_from_bounds
+from drivelint.road.boundary_lanes import (
+    FARTHEST_M,
+    BoundedLane,
+    SpeedLimitSpan,
+    build_lanes,
+    crossings,
+    map_from_bounds,
+)
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -82,7 +90,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     furniture = {
         "traffic_signal": signals,
         "stop_line": stop_lines,
-        "crossing": crossings(net.walks, lanes, request.offset),
+        "crossing": crossings(net.walks, lanes, request.offset, quality),
     }
     return map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side)
 
@@ -140,9 +148,11 @@ def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
     """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
     middle = _points(str(element.attrib["shape"]))
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
+    limit = float(element.attrib["speed"])
+    if not 0 < half < math.inf or not 0 <= limit < math.inf:
+        raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s cannot be")
     kind = _kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
-    limit = float(element.attrib["speed"])
     return BoundedLane(
         str(element.attrib["id"]), left=_beside(middle, half), right=_beside(middle, -half), kind=kind, drivable=kind in _DRIVABLE,
         road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
@@ -162,9 +172,9 @@ def _kind(allow: str | None, disallow: str | None) -> str:
 
 def _points(shape: str) -> Floats:
     """Return the points (n, 2) of a shape, heights left out, each once. Errors: `ValueError`."""
-    points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64).reshape(-1, 2)
-    if not np.isfinite(points).all():
-        raise ValueError("a point without finite coordinates")
+    points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
+    if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
+        raise ValueError("its shape is no line of points x,y")
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-3]]
     if len(points) < 2:
         raise ValueError("its shape has no length")
