@@ -111,7 +111,9 @@ object_on_strip AS (
 lap_end AS (
     SELECT
         * EXCLUDE (next_start_m),
+        -- NULL in the last lap: least() and greatest() would ignore it.
         CASE
+            WHEN next_start_m IS NULL THEN NULL
             WHEN is_oncoming THEN least((s_start_m + next_start_m) / 2, greatest(s_start_m + exact_clearance_m(), next_start_m - 1200))
             ELSE (s_start_m + next_start_m) / 2
         END AS to_m

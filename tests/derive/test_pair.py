@@ -184,6 +184,30 @@ def test_what_comes_the_other_way_round_a_ring_is_still_to_be_met() -> None:
     assert row["ahead_m"] == pytest.approx(-300 * stretch, abs=0.3)
 
 
+@pytest.mark.parametrize(
+    ("length", "ring", "ego_m", "ov_m", "expected_m"),
+    [
+        (2000.0, False, 1500.0, 600.0, -900.0),
+        (2000.0, False, 600.0, 1500.0, 900.0),
+        (3000.0, True, 1000.0, 900.0, -100.0),  # 2.9 km ahead
+        (3000.0, True, 1000.0, 2900.0, -1100.0),  # 1.9 km ahead
+        (3000.0, True, 2500.0, 400.0, 900.0),
+    ],
+)
+def test_an_oncoming_vehicle_that_has_passed_is_behind(
+    length: float, ring: bool, ego_m: float, ov_m: float, expected_m: float
+) -> None:
+    way = road(((length, 2 * math.pi / length if ring else 0.0),), ring=ring)
+    t = times(0.2)
+    ego = standing("ego", way, t, ego_m, way.own)
+    con = derived(
+        drive([ego, standing("ov", way, t, ov_m, way.other, turned=math.pi)], way.environment), tables=["pair"]
+    )
+    stretch = 1 - way.own * 2 * math.pi / length if ring else 1.0
+    row = rows(con, "SELECT p.s_m - e.s_m AS ahead_m FROM pair p JOIN ego_state e USING (t_ns)")[0]
+    assert row["ahead_m"] == pytest.approx(expected_m * stretch, abs=0.5)
+
+
 def test_the_other_leg_of_a_hairpin_is_not_beside_the_road() -> None:
     """Legs 11 m apart lie in each other's strip: an OV on the far leg is 120 m ahead, not beside the ego."""
     turn = math.pi * 5.5
