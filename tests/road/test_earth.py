@@ -74,7 +74,7 @@ def add(con: Any, table: str, row: dict[str, object]) -> None:
 
 def geo_of(environment: MapTables, **log: Any) -> GeoFrame:
     """Return the frame of a drive on the map."""
-    library = SimpleNamespace(find=lambda _: environment, doubts=lambda *_: {})
+    library = SimpleNamespace(find=lambda log: (environment, log), doubts=lambda *_: {})
     geo = drive_with_map(log_of(states(5.0), **log), library).geo  # type: ignore[arg-type]
     assert geo is not None
     return geo
@@ -165,7 +165,7 @@ def test_a_map_without_positions_says_why(reference: str, offset: str, told: str
     assert row["severity"] == "info"
     assert told in row["message"]
     assert not row_of(environment)["geo_usable"]
-    library = SimpleNamespace(find=lambda _: environment, doubts=lambda *_: {})
+    library = SimpleNamespace(find=lambda log: (environment, log), doubts=lambda *_: {})
     assert drive_with_map(log_of(states(5.0)), library).geo is None  # type: ignore[arg-type]
     log = log_of(states(5.0), reference=KARLSRUHE)
     assert drive_with_map(log, library).geo == GeoFrame(KARLSRUHE)  # type: ignore[arg-type]

@@ -53,6 +53,10 @@ class GeoFrame(NamedTuple):
         """Return coordinates, (n, 2), in the projection."""
         return xy @ self._turn().T + (self.x_m, self.y_m)
 
+    def unproject(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return coordinates, (n, 2), of places in the projection."""
+        return (xy - (self.x_m, self.y_m)) @ self._turn()
+
     def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
         """Return the frame of the same coordinates after x and y were added to them."""
         ((x, y),) = self.project(-np.array([[x_m, y_m]])).tolist()
@@ -136,11 +140,13 @@ def same_reference(one: str, other: str) -> bool:
 
 
 def different_places(one: str, other: str) -> bool:
-    """Return whether two unequal references mean different places: both must be PROJ strings with a projection.
+    """Return whether two unequal references mean different places: both must be PROJ strings with a projection."""
+    return all("proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (one, other))
 
-    A tangent plane is the user's `--map-origin`, who thereby said where the log lies.
-    """
-    return all(dict(_parsed(text)).get("proj", _TANGENT_PLANE) != _TANGENT_PLANE for text in (one, other))
+
+def is_tangent_plane(reference: str) -> bool:
+    """Say whether a reference is that of `tangent_plane`: the user's `--map-origin` says where the log's 0,0 lies."""
+    return dict(_parsed(reference)).get("proj") == _TANGENT_PLANE
 
 
 def _parsed(text: str) -> frozenset[tuple[str, str]]:
