@@ -21,7 +21,7 @@ from drivelint.formats import read_trace
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.road.geo_reference import GeoFrame
 from tests.annotate.files import verify
-from tests.annotate.test_annotator import CASE, run, the
+from tests.annotate.runs import CASE, run, the
 from tests.annotate.viewer import messages
 
 KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +datum=WGS84"

@@ -10,8 +10,7 @@ import pytest
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.commonroad.scenario_text import lanelet, scenario
-from tests.formats.sumo.test_net import edge, lane, net
-from tests.road.test_earth import KARLSRUHE, UTM, geo_of, metres_apart, placed, row_of
+from tests.road.earth import KARLSRUHE, UTM, geo_of, metres_apart, placed, row_of
 from tests.sumo import world
 
 MUNICH = (11.5755, 48.1374)
@@ -29,7 +28,9 @@ def reasons(environment: MapTables) -> list[str]:
 
 
 def sumo_net(location: str) -> MapTables:
-    return net(location, edge("e", lane("e", 0, "0.00,0.00 50.00,0.00"), ends=("a", "b")))
+    lane = '<lane id="e_0" index="0" speed="13.89" length="50" shape="0.00,0.00 50.00,0.00"/>'
+    text = f'<net version="1.20">{location}<edge id="e" from="a" to="b">{lane}</edge></net>'
+    return load_map(MapSource("small.net.xml", text.encode()))
 
 
 def test_the_offset_of_a_net_was_added_to_the_projection() -> None:
