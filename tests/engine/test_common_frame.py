@@ -159,6 +159,19 @@ def test_the_same_reference_with_the_files_own_coordinates(tmp_path: Path) -> No
     assert not said(drive).keys() & {"geo_reference_differs", "moved_to_map"}
 
 
+def test_a_small_offset_of_the_map_is_not_taken_for_a_shift_of_the_log(tmp_path: Path) -> None:
+    """Moved by 20 m along the road, the drive would be on it too."""
+    text = (CASE / "road.xodr").read_text("utf-8")
+    header = f'vendor="drivelint demo"><geoReference>{LOCAL}</geoReference><offset x="20" y="0"/></header>'
+    given = tmp_path / "small.xodr"
+    given.write_text(text.replace('vendor="drivelint demo"/>', header), "utf-8")
+    here = replace(plain(), geo_reference=LOCAL)
+    drive = judged(here, given)
+    assert drive.trace.tables["actor_state"].equals(here.tables["actor_state"])
+    own = judged(replace(here, geo_offset=(1.0, 0.0, 0.0)), given)
+    np.testing.assert_allclose(numbers(own.trace)["x_m"], numbers(here)["x_m"] - 19.0, atol=1e-3)
+
+
 def test_the_same_reference_with_its_full_coordinates(tmp_path: Path) -> None:
     drive = judged(in_frame(UTM32), road(tmp_path))
     np.testing.assert_allclose(numbers(drive.trace)["x_m"], numbers(plain())["x_m"], atol=1e-3)
