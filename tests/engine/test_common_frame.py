@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions, Trace
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
@@ -203,3 +204,13 @@ def test_who_has_no_place_is_turned_with_the_others(tmp_path: Path) -> None:
     assert np.isnan(found["x_m"]).nonzero()[0].tolist() == [3]
     for name in ("vx_mps", "vy_mps", "yaw_rad"):
         assert found[name][3] == pytest.approx(here[name][3], abs=1e-3)
+
+
+def test_a_converted_log_is_in_the_frame_of_its_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It has no reference by which it could be moved later."""
+    given, elsewhere = road(tmp_path), in_frame(UTM33)
+    monkeypatch.setattr("drivelint.convert.read_trace", lambda *_: elsewhere)
+    made = convert(ConvertRequest(trace=str(LOG), to="parquet", out=tmp_path / "made", map=given, mapping=MAPPING))
+    written = read_trace(made.path, IngestOptions())
+    np.testing.assert_allclose(numbers(written)["x_m"], numbers(plain())["x_m"], atol=1e-3)
+    judged(written, given)
