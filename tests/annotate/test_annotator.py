@@ -25,43 +25,19 @@ from drivelint.engine import batch
 from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
 from drivelint.formats import read_trace
-from drivelint.report.progress import Silent
-from drivelint.result.files import OutputError, parquet_bytes
+from drivelint.result.files import OutputError
 from drivelint.result.geometry import without_geometry
-from drivelint.result.schemas import TABLE_OF_FILE
-from drivelint.run import CheckOptions, check
 from tests.annotate.files import seeking, streaming, verify
+from tests.annotate.runs import CASE, ROOT, run, the
 from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-ROOT = Path(__file__).resolve().parents[2]
-CASE = ROOT / "fixtures" / "overtake"
 SCENE = ROOT / "fixtures" / "scenes"
 T0 = 7_700_000_000  # the ego first leaves its lane
 EGO, PARKED, ONCOMING = "ego", "parked", "oncoming"
 SD = {"a": 0.300, "b": 0.058, "c": -0.011, "d": 0.015}
-
-
-def run(out: Path, *traces: Path, **options: Any) -> Path:
-    """Check some logs of the case and return the folder of their annotated logs."""
-    given: dict[str, Any] = {
-        "map": CASE / "road.xodr",
-        "mapping": str(CASE / "mapping.toml"),
-        "rules": ("ukhc",),
-        "profiles": ("relaxed", "nominal", "aggressive"),
-        **options,
-    }
-    result = check(CheckOptions(tuple(map(str, traces)), out=out, **given), Silent())
-    for name, table in TABLE_OF_FILE.items():
-        (out / f"{name}.parquet").write_bytes(parquet_bytes(getattr(result, name), table))
-    return out / "annotated"
-
-
-def the(folder: Path, stem: str) -> Path:
-    (path,) = folder.glob(f"{stem}-*.mcap")
-    return path
 
 
 @pytest.fixture(scope="module")

@@ -43,6 +43,23 @@ def test_foxgloves_types_are_those_of_its_own_package(name: str) -> None:
     assert declared(foxglove.schema(name).data) == declared(getattr(package, name).get_schema().data)
 
 
+@pytest.mark.parametrize(("name", "theirs"), [("LocationFix", "LocationFix"), ("GeoJSON", "GeoJson")])
+def test_what_is_written_of_a_place_is_declared_as_foxglove_declares_it(name: str, theirs: str) -> None:
+    """Its optional fields of late (heading, velocity, colour) are not written, nor declared."""
+    package = pytest.importorskip("foxglove.messages", reason="the package foxglove-sdk is not installed")
+    schema = getattr(package, theirs).get_schema()
+    assert schema.name == foxglove.schema(name).name
+
+    def declared(data: bytes) -> Any:
+        files = descriptor_pb2.FileDescriptorSet.FromString(data).file
+        return next(m for file in files for m in file.message_type if m.name == name)
+
+    mine, own = declared(foxglove.schema(name).data), declared(schema.data)
+    assert {field.number for field in own.field} - {field.number for field in mine.field} <= {8, 9, 10, 11}
+    assert all(field in own.field for field in mine.field)
+    assert mine.enum_type == own.enum_type
+
+
 @settings(deadline=None)
 @given(st.integers(0, 2**63 - 1))
 def test_times_are_read_back(t_ns: int) -> None:

@@ -20,7 +20,8 @@ def put(folder: Path, name: str, x: float = 0.0) -> None:
 
 
 def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
-    environment = MapLibrary(None, None, "auto", folder=folder).find(log_of(states(x), Path(log), embedded=embedded))
+    library = MapLibrary(None, None, "auto", folder=folder)
+    environment, _ = library.find(log_of(states(x), Path(log), embedded=embedded))
     assert environment is not None
     return environment.environment_id.split("-")[0]
 
@@ -64,7 +65,7 @@ def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(
     put(tmp_path, "a.xml")
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
     library, log = MapLibrary(None, None, "auto", folder=tmp_path), log_of(states(5.0))
-    environment = library.find(log)
+    environment, _ = library.find(log)
     assert environment is not None
     assert environment.environment_id.startswith("a-")
     assert "1 cannot, the first: " in library.doubts(log, environment)["map_unread"]

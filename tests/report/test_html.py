@@ -355,3 +355,10 @@ def test_a_folder_without_a_result_is_one_clear_error(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text('{"output_schema": 99, "fail_on": "never", "strict": false}')
     with pytest.raises(UsageError, match="output schema 99"):
         load_result(tmp_path)
+
+
+def test_a_finding_has_its_time_in_utc_where_the_log_has_one() -> None:
+    text = page(result([verdict("fail")], [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)]))
+    assert Parsed(text).all("datetime") == ["2023-11-14T22:13:28.250Z"]
+    assert ">2023-11-14T22:13:28.250Z<" in text
+    assert "<time" not in page(result([verdict("fail")], [finding()]))

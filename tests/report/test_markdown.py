@@ -183,3 +183,10 @@ def test_a_difference_as_markdown() -> None:
     assert tables(text)[0][1:] == [["main", "0", "1", "0", "0", "0"], ["pull|request", "0", "1", "1", "0", "0"]]
     assert "### New (1)\n\n* critical: d1 at 15.00 s:" in text
     assert "### Not fixed: it cannot be told any more (1)" in text
+
+
+def test_a_time_is_in_utc_too_where_the_log_has_one() -> None:
+    _, found, *_ = tables(told(result(MIXED, [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)])))
+    assert [row[2] for row in found] == ["time", "8.00 s, 2023-11-14T22:13:28.250Z"]
+    _, found, *_ = tables(told(result(MIXED, [finding()])))
+    assert found[1][2] == "8.00 s"

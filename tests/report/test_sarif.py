@@ -93,8 +93,16 @@ def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
         "m",
         "nominal",
     )
+    assert said["t_utc"] is None
     assert "baselineState" not in found
     assert "suppressions" not in found
+
+
+def test_a_finding_has_its_time_in_utc_where_the_log_has_one() -> None:
+    """It is worst 8 s into the drive, which begins at 100 s of the log's clock and, here, at 1,700,000,000.25 s since 1970."""
+    run = result(MIXED, [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)])
+    (found,) = log(run)["results"]
+    assert found["properties"]["t_utc"] == "2023-11-14T22:13:28.250Z"
 
 
 @pytest.mark.parametrize(

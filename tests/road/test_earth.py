@@ -6,13 +6,11 @@ import math
 from pathlib import Path
 from struct import pack
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import drive_with_map
-from drivelint.engine.earth import place_drives, place_findings
 from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import read_trace
 from drivelint.formats.map_registry import load_map, read_source
@@ -22,16 +20,14 @@ from drivelint.result.model import Result
 from drivelint.road.geo_reference import GeoFrame, why_unusable
 from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.run import CheckOptions, check
-from drivelint.sql import store
 from tests.engine.few_states import log_of, states
 from tests.formats.opendrive.xodr import xodr
 from tests.formats.osi import osi_log
 from tests.report.pages import Parsed, page
+from tests.road.earth import KARLSRUHE, UTM, geo_of, metres_apart, placed, row_of
 from tests.shared_data import shared
 
-UTM = "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs"
 FIXTURE = Path(__file__).resolve().parents[2] / "fixtures" / "overtake"
-KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +datum=WGS84"
 
 
 def xodr_with(reference: str, offset: str = "") -> MapTables:
@@ -39,56 +35,6 @@ def xodr_with(reference: str, offset: str = "") -> MapTables:
     said = f"<geoReference><![CDATA[{reference}]]></geoReference>{offset}"
     text = xodr().replace(header, header.replace("/>", f">{said}</header>"))
     return load_map(MapSource("m", text.encode()))
-
-
-def placed(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | None, float | None]]:
-    """Return longitude and latitude of findings at these places (m) of a drive, as a run writes them, in a locked database."""
-    with store.connect() as con:
-        store.lock(con)
-        row = {"drive_id": "d", "geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m}
-        add(con, "data_log", row | {"geo_yaw_rad": geo.yaw_rad})
-        add(con, "actor", {"drive_id": "d", "actor_id": "e", "is_ego": True})
-        add(con, "actor", {"drive_id": "d", "actor_id": "a", "is_ego": False})
-        for i, (x, y) in enumerate(places):
-            add(con, "finding", {"finding_id": f"{i:06}", "drive_id": "d", "x_m": x, "y_m": y})
-            add(con, "actor_state", {"drive_id": "d", "actor_id": "e", "t_ns": i, "x_m": x, "y_m": y})
-            add(con, "actor_state", {"drive_id": "d", "actor_id": "a", "t_ns": i - 9, "x_m": 7.0, "y_m": 7.0})
-        place_findings(con, ["d"])
-        place_drives(con, ["d"])
-        found = con.execute("SELECT lon, lat FROM finding ORDER BY finding_id").fetchall()
-        assert con.execute("SELECT lon, lat FROM data_log").fetchall() == found[:1]
-        return found
-
-
-def add(con: Any, table: str, row: dict[str, object]) -> None:
-    """Insert a row, what it has to have and is not given being 0 or empty."""
-    needed = {
-        name: False if kind == "BOOLEAN" else "" if kind == "VARCHAR" else 0
-        for name, kind, null, *_ in con.execute(f"DESCRIBE {table}").fetchall()
-        if null == "NO"
-    }
-    values = needed | row
-    marks = ", ".join("?" * len(values))
-    con.execute(f"INSERT INTO {table} ({', '.join(values)}) VALUES ({marks})", list(values.values()))
-
-
-def geo_of(environment: MapTables, **log: Any) -> GeoFrame:
-    """Return the frame of a drive on the map."""
-    library = SimpleNamespace(find=lambda _: environment, doubts=lambda *_: {})
-    geo = drive_with_map(log_of(states(5.0), **log), library).geo  # type: ignore[arg-type]
-    assert geo is not None
-    return geo
-
-
-def row_of(environment: MapTables) -> dict[str, Any]:
-    (row,) = environment.tables["environment"].to_pylist()
-    return dict(row)
-
-
-def metres_apart(a: tuple[float | None, float | None], b: tuple[float, float]) -> float:
-    assert a[0] is not None
-    assert a[1] is not None
-    return math.hypot((a[0] - b[0]) * math.cos(math.radians(b[1])), a[1] - b[1]) * 111_195.0
 
 
 def test_a_header_offset_moves() -> None:
@@ -165,7 +111,7 @@ def test_a_map_without_positions_says_why(reference: str, offset: str, told: str
     assert row["severity"] == "info"
     assert told in row["message"]
     assert not row_of(environment)["geo_usable"]
-    library = SimpleNamespace(find=lambda _: environment, doubts=lambda *_: {})
+    library = SimpleNamespace(find=lambda log: (environment, log), doubts=lambda *_: {})
     assert drive_with_map(log_of(states(5.0)), library).geo is None  # type: ignore[arg-type]
     log = log_of(states(5.0), reference=KARLSRUHE)
     assert drive_with_map(log, library).geo == GeoFrame(KARLSRUHE)  # type: ignore[arg-type]

@@ -58,7 +58,7 @@ def put(folder: Path, **references: str | None) -> MapLibrary:
 def test_the_map_of_the_logs_reference(tmp_path: Path) -> None:
     """All lie at the same coordinates: the place does not tell them apart."""
     library = put(tmp_path, here=KARLSRUHE, there=UTM, nowhere=None)
-    found = library.find(log_of(states(5.0), reference=KARLSRUHE + " +no_defs"))
+    found, _ = library.find(log_of(states(5.0), reference=KARLSRUHE + " +no_defs"))
     assert found is not None
     assert found.environment_id.startswith("here")
     assert library.doubts(log_of(states(5.0), reference=KARLSRUHE), found) == {}

@@ -159,14 +159,14 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
     path = tmp_path / "small.xodr"  # type: ignore[operator]
     path.write_bytes(content)
     library = MapLibrary(path, None, "auto")
-    found = library.find(log)
+    found, _ = library.find(log)
     assert found is not None
     assert (found.handedness, found.handedness_source) == (hand, "traces")
     assert not library.doubts(log, found)
 
     wrong = MapLibrary(path, None, "rht" if hand == "lht" else "lht")
     with pytest.raises(MapError, match="runs against its lanes, on road 1 both ways"):
-        wrong.doubts(log, wrong.find(log))
+        wrong.doubts(log, wrong.find(log)[0])
 
     alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
     path.write_bytes(alone.content)
@@ -174,7 +174,7 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
         library = MapLibrary(path, None, said)
         for way in (1, -1):
             log = log_of(_states(hand, way).slice(0, 60))
-            found = library.find(log)
+            found, _ = library.find(log)
             assert found is not None
             assert (found.handedness_source, along(found)) == (source, {way})
             assert not library.doubts(log, found)

@@ -133,7 +133,7 @@ def drives(home: Path) -> list[Drive]:
     fixtures = ROOT / "fixtures/scenes"
     logs += [(fixtures / f"{log}.mcap", fixtures / f"{road}.xodr") for log, road in LOGS.items()]
     traces = [(read_trace(log, IngestOptions()), road) for log, road in logs]
-    return [Drive(trace, MapLibrary(road, None, "auto").find(trace)) for trace, road in traces]
+    return [Drive(trace, MapLibrary(road, None, "auto").find(trace)[0]) for trace, road in traces]
 
 
 def test_a_join_without_keys_is_seen() -> None:

@@ -62,7 +62,7 @@ class Annotator:
         for drive in drives:
             name, road = drive.trace.drive_id, self._road(drive.environment)
             told = self._summary(found[name])
-            said = Annotation(drive.trace, found[name], road, self._versions, self._sense_by_rule, told)
+            said = Annotation(drive.trace, found[name], road, drive.geo, self._versions, self._sense_by_rule, told)
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, said)
         with _whole(self._folder / LAYOUT_FILE) as file:

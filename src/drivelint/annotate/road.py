@@ -15,6 +15,8 @@ from drivelint.annotate.tracks import floats
 from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from drivelint.road.map_reader import MapTables
@@ -47,12 +49,27 @@ class Road:
 
     def lanes_near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
         """Return the SceneUpdate with the lanes near some positions."""
+        return b"".join(self._entity(int(i), log_time) for i in self._near(x, y))
+
+    def drivable_outlines(
+        self, x: NDArray[np.float64], y: NDArray[np.float64]
+    ) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        """Yield the drivable lanes near some positions: lanelet, closed outline (n, 2), counter-clockwise."""
+        for i in self._near(x, y):
+            name, rows = str(self._names[i]), self._rows[i]
+            if self._about[name]["drivable"]:
+                left, right = (
+                    np.stack([self._points[f"{side}_{axis}_m"][rows] for axis in "xy"], axis=1)
+                    for side in ("left", "right")
+                )
+                yield name, np.concatenate([right, left[::-1], right[:1]])
+
+    def _near(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
         column, row = (np.floor(values / NEAR_M).astype(np.int64) for values in (x, y))
         _, first = np.unique(column * _ROWS + row, return_index=True)
         cells = np.stack([column[first], row[first]])
         around = shapely.box(*((cells - 1) * NEAR_M), *((cells + 2) * NEAR_M))
-        found = np.unique(self._lanelet_of[self._tree.query(around)[1]])
-        return b"".join(self._entity(int(i), log_time) for i in found)
+        return np.unique(self._lanelet_of[self._tree.query(around)[1]])
 
     @cached_property
     def _lanelet_of(self) -> NDArray[np.int64]:

@@ -10,7 +10,7 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, result_messages
+from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, places, result_messages
 from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.result_messages import Message
     from drivelint.annotate.road import Road
     from drivelint.drive.trace import Trace
+    from drivelint.road.geo_reference import GeoFrame
 
 CHUNK_BYTES: Final = 1 << 20
 _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessage", "TransformStamped")
@@ -34,7 +35,8 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """What is written beside the log: one drive's evidence and summary, and the road it is drawn on (None: no map).
+    """What is written beside the log: one drive's evidence and summary, the road it is drawn on (None: no map), where it is on the
+    earth (None: nothing says it).
 
     `versions` and `sense_by_rule` are rule id -> hash of its file, rule id -> relation that must hold.
     """
@@ -42,6 +44,7 @@ class Annotation:
     trace: Trace
     evidence: Evidence
     road: Road | None
+    geo: GeoFrame | None
     versions: Mapping[str, str]
     sense_by_rule: Mapping[str, str]
     summary: bytes
@@ -95,8 +98,19 @@ class _Writer:
         self._few("findings", result_messages.schema("finding"), findings)
         lines = result_messages.log_messages(evidence.verdicts, times, start, sense_by_rule)
         self._few("log", foxglove.schema("Log"), lines)
+        if self._said.geo:
+            self._on_earth(self._said.geo)
         self._sink.add_metadata("drivelint", self._facts(boxes.every))
         self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
+
+    def _on_earth(self, geo: GeoFrame) -> None:
+        frame = "" if self._moves else actor_boxes.EGO_FRAME
+        fixes = places.location_messages(self._tracks, geo, self._clock, frame)
+        self._few("location", foxglove.schema("LocationFix"), fixes)
+        said = self._said
+        layer = places.geojson(said.evidence.findings, self._tracks, geo, said.road, said.sense_by_rule)
+        at = self._clock.at(self._start_ns)
+        self._few("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
 
     def _many(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[RecordChunk]]) -> None:
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", "protobuf", schema)

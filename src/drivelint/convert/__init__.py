@@ -75,7 +75,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     trace = read_trace(path, options)
     if request.map_offset is not None:
         trace = _moved(trace, request.map_offset)
-    road, told = _road(request, trace)
+    road, trace, told = _road(request, trace)
     prepare_folder(request.out)
     files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
     notes = [*trace.notes, *told, *_of_a_check(request)]
@@ -111,28 +111,29 @@ def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
     return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
 
 
-def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
-    """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
+def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
+    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and what to tell. Errors: as `convert`."""
     library, own = MapLibrary.from_options(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
-        return (None, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
+        return (None, trace, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    library.find(trace)  # a wrong map is refused now, not by whoever checks the converted log
-    return road, []
+    # a wrong map is refused now, not by whoever checks the converted log
+    return road, library.find(trace)[1], []
 
 
-def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, list[str]]:
+def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
     notes = []
     library = MapLibrary(None, None, "auto")
     try:
-        library.doubts(trace, library.find(trace))
+        environment, trace = library.find(trace)
+        library.doubts(trace, environment)
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
-        return None, [*notes, f"the log's own map is left out: {why}"]
-    return road, notes
+        return None, trace, [*notes, f"the log's own map is left out: {why}"]
+    return road, trace, notes
 
 
 def _unfit_for_mcap(road: MapSource) -> str | None:

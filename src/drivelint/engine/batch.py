@@ -150,12 +150,12 @@ def _pairs_by_ego(trace: Trace, egos: set[str]) -> dict[str, int]:
 
 
 def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
-    """Return the drive with its map; an embedded map that cannot be used is a finding, and the drive has no map.
+    """Return the drive with its map, in the map's coordinates; an embedded map that cannot be used is a finding, and the drive has no map.
 
     Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
     """
     try:
-        environment = library.find(trace)
+        environment, trace = library.find(trace)
         doubts = library.doubts(trace, environment)
     except MapError as error:
         if not library.uses_embedded(trace):

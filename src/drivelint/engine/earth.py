@@ -23,13 +23,16 @@ def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFram
 
     What is wrong with the map's is in its `map_quality`.
     """
-    if environment is not None and (frame := _of_map(environment)):
+    if environment is not None and (frame := frame_of_map(environment)):
         return frame, None
-    if trace.geo_reference is None:
-        return None, None
+    return frame_of_log(trace)
+
+
+def frame_of_log(trace: Trace) -> tuple[GeoFrame | None, str | None]:
+    """Return how the log itself says that its coordinates become those of a projection, and why that is of no use."""
     states = trace.tables["actor_state"]
     ends = [pc.min_max(states[axis]).as_py() for axis in ("x_m", "y_m")]
-    if any(end["min"] is None for end in ends):
+    if trace.geo_reference is None or any(end["min"] is None for end in ends):
         return None, None
     x, y, yaw = trace.geo_offset
     frame = GeoFrame(trace.geo_reference, x, y, yaw_rad=yaw)
@@ -39,7 +42,7 @@ def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFram
     return frame, None
 
 
-def _of_map(environment: MapTables) -> GeoFrame | None:
+def frame_of_map(environment: MapTables) -> GeoFrame | None:
     """Return how the coordinates of a drive on the map become those of the map's projection; None: it has no usable one."""
     (row,) = environment.tables["environment"].to_pylist()
     if not row["geo_usable"]:

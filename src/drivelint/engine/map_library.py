@@ -2,7 +2,7 @@
 
 Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
 name or of its folder's, else the log's own, else the only one of the log's geo reference, else the only one on whose lanes the
-drive lies.
+drive lies. A drive in the coordinates of another geo reference is moved into the map's.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
+from drivelint.engine import common_frame
 from drivelint.engine.map_fit import (
     SIDE_CHECK_SAMPLES,
     VOTE_SAMPLES,
@@ -76,23 +77,43 @@ class MapLibrary:
         """Return the library for these options. Errors: `MapError` for a map that cannot be read, `UsageError`."""
         return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
-    def find(self, trace: Trace) -> MapTables | None:
-        """Return the environment for one drive; the user's `--map-offset` goes before the drive's own.
+    def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
+        """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
 
         Errors: `MapError` if the map cannot be read, or is of another place.
         """
-        source, states = self.find_source(trace), trace.tables["actor_state"]
+        source = self.find_source(trace)
         if source is None:
-            return None
+            return None, trace
         environment = self._load(source, trace, None)
-        if trouble := _elsewhere(environment, self._ground(environment), states):
+        trace, trouble = self._in_its_frame(environment, trace)
+        if trouble:
             raise MapError(
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
-        if environment.lanes_source == "default" and (voted := self._vote(environment, states)):
-            return self._load(source, trace, voted)
-        return environment
+        if environment.lanes_source == "default" and (voted := self._vote(environment, trace.tables["actor_state"])):
+            environment = self._load(source, trace, voted)
+        return environment, trace
+
+    def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
+        """Return the drive in the map's frame, and what shows that it is of another place.
+
+        What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
+        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file.
+        """
+        refused = None
+        try:
+            both = [common_frame.move_into_map_frame(trace, environment), trace]
+        except MapError as error:
+            both, refused = [trace], str(error)
+        theirs = environment.tables["environment"]["geo_reference"][0].as_py() or ""
+        if not any(trace.geo_offset) and geo_reference.same_reference(trace.geo_reference or "", theirs):
+            both.reverse()
+        ground = self._ground(environment)
+        troubles = [_elsewhere(environment, ground, each.tables["actor_state"]) for each in both]
+        fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
+        return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:
         """Return the map that `find` takes for one drive, as it was given. Errors: as there."""
@@ -181,7 +202,7 @@ class MapLibrary:
             except MapError as error:
                 unread.append(error)
                 continue
-            if not _elsewhere(environment, self._ground(environment), trace.tables["actor_state"]):
+            if not self._in_its_frame(environment, trace)[1]:
                 fitting.append(source)
         if len(fitting) == 1:
             if unread:  # it may have been the right one

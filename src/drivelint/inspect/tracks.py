@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.inspect.model import Actor, ClassCount, Clock
 from drivelint.result.counts import grouped
+from drivelint.result.text import utc
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ def clock(trace: Trace) -> Clock:
     start = int(t_ns[0])
     return Clock(
         start_ns=start,
-        utc_start=None if log["utc_start_ns"] is None else _utc(log["utc_start_ns"]),
+        utc_start=utc(log["utc_start_ns"]),
         duration_s=(int(t_ns[-1]) - start) / 1e9,
         steps=len(t_ns),
         period_s=None if period is None else period / 1e9,
@@ -42,14 +42,6 @@ def clock(trace: Trace) -> Clock:
         longest_hole_s=float(gaps[holes].max()) / 1e9 if len(holes) else None,
         first_hole_at_s=(int(t_ns[holes[0]]) - start) / 1e9 if len(holes) else None,
     )
-
-
-def _utc(t_ns: int) -> str | None:
-    try:
-        at = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=t_ns // 1000)
-    except OverflowError:  # a clock that counts something else: year 10,000 and beyond
-        return None
-    return at.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def actors(trace: Trace) -> list[Actor]:

@@ -14,6 +14,7 @@ from drivelint.phrases import plural
 from drivelint.report.html.anchors import anchor
 from drivelint.result import counts
 from drivelint.result.model import exit_status
+from drivelint.result.text import utc_at
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def render(result: Result, link: str = "report.html") -> bytes:
         excused=[item for item in findings if item[1]],
         rules=rules,
         starts=result.start_times,
+        drives={row["drive_id"]: row for row in result.drives.to_pylist()},
         target=target,
         titles={standing: title for standing, title in descriptions.DIFF_STATUS_TITLES.items() if standing != "new"},
         warnings=list(descriptions.waiver_warnings(gate)) if gate else [],
@@ -82,6 +84,7 @@ def _parts(template: str, **values: Any) -> list[str]:
         "group_by_reason": descriptions.group_by_reason,
         "headline": descriptions.headline,
         "short": _short,
+        "utc_at": utc_at,
     }
     text = text_template(__file__, template, **filters).render(
         most=MAX_ROWS, end_part=_END_PART, anchor=anchor, **values

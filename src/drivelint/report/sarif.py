@@ -15,7 +15,7 @@ from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, with_count
+from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, utc_at, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -104,6 +104,7 @@ class _Run:
                 "start_s": _since(row["t_start_ns"], start_ns),
                 "end_s": _since(row["t_end_ns"], start_ns),
                 "worst_s": _since(row["t_worst_ns"], start_ns),
+                "t_utc": utc_at(row["t_worst_ns"], drive),
                 **{name: row[name] for name in ("observed", "required", "margin", "unit")},
                 **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
             },

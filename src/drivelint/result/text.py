@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
 NONE: Final = "-"
@@ -33,6 +34,21 @@ def measure(value: float | None, unit: str | None = None) -> str:
 def seconds(t_ns: int | None, start_ns: int | None) -> str:
     """Return a time on the log's clock as seconds since the drive's first time stamp."""
     return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
+
+
+def utc(t_ns: int | None) -> str | None:
+    """Return a time since 1970 in UTC as ISO 8601, to the millisecond; None: not known, or of a clock that counts something else."""
+    try:
+        at = None if t_ns is None else datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=t_ns // 1000)
+    except OverflowError:  # year 10,000 and beyond
+        at = None
+    return at.isoformat(timespec="milliseconds").replace("+00:00", "Z") if at else None
+
+
+def utc_at(t_ns: int | None, drive: Row) -> str | None:
+    """Return a time on a log's clock in UTC; None: the log does not say. `drive`: its row."""
+    start, since = drive["t_start_ns"], drive["utc_start_ns"]
+    return None if None in {t_ns, start, since} else utc(since + t_ns - start)
 
 
 def rule_name(row: Row) -> str:

@@ -7,11 +7,17 @@ import re
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import duckdb
+import numpy as np
+import pyarrow as pa
 
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from drivelint.road.map_reader import MapSource
+
+WGS84: Final = "EPSG:4326"
 
 _REFERENCE: Final = re.compile(rb"<geoReference[^>]*>(.*?)</geoReference>", re.DOTALL)
 _CDATA: Final = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
@@ -43,15 +49,26 @@ class GeoFrame(NamedTuple):
     z_m: float = 0.0
     yaw_rad: float = 0.0
 
-    def project(self, x_m: float, y_m: float) -> tuple[float, float]:
-        """Return coordinates in the projection."""
-        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
-        return x_m * cos - y_m * sin + self.x_m, x_m * sin + y_m * cos + self.y_m
+    def project(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return coordinates, (n, 2), in the projection."""
+        return xy @ self._turn().T + (self.x_m, self.y_m)
+
+    def unproject(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return coordinates, (n, 2), of places in the projection."""
+        return (xy - (self.x_m, self.y_m)) @ self._turn()
 
     def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
         """Return the frame of the same coordinates after x and y were added to them."""
-        x, y = self.project(-x_m, -y_m)
+        ((x, y),) = self.project(-np.array([[x_m, y_m]])).tolist()
         return self._replace(x_m=x, y_m=y)
+
+    def degrees(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return longitude and latitude, (n, 2), of coordinates. Errors: as `transform`."""
+        return transform(self.project(xy), self.reference, WGS84)
+
+    def _turn(self) -> NDArray[np.float64]:
+        cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return np.array([[cos, -sin], [sin, cos]])
 
 
 def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
@@ -65,13 +82,14 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     A placeholder cannot be told from a true reference by its text alone: local coordinates near 0,0 of a projection that has its
     origin on the equator or at a pole would be in the Gulf of Guinea or on the ice.
     """
-    x, y = frame.project(x_m, y_m)
+    ((x, y),) = frame.project(np.array([[x_m, y_m]])).tolist()
     try:
-        (longitude, latitude), (beside, above) = _on_earth(frame.reference, [(x, y), (x + 1.0, y)])
+        places = transform(np.array([[x, y], [x + 1.0, y]]), frame.reference, WGS84)
     except duckdb.Error:
         return "PROJ does not understand it"
-    if not all(map(math.isfinite, (longitude, latitude, beside, above))):
+    if not np.isfinite(places).all():
         return "it has no place on the earth for the coordinates"
+    (longitude, latitude), (beside, above) = places.tolist()
     turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
     if not _METRE[0] < math.hypot(turned, above - latitude) * _DEGREE_M < _METRE[1]:
         return "its unit is not the metre, or the coordinates are far outside the area for which it is made"
@@ -84,12 +102,20 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     return None
 
 
-def _on_earth(reference: str, places: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return longitude and latitude of places in a projection. Errors: `duckdb.Error` where PROJ does not understand it."""
-    sql = "SELECT ST_X(p), ST_Y(p) FROM (SELECT ST_Transform(ST_Point(?, ?), ?, 'EPSG:4326', always_xy := true) AS p)"
+def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.float64]:
+    """Return places of one reference, (n, 2), in another, not finite where it has none for them.
+
+    Errors: `duckdb.Error` where PROJ does not understand a reference.
+    """
+    sql = (
+        "SELECT ST_X(p) AS x, ST_Y(p) AS y "
+        "FROM (SELECT ST_Transform(ST_Point(x, y), $source, $target, always_xy := true) AS p FROM places)"
+    )
     with store.open_as_is() as con:
         store.lock(con)  # a reference may name files of grids
-        return [con.execute(sql, [x, y, reference]).fetchall()[0] for x, y in places]
+        con.register("places", pa.table({"x": xy[:, 0], "y": xy[:, 1]}))
+        found = con.execute(sql, {"source": source, "target": target}).fetchnumpy()
+    return np.stack([np.ma.filled(found[axis], np.nan) for axis in ("x", "y")], axis=1)
 
 
 def _has_local_origin(reference: str) -> bool:
@@ -114,11 +140,13 @@ def same_reference(one: str, other: str) -> bool:
 
 
 def different_places(one: str, other: str) -> bool:
-    """Return whether two unequal references mean different places: both must be PROJ strings with a projection.
+    """Return whether two unequal references mean different places: both must be PROJ strings with a projection."""
+    return all("proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (one, other))
 
-    A tangent plane is the user's `--map-origin`, who thereby said where the log lies.
-    """
-    return all(dict(_parsed(text)).get("proj", _TANGENT_PLANE) != _TANGENT_PLANE for text in (one, other))
+
+def is_tangent_plane(reference: str) -> bool:
+    """Say whether a reference is that of `tangent_plane`: the user's `--map-origin` says where the log's 0,0 lies."""
+    return dict(_parsed(reference)).get("proj") == _TANGENT_PLANE
 
 
 def _parsed(text: str) -> frozenset[tuple[str, str]]:

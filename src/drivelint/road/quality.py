@@ -18,6 +18,11 @@ class MapQuality:
         assert severity in _ORDER, severity  # noqa: S101 - a mistake of ours
         self.rows.append({"check_id": check, "severity": severity, "lanelet_id": lanelet, "n": n, "message": message})
 
+    def geo_unusable(self, reference: str, why: object) -> None:
+        """Say that the map has a geo reference, and why it gives no positions on the earth."""
+        message = f"the geo reference {reference!r} gives no positions on the earth: {why}"
+        self.add("geo_reference_unusable", "info", None, message)
+
     def sorted_rows(self) -> list[dict[str, Any]]:
         """Return the rows, the most severe first."""
         return sorted(

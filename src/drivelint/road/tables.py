@@ -61,8 +61,7 @@ def map_tables(
     tables = {table: owned_table("map", table, name, rows) for table, rows in content.items()}
     trouble = _geo_trouble(geo, tables["lane_point"], request) if geo else None
     if geo and trouble:
-        message = f"the geo reference {geo.reference!r} gives no positions on the earth: {trouble}"
-        quality.add("geo_reference_unusable", "info", None, message)
+        quality.geo_unusable(geo.reference, trouble)
     environment = {
         "name": source.name, "sha256": source.sha256, "format": kind,
         "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],

@@ -138,7 +138,7 @@ def compare(place: Place) -> list[Row]:
 
 def _read(place: Place) -> Drive:
     trace = read_trace(place.reference, IngestOptions())
-    return Drive(trace, MapLibrary(place.road, None, "auto").find(trace))
+    return Drive(trace, MapLibrary(place.road, None, "auto").find(trace)[0])
 
 
 def _ours(place: Place) -> Answer:

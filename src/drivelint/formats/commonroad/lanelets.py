@@ -5,6 +5,7 @@ Read with lxml: commonroad-io pins a protobuf of 2022, which cannot be installed
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ from drivelint.road.boundary_lanes import (
     side_driven_on,
 )
 from drivelint.road.driving_side import choose_side
+from drivelint.road.geo_reference import GeoFrame
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import stop_line_row
 
@@ -92,7 +94,28 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         ],
         "crossing": crossings(walks, lanes, request.offset, quality),
     }
-    return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side)
+    geo = _geo_frame(root, quality)
+    return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side, geo=geo)
+
+
+def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
+    """Return how the coordinates lie on the earth: the translation makes them those of the reference (so CommonRoad's own converters).
+
+    `gpsLatitude` and `gpsLongitude` are those of the town of `geoNameId`, or 999: they do not say where x and y are 0.
+    """
+    reference = (root.findtext("location/geoTransformation/geoReference") or "").strip()
+    more = root.find("location/geoTransformation/additionalTransformation")
+    if not reference:
+        return None
+    x, y, turn, scale = (
+        float(default) if more is None else safe_xml.number(more.findtext(name) or default)
+        for name, default in (("xTranslation", "0"), ("yTranslation", "0"), ("zRotation", "0"), ("scaling", "1"))
+    )
+    if not (math.isfinite(x) and math.isfinite(y)) or (turn, scale) != (0.0, 1.0):
+        why = "of additionalTransformation, only xTranslation and yTranslation are understood, with zRotation 0 and scaling 1"
+        quality.geo_unusable(reference, why)
+        return None
+    return GeoFrame(reference, x, y)
 
 
 def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:

@@ -171,8 +171,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     try:
         return GeoFrame(reference, *(number(offset, name, 0.0) for name in ("x", "y", "z", "hdg")))
     except MalformedError as error:
-        message = f"the geo reference {reference!r} gives no positions on the earth: {error}"
-        quality.add("geo_reference_unusable", "info", None, message)
+        quality.geo_unusable(reference, error)
         return None
 
 

@@ -26,6 +26,7 @@ from drivelint.road.boundary_lanes import (
     crossings,
     map_from_bounds,
 )
+from drivelint.road.geo_reference import GeoFrame
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -92,7 +93,25 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "stop_line": stop_lines,
         "crossing": crossings(net.walks, lanes, request.offset, quality),
     }
-    return map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side)
+    geo = _geo_frame(root, quality)
+    return map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
+
+
+def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
+    """Return how the net's coordinates lie on the earth: those of a projection, to which `netOffset` was added.
+
+    None: the net has none (`!`), or its offset cannot be read.
+    """
+    location = root.find("location")
+    reference = "!" if location is None else location.get("projParameter", "!").strip()
+    if location is None or reference == "!":
+        return None
+    try:
+        x, y = map(float, location.get("netOffset", "").split(","))
+    except ValueError:
+        quality.geo_unusable(reference, f"its netOffset is {location.get('netOffset')!r}")
+        return None
+    return GeoFrame(reference, -x, -y)
 
 
 def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:

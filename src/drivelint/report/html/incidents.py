@@ -9,7 +9,7 @@ from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.result.counts import SEVERITIES, grouped
-from drivelint.result.text import measure, non_breaking, number, seconds
+from drivelint.result.text import measure, non_breaking, number, seconds, utc_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -101,18 +101,16 @@ def _in_summary(lines: Iterable[FindingLine]) -> set[Key]:
     return set(list(dict.fromkeys(at for _, _, at in sorted(first.values())))[:MAX_INCIDENTS_IN_SUMMARY])
 
 
-def incidents(
-    lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], start_ns: int
-) -> list[dict[str, Any]]:
+def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
     """Return the moments of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
     of a second since the drive's start; `leading`: it is among those that tell what happened; `on_earth`: a finding
-    whose longitude and latitude are known, None for none.
+    whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say. `drive`: its row.
     """
     groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
-        _moment(at, found, start_ns) | {"plan": pictures.get(at), "leading": at in leading}
+        _moment(at, found, drive) | {"plan": pictures.get(at), "leading": at in leading}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
@@ -133,14 +131,15 @@ def _objects(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(at: Key, found: Sequence[FindingLine], start_ns: int) -> dict[str, Any]:
+def _moment(at: Key, found: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
     failed = [line for line in found if line.kind == "fail"]
     gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = grouped(found, lambda line: line.row["rule_id"])
     return {
         "anchor": anchor("moment", *at),
         "time": found[0].time,
-        "t": centiseconds(at[2], start_ns),
+        "t": centiseconds(at[2], drive["t_start_ns"] or 0),
+        "t_utc": utc_at(at[2], drive),
         "keys": " ".join(sorted({name for line in found for name in line.keys.split()})),
         "ego_id": at[1],
         "objects": sorted(_objects(found)),

@@ -85,7 +85,7 @@ def content(result: Result) -> dict[str, Any]:
         _section(
             row,
             timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
-            incidents(listed.get(row["drive_id"], []), drawn, starts[row["drive_id"]]),
+            incidents(listed.get(row["drive_id"], []), drawn, row),
             involved_actors(listed.get(row["drive_id"], []), scenes),
             unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
         )

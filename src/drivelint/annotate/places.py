@@ -1,0 +1,113 @@
+"""The drive on the earth, for a viewer's map: where the ego is, and findings, ways and lanes as GeoJSON (RFC 7946)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+import numpy as np
+import shapely
+
+from drivelint.annotate.result_messages import Message, headline
+from drivelint.drive.order import MAX_GAP_PERIODS
+from drivelint.formats.protobuf import wire
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import pyarrow as pa
+    from numpy.typing import NDArray
+
+    from drivelint.annotate.clock import LogClock
+    from drivelint.annotate.road import Road
+    from drivelint.annotate.tracks import Tracks
+    from drivelint.road.geo_reference import GeoFrame
+
+STEP_NS: Final = 200_000_000
+"""A position each: the first in every fifth of a second."""
+_SMOOTHED_M: Final = 0.1  # outlines of lanes have no more points than this needs
+_DECIMALS: Final = 7  # of a degree: a centimetre
+_FINDING: Final = ("finding_id", "rule_id", "profile", "severity", "margin", "unit", "ego_id", "object_id")
+_STYLES: Final = {
+    "finding": {"color": "#e02020"},
+    "way": {"color": "#2173f2"},
+    "lane": {"color": "#808590", "weight": 1},
+}
+
+
+def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str) -> list[Message]:
+    """Return the `foxglove.LocationFix` messages of the first ego; `frame`: the name of its frame, empty if it has none.
+
+    A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
+    """
+    egos = [name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego]
+    rows = _thinned(tracks, min(egos)) if egos else np.zeros(0, np.intp)
+    degrees = geo.degrees(_places(tracks, rows))
+    known = np.isfinite(degrees).all(axis=1)
+    times = clock.log_time(tracks.t_ns[rows])
+    return [
+        Message(time, wire.doubles(latitude, longitude) + wire.time(6, time) + wire.text(7, frame))
+        for time, (longitude, latitude) in zip(times[known].tolist(), degrees[known].tolist(), strict=True)
+    ]
+
+
+def geojson(
+    findings: pa.Table, tracks: Tracks, geo: GeoFrame, road: Road | None, sense_by_rule: Mapping[str, str]
+) -> bytes:
+    """Return a `foxglove.GeoJSON`: the drivable lanes near anybody's way, the egos' ways, the findings."""
+    shapes = [*_lanes(road, tracks), *_ways(tracks)]
+    degrees = geo.degrees(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
+    ends = np.cumsum([len(points) for _, _, points in shapes])[:-1]
+    features = []
+    for (kind, name, _), points in zip(shapes, np.split(degrees, ends), strict=False):
+        if np.isfinite(points).all():
+            line = _rounded(points)
+            geometry = {"type": "LineString", "coordinates": line}
+            if kind == "lane":
+                geometry = {"type": "Polygon", "coordinates": [line]}
+            features.append(_feature(kind, geometry, {"name": name}))
+    for row in findings.to_pylist():
+        if row["lon"] is not None and row["lat"] is not None:
+            geometry = {"type": "Point", "coordinates": _rounded(np.array([row["lon"], row["lat"]]))}
+            facts = {key: row[key] for key in _FINDING if row[key] is not None}
+            features.append(_feature("finding", geometry, {"name": headline(row, sense_by_rule), **facts}))
+    return wire.nested(1, msgspec.json.encode({"type": "FeatureCollection", "features": features}))
+
+
+def _feature(kind: str, geometry: dict[str, Any], facts: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "Feature", "geometry": geometry, "properties": {"kind": kind, **facts, "style": _STYLES[kind]}}
+
+
+def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    known = np.isfinite(tracks.x) & np.isfinite(tracks.y)
+    if road is None or not known.any():
+        return
+    for name, outline in road.drivable_outlines(tracks.x[known], tracks.y[known]):
+        yield "lane", name, shapely.get_coordinates(shapely.simplify(shapely.linearrings(outline), _SMOOTHED_M))
+
+
+def _ways(tracks: Tracks) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+    """Yield each ego's way, in pieces where it is not known for a while."""
+    for name in sorted(name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego):
+        rows, steps = _thinned(tracks, name), np.diff(tracks.times(name))
+        gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * STEP_NS) if len(steps) else 0.0
+        for piece in np.split(rows, np.flatnonzero(np.diff(tracks.t_ns[rows]) > gap) + 1):
+            if len(piece) > 1:
+                yield "way", name, _places(tracks, piece)
+
+
+def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
+    """Return the rows in which an actor has a place, at most one each `STEP_NS` of its time."""
+    span = tracks.rows_by_actor[name]
+    rows = np.arange(span.start, span.stop)
+    rows = rows[np.isfinite(tracks.x[rows]) & np.isfinite(tracks.y[rows])]
+    _, first = np.unique((tracks.t_ns[rows] - tracks.t_ns[span.start]) // STEP_NS, return_index=True)
+    return rows[first]
+
+
+def _places(tracks: Tracks, rows: NDArray[np.intp]) -> NDArray[np.float64]:
+    return np.stack([tracks.x[rows], tracks.y[rows]], axis=1)
+
+
+def _rounded(degrees: NDArray[np.float64]) -> Any:
+    return np.round(degrees, _DECIMALS).tolist()

@@ -1,0 +1,115 @@
+"""Moves a log into the coordinates of its map, where both have geo references and these differ."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.order import wrapped
+from drivelint.drive.trace import QualityFinding
+from drivelint.engine.earth import frame_of_log, frame_of_map
+from drivelint.errors import MapError
+from drivelint.road import geo_reference
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.drive.trace import Trace
+    from drivelint.road.geo_reference import GeoFrame
+    from drivelint.road.map_reader import MapTables
+
+STEP_M: Final = 100.0
+SHAPE_M: Final = 0.01
+"""What a step may be out of shape in the other frame: longer than the step across it, or not at a right angle to it."""
+LENGTH_M: Final = 0.1
+"""What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
+SAME_M: Final = 0.01
+
+
+def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
+    """Return the trace in the coordinates of the map, with a finding that says so; as it is where nothing says that they differ.
+
+    Each position is moved by itself, each heading, velocity and acceleration turned by the angle between the two norths there.
+    Whoever gives `--map-offset` or `--map-origin` has said how they lie to each other. Heights stay as they are.
+    Errors: `MapError` where lengths or shapes would not be kept.
+    """
+    own, theirs = frame_of_log(trace)[0], frame_of_map(environment)
+    if not own or not theirs or _is_said_by_the_user(environment):
+        return trace
+    states = trace.tables["actor_state"]
+    columns = {name: _floats(states, name) for name in states.column_names if pa.types.is_floating(states[name].type)}
+    xy = np.stack([columns["x_m"], columns["y_m"]], axis=1)
+    placed = np.isfinite(xy).all(axis=1)
+    if not placed.any():
+        return trace
+    low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
+    turn, stretch = _similarity(own, theirs, low, high)
+    there, turns = _moved(own, theirs, xy[placed])
+    now = replace(trace, geo_reference=theirs.reference, geo_offset=(theirs.x_m, theirs.y_m, theirs.yaw_rad))
+    if np.abs(there - xy[placed]).max() < SAME_M:
+        return now
+    angle = np.full(len(xy), turn)
+    angle[placed] = turns
+    columns["x_m"][placed], columns["y_m"][placed] = there.T
+    columns["yaw_rad"] = wrapped(columns["yaw_rad"] + angle)
+    for x, y in (("vx_mps", "vy_mps"), ("ax_mps2", "ay_mps2")):
+        if x in columns:
+            columns[x], columns[y] = _turned(columns[x], columns[y], angle)
+    for name, values in columns.items():
+        at = states.schema.get_field_index(name)
+        states = states.set_column(at, states.schema.field(at), pa.array(values, from_pandas=True))
+    message = (
+        f"the log's coordinates are {own.reference!r}, the map's {theirs.reference!r}: the log is moved into the map's, turned by "
+        f"{math.degrees(turn):.4f} degrees, lengths times {stretch:.5f}"
+    )
+    moved = replace(now, tables={**trace.tables, "actor_state": states})
+    return with_quality_finding(moved, QualityFinding("moved_to_map", "info", message))
+
+
+def _is_said_by_the_user(environment: MapTables) -> bool:
+    (row,) = environment.tables["environment"].to_pylist()
+    return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_tangent_plane(row["geo_reference"]))
+
+
+def _similarity(
+    own: GeoFrame, theirs: GeoFrame, low: NDArray[np.float64], high: NDArray[np.float64]
+) -> tuple[float, float]:
+    """Return turn (radians) and stretch in the middle of an area. Errors: `MapError` where lengths or shapes in it are not kept."""
+    at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
+    ends = np.concatenate([at, at + np.array([STEP_M, 0.0]), at + np.array([0.0, STEP_M])])
+    start, along, across = np.split(_through(own, theirs, ends), 3)
+    along, across = along - start, across - start
+    bent = np.hypot(*(across - along[:, ::-1] * (-1.0, 1.0)).T).max()
+    lengths = np.hypot(*along.T)
+    if not (bent <= SHAPE_M and np.abs(lengths - STEP_M).max() <= LENGTH_M):
+        raise MapError(
+            f"the log's coordinates ({own.reference!r}) cannot be moved into the map's ({theirs.reference!r}): {STEP_M:.0f} m would be "
+            f"{lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; bring log and map into one projection"
+        )
+    return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / STEP_M)
+
+
+def _moved(own: GeoFrame, theirs: GeoFrame, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return places in the other frame, and by how much a heading turns there (radians)."""
+    there, beside = np.split(_through(own, theirs, np.concatenate([xy, xy + np.array([1.0, 0.0])])), 2)
+    return there, np.arctan2(*(beside - there).T[::-1])
+
+
+def _through(own: GeoFrame, theirs: GeoFrame, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    return theirs.unproject(geo_reference.transform(own.project(xy), own.reference, theirs.reference))
+
+
+def _turned(
+    x: NDArray[np.float64], y: NDArray[np.float64], angle: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    cos, sin = np.cos(angle), np.sin(angle)
+    return x * cos - y * sin, x * sin + y * cos
+
+
+def _floats(table: pa.Table, column: str) -> NDArray[np.float64]:
+    return np.array(table[column].to_numpy(zero_copy_only=False), np.float64)
