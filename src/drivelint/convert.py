@@ -1,0 +1,222 @@
+"""Converts a trace of any format to Parquet or to OSI in MCAP, which are read without a mapping."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Final, Literal
+
+import pyarrow as pa
+
+from drivelint.drive.trace import DriveInput
+from drivelint.engine.map_library import MapLibrary
+from drivelint.errors import MapError, UsageError
+from drivelint.formats import expand_traces, read_trace
+from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
+from drivelint.formats.map_registry import root_element_name
+from drivelint.formats.osi import writer as osi_log
+from drivelint.formats.osi.metadata import ego_independent_quality
+from drivelint.formats.tables import parquet
+from drivelint.phrases import listed
+from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
+from drivelint.road.map_reader import MapSource
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.drive.trace import Trace
+
+TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
+MAP_FILE: Final = "map.xodr"
+_MARK: Final = "drivelint.converted"
+"""Key in the metadata of every Parquet file that is written."""
+_HEAD_BYTES: Final = 64
+"""Enough of an MCAP file for its magic bytes and header, in which its writer names itself."""
+
+
+@dataclass(frozen=True)
+class ConvertRequest(DriveInput):
+    """What `convert` is asked to do; the names are those of its options."""
+
+    trace: str
+    to: Literal["mcap", "parquet"]
+    out: Path
+
+
+@dataclass(frozen=True)
+class ConvertedTrace:
+    """The converted trace: its path, its files with their sizes, and counts."""
+
+    path: Path
+    files: dict[str, int]
+    n_states: int
+    n_actors: int
+    map_name: str | None
+    has_ego: bool
+    notes: tuple[str, ...]
+
+
+def convert(request: ConvertRequest) -> ConvertedTrace:
+    """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
+
+    The log's own map goes along as it is; where it cannot, or cannot be used, a note says so.
+    Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the given
+    map cannot go along, `MapError` for a given map that cannot be read, `OutputError` where the folder cannot be written.
+    """
+    paths = expand_traces([request.trace])
+    if len(paths) != 1:
+        names = listed([each.name for each in paths])
+        raise UsageError(
+            f"{request.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
+        )
+    (path,) = paths
+    stem = path.resolve().name if path.is_dir() else path.stem
+    target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
+    _refuse_to_overwrite(path, request.out, target)
+    # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
+    options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
+    trace = read_trace(path, options)
+    if request.map_offset is not None:
+        trace = _moved(trace, request.map_offset)
+    road, told = _road(request, trace)
+    prepare_folder(request.out)
+    files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
+    notes = [*trace.notes, *told, *_of_a_check(request)]
+    has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
+    if not has_ego:
+        notes.append(
+            "the log names no ego: choose one with --ego ID, here or in every check (drivelint inspect lists them)"
+        )
+    return ConvertedTrace(
+        path=target,
+        files=files,
+        n_states=trace.tables["actor_state"].num_rows,
+        n_actors=trace.tables["actor"].num_rows,
+        map_name=None if road is None else road.name,
+        has_ego=has_ego,
+        notes=tuple(notes),
+    )
+
+
+def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
+    """Check that nothing foreign would be overwritten. Errors: `UsageError` that names the file in the way."""
+    if not out.exists():
+        return
+    if not out.is_dir():
+        raise UsageError(f"--out {out} is a file: name a folder")
+    ours = [out / name for name in CANONICAL_FILES] if target == out else [target]
+    if out.samefile(source) or any(file.exists() and file.samefile(source) for file in ours):
+        raise UsageError(f"--out {out}: that would overwrite the log itself: choose another folder")
+    if target != out:
+        if target.exists() and not _is_our_mcap(target):
+            raise UsageError(f"{target} exists and was not written by convert: choose another --out")
+    elif next(out.iterdir(), None) is not None and not (
+        is_canonical_folder(out) and _is_our_parquet(out / "actor_state.parquet")
+    ):
+        raise UsageError(f"--out {out} holds other files: a converted log is a folder of its own: choose another")
+
+
+def _is_our_mcap(path: Path) -> bool:
+    with path.open("rb") as file:
+        return osi_log.LIBRARY.encode() in file.read(_HEAD_BYTES)
+
+
+def _is_our_parquet(path: Path) -> bool:
+    return _MARK.encode() in (parquet.schema(path).metadata or {})
+
+
+def _of_a_check(request: ConvertRequest) -> list[str]:
+    """Return a note for each given option that a converted log cannot hold."""
+    given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
+    unset = {field.name: field.default for field in fields(DriveInput)}
+    names = ["--" + name.replace("_", "-") for name, value in given.items() if value != unset[name]]
+    return [f"{name} is not part of the converted log: give it in every check" for name in names]
+
+
+def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
+    """Return the trace with the user's map offset in place of the mapping's."""
+    log = trace.tables["data_log"]
+    for name, value in zip(("map_offset_x_m", "map_offset_y_m"), offset, strict=True):
+        log = log.set_column(log.schema.get_field_index(name), name, pa.array([value], pa.float64()))
+    return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
+
+
+def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, list[str]]:
+    """Return the map that goes along, the user's, else the log's own, and what to tell about it. Errors: as `convert`."""
+    library, own = MapLibrary.from_options(request), trace.embedded_map
+    if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
+        return (None, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
+    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
+        raise UsageError(why)
+    library.find(trace)  # a wrong map is refused now, not by whoever checks the converted log
+    return road, []
+
+
+def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, list[str]]:
+    """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
+    notes = []
+    library = MapLibrary(None, None, "auto")
+    try:
+        library.doubts(trace, library.find(trace))
+    except MapError as error:
+        notes.append(f"the log's own map cannot be used: {error}")
+    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
+        return None, [*notes, f"the log's own map is left out: {why}"]
+    return road, notes
+
+
+def _unfit_for_mcap(road: MapSource) -> str | None:
+    """Return why a map cannot go along in MCAP; None: it can."""
+    if (root_element_name(road.content) or "").lower() != "opendrive":
+        return "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
+    try:
+        road.content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return (
+            f"map {road.name} is not UTF-8 ({error.reason} at byte {error.start}), as OSI's texts are: save it as UTF-8, "
+            "or use --to parquet"
+        )
+    return None
+
+
+def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with temporary.open("wb") as file:
+            osi_log.write(file, trace, road)
+        size = temporary.stat().st_size
+        publish(target.parent, {}, {target.name: temporary})
+    except OSError as error:
+        raise OutputError(
+            f"{target}: cannot be written: {error.strerror or error}; free the disk or choose another --out"
+        ) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+    return {target.name: size}
+
+
+def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+    tables = {**trace.tables, "quality": ego_independent_quality(trace)}
+    names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
+    contents = {f"{name}.parquet": described_parquet(tables[name], name, {_MARK: name}) for name in names}
+    if road is not None:
+        contents[MAP_FILE] = road.content
+    publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})
+    return {name: len(content) for name, content in contents.items()}
+
+
+def summary_text(written: ConvertedTrace) -> str:
+    """Return what was written, and the command that checks it."""
+    size = sum(written.files.values())
+    amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
+    files = f"{len(written.files)} files, " if len(written.files) > 1 else ""
+    road = f", the map {written.map_name} with it" if written.map_name else ", no map"
+    ego = "" if written.has_ego else " --ego ID"
+    command = (
+        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'} --out results"
+    )
+    return (
+        f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}\n"
+        f"check it, without a mapping, with: {command}"
+    )
