@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
-from importlib.resources import files
-from typing import Any, Final
+from typing import Final
 
 from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
+from drivelint.resources import facts
 
-TEXTS: Final[dict[str, Any]] = tomllib.loads((files(__package__) / "signals.toml").read_text(encoding="utf-8"))
+TEXTS: Final = facts(__file__, "signals.toml")
 """`advice`: signal -> what to give; `remedies`: reason code -> what to do; `where`: format -> key -> where its logs have it."""
 ADVICE: Final[dict[str, str]] = {
     **{

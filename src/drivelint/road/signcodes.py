@@ -6,9 +6,9 @@ The codes stand in `signcodes.toml`. Where a code is not known, the signal's nam
 from __future__ import annotations
 
 import re
-import tomllib
 from functools import cache
-from importlib.resources import files
+
+from drivelint.resources import facts
 
 _ALL_TURNS = ("left", "straight", "right", "u_turn")
 _FULL_LIGHTS = {"1000001": {"", "-1", "0", "none"}, "1000009": {"", "-1", "10", "20", "30"}}  # and their subtypes
@@ -61,12 +61,8 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 def codes_of(kind: str) -> dict[str, list[str]]:
     """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb, us, es; lists without one are left out."""
-    return _lists().get(kind, {})
-
-
-@cache
-def _lists() -> dict[str, dict[str, list[str]]]:
-    return tomllib.loads((files(__package__) / "signcodes.toml").read_text(encoding="utf-8"))
+    found: dict[str, list[str]] = facts(__file__, "signcodes.toml").get(kind, {})
+    return found
 
 
 @cache
@@ -74,7 +70,7 @@ def _kinds(country: str) -> dict[str, str]:
     """Return code -> kind, of OpenDRIVE's list and of a country's."""
     return {
         code: kind
-        for kind, lists in _lists().items()
+        for kind, lists in facts(__file__, "signcodes.toml").items()
         for name in ("OpenDRIVE", country)
         for code in lists.get(name, ())
     }
