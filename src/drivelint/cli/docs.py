@@ -71,8 +71,7 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
             words, meaning = record
-            said[param.param_type_name].append(
-                (words.partition(" <")[0], meaning)
-            )  # without the type in Python's words
+            # without the type in Python's words
+            said[param.param_type_name].append((words.partition(" <")[0], meaning))
     usage = " ".join([name, *command.collect_usage_pieces(about)])
     yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))
