@@ -20,7 +20,7 @@ from drivelint.evaluate import evaluate as plain
 from drivelint.formats import read_trace
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
-from drivelint.result.evidence import surroundings
+from drivelint.result import evidence
 from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 
@@ -84,7 +84,7 @@ def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monk
     found = []
     for room in (batch.PAIRS_PER_PART, 1, 1100):
         monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
-        monkeypatch.setattr(surroundings, "SCENES_AT_ONCE", room)
+        monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
         result = check(asked, Silent())

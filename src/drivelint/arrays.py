@@ -27,6 +27,11 @@ def spelled(codes: NDArray[np.integer], words: Sequence[str]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(indices, pa.array(words, pa.string())).cast(pa.string())
 
 
+def floats(column: pa.Array | pa.ChunkedArray) -> Floats:
+    """Return a column as numbers, with NaN for NULL."""
+    return np.asarray(column.to_numpy(zero_copy_only=False), np.float64)
+
+
 def coded(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:
     """Return the code of each text, every distinct one asked for once; -1 for NULL."""
     import pyarrow.compute as pc

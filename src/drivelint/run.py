@@ -22,7 +22,6 @@ from drivelint.result import collect, evidence
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
-from drivelint.result.rulebook import rule_table
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
     with store.workspace(settings.memory) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
-        table = rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
+        table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         # the report and the annotated logs read each batch before its tables are cleared
         observers: list[BatchObserver] = [_gather] if settings.out else []
         if settings.out and settings.annotate:
@@ -105,23 +104,17 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         if len(refused) == len(paths):
             raise _none_judged(refused)
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
-        drives = pa.concat_tables([memory.run_job(collect.drives, con), *unjudged])
+        drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         return Result(
-            verdicts=memory.run_job(collect.verdicts, con),
-            findings=memory.run_job(collect.findings, con),
+            verdicts=memory.run_job(collect.verdicts),
+            findings=memory.run_job(collect.findings),
             drives=drives.sort_by([("drive_id", "ascending"), ("file_name", "ascending")]),
             rules=table,
-            **memory.run_job(evidence.tables, con),
+            **memory.run_job(evidence.tables),
             margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
-            asked=RunRequest.from_options(
-                settings,
-                traces=places,
-                profiles=settings.profiles,
-                params=settings.params,
-                rules_dirs=settings.rules_dirs,
-            ),
+            asked=RunRequest.from_options(settings, places),
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
-from drivelint.reasons.remedies import REMEDIES, remedy
+from drivelint.reasons.signals import REMEDIES, remedy
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivelint.gate import compare_results, descriptions, diff
-from drivelint.result import gate_file as store
+from drivelint.result import gate as store
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict

@@ -13,7 +13,7 @@ from rich.console import Console
 from drivelint.errors import ExitCode, UsageError
 from drivelint.gate import Gate, GateInputs, Waiver, descriptions, waivers
 from drivelint.report import junit, terminal
-from drivelint.result import gate_file as store
+from drivelint.result import gate as store
 from drivelint.result.model import Result, exit_status
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 

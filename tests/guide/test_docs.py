@@ -16,8 +16,7 @@ from drivelint.catalogue.header import Conditions, Header
 from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
-from drivelint.reasons.remedies import REMEDIES
-from drivelint.reasons.signals import SIGNALS
+from drivelint.reasons.signals import REMEDIES, SIGNALS
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
 from tests.guide.blocks import PAGES

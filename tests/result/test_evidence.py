@@ -16,7 +16,7 @@ import shapely
 
 from drivelint.engine import batch
 from drivelint.report.progress import Silent
-from drivelint.result.evidence import surroundings
+from drivelint.result import evidence
 from drivelint.result.model import Result
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
@@ -241,9 +241,9 @@ def test_the_tables_can_be_read_by_column(result: Result) -> None:
 
 @pytest.mark.parametrize("most", [1, 5, 7, 100])
 def test_moments_are_cut_between_egos(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(surroundings, "SCENES_AT_ONCE", most)
+    monkeypatch.setattr(evidence, "SCENES_AT_ONCE", most)
     counts = [(1, 3), (2, 2), (3, 9), (4, 1), (5, 1)]
-    runs = list(surroundings._some(counts))
+    runs = list(evidence._some(counts))
     assert [ego for first, end in runs for ego in range(first, end)] == [1, 2, 3, 4, 5]
     assert all(end - first == 1 or sum(n for ego, n in counts if first <= ego < end) <= most for first, end in runs)
-    assert list(surroundings._some([])) == []
+    assert list(evidence._some([])) == []

@@ -85,12 +85,9 @@ def _is_apart(table: str, scene: Scene, key: str) -> bool:
     names = {name for row in scene[table] for name in row}
     if key == "drive_id":
         return key in names or _of_the_map(table)
+    egos = {row["ego_id"] for row in scene["clock"]}
     # a table of any actor that tells of egos only
-    return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= _egos(scene))
-
-
-def _egos(scene: Scene) -> set[str]:
-    return {row["ego_id"] for row in scene["clock"]}
+    return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= egos)
 
 
 @cache
@@ -123,16 +120,14 @@ def _marked(row: Row, table: str, key: str, no: int) -> Row:
 
 def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
     """Return the rows of case `no` from an outcome, with the keys of that case."""
-    return CaseOutcome(*([_unmarked(row, no) for row in rows if _is_of(row, no)] for rows in outcome))
-
-
-def _is_of(row: Row, no: int) -> bool:
-    return any(str(row.get(name)).startswith(f"{no}:") for name in _MARKED)
-
-
-def _unmarked(row: Row, no: int) -> Row:
-    plain = {name: row[name].removeprefix(f"{no}:") for name in _MARKED if isinstance(row.get(name), str)}
-    return {**row, **plain}
+    mark = f"{no}:"
+    found = CaseOutcome([], [])
+    for rows, mine in zip(outcome, found, strict=True):
+        for row in rows:
+            marked = {name: row[name] for name in _MARKED if isinstance(row.get(name), str)}
+            if any(text.startswith(mark) for text in marked.values()):
+                mine.append(row | {name: text.removeprefix(mark) for name, text in marked.items()})
+    return found
 
 
 def _fetch(con: duckdb.DuckDBPyConnection, sql: str) -> list[Row]:

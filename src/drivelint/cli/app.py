@@ -16,9 +16,10 @@ import typer
 
 from drivelint import __version__
 from drivelint.cli import docs as docs_
-from drivelint.cli import inputs, options, results, rules, values
+from drivelint.cli import options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
+from drivelint.cli.options import Texts, argument, option
 from drivelint.errors import DriveLintError, ExitCode
 
 app = typer.Typer(
@@ -56,47 +57,36 @@ def _root(
 
 
 @app.command()
-@inputs.takes_drive_input
+@options.takes_drive_input
 def check(
     *,
-    traces: Annotated[list[str], typer.Argument(metavar="TRACE", help="Recorded drives: files, globs or folders.")],
-    drive: inputs.DriveInputValues,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for the result files.")] = None,
+    traces: Annotated[list[str], argument("TRACE", "Recorded drives: files, globs or folders.")],
+    drive: options.DriveInputValues,
+    out: Annotated[Path | None, option("--out", "DIR", "Folder for the result files.")] = None,
     rules: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--rules", metavar="SEL", help="Rules to judge by, see above. Repeatable. Default: stable rules of ukhc."
-        ),
+        Texts, option("--rules", "SEL", "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
     ] = None,
-    ignore: Annotated[
-        list[str] | None, typer.Option("--ignore", metavar="SEL", help="Leave these rules out. Repeatable.")
-    ] = None,
+    ignore: Annotated[Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.")] = None,
     profile: Annotated[
-        list[str] | None,
-        typer.Option(
+        Texts,
+        option(
             "--profile",
-            metavar="NAME",
-            help="relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed.",
+            "NAME",
+            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed.",
         ),
     ] = None,
-    param: Annotated[
-        list[str] | None, typer.Option("--param", metavar="RULE.PARAM=V", help="Set a rule's parameter. Repeatable.")
-    ] = None,
+    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
     rules_dir: options.RulesDirs = None,
     fail_on: Annotated[
-        options.FailOn, typer.Option("--fail-on", help="Least severity that makes exit code 1.")
+        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
     ] = "critical",
-    strict: Annotated[bool, typer.Option("--strict", help="Unknown is not good enough: exit code 4.")] = False,
+    strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
     format_: options.FormatOption = "text",
-    margins: Annotated[bool, typer.Option("--margins", help="Also write margins.parquet: every judged step.")] = False,
-    keep_db: Annotated[
-        bool, typer.Option("--keep-db", help="Also keep the database with every stage's tables.")
-    ] = False,
+    margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
+    keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
     annotate: Annotated[
         bool,
-        typer.Option(
-            "--annotate/--no-annotate", help="With --out: copy each log with its verdicts in it, for a viewer."
-        ),
+        option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
     ] = True,
     baseline: options.Baseline = None,
     waivers: options.Waivers = None,
@@ -161,11 +151,7 @@ def check(
 
 
 @app.command()
-def demo(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the logs and their road.")] = Path(
-        "demo"
-    ),
-) -> None:
+def demo(out: Annotated[Path, option("--out", "DIR", "Folder for the logs and their road.")] = Path("demo")) -> None:
     """Write drives to try drivelint on.
 
     Three overtakes at two speeds, as ASAM OSI in MCAP, and their road. Prints the command that checks them.
@@ -178,14 +164,13 @@ def demo(
 
 
 @app.command()
-@inputs.takes_drive_input
+@options.takes_drive_input
 def inspect(
     *,
-    trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
-    drive: inputs.DriveInputValues,
+    trace: Annotated[str, argument("TRACE", "One recorded drive.")],
+    drive: options.DriveInputValues,
     rules: Annotated[
-        list[str] | None,
-        typer.Option("--rules", metavar="SEL", help="Rules to ask about, as in check. Repeatable. Default: ukhc."),
+        Texts, option("--rules", "SEL", "Rules to ask about, as in check. Repeatable. Default: ukhc.")
     ] = None,
     rules_dir: options.RulesDirs = None,
     memory: options.MemorySize = None,
@@ -215,15 +200,15 @@ def inspect(
 
 
 @app.command()
-@inputs.takes_drive_input
+@options.takes_drive_input
 def convert(
     *,
-    trace: Annotated[str, typer.Argument(metavar="TRACE", help="One recorded drive.")],
+    trace: Annotated[str, argument("TRACE", "One recorded drive.")],
     to: Annotated[
-        options.ConvertTarget, typer.Option("--to", help="mcap: one file of ASAM OSI; parquet: a folder of tables.")
+        options.ConvertTarget, option("--to", None, "mcap: one file of ASAM OSI; parquet: a folder of tables.")
     ],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the converted log.")],
-    drive: inputs.DriveInputValues,
+    out: Annotated[Path, option("--out", "DIR", "Folder for the converted log.")],
+    drive: options.DriveInputValues,
 ) -> None:
     """Write a log anew, as OSI in MCAP or as Parquet.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
@@ -19,20 +20,12 @@ def docs(
     ctx: typer.Context,
     topic: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[TOPIC]",
-            help="The guide to print, dictionary, catalogue, reasons or macros; default: list the guides.",
-        ),
+        argument("[TOPIC]", "The guide to print, dictionary, catalogue, reasons or macros; default: list the guides."),
     ] = None,
-    table: Annotated[
-        str | None, typer.Argument(metavar="[TABLE]", help="With dictionary: the table to print; default: all.")
-    ] = None,
+    table: Annotated[str | None, argument("[TABLE]", "With dictionary: the table to print; default: all.")] = None,
     *,
     html: Annotated[
-        Path | None,
-        typer.Option(
-            "--html", metavar="DIR", help="Write all guides, the rules, the tables and the commands as a site."
-        ),
+        Path | None, option("--html", "DIR", "Write all guides, the rules, the tables and the commands as a site.")
     ] = None,
 ) -> None:
     """Print a guide, or write all of them as a site.
@@ -78,8 +71,7 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
             words, meaning = record
-            said[param.param_type_name].append(
-                (words.partition(" <")[0], meaning)
-            )  # without the type in Python's words
+            # without the type in Python's words
+            said[param.param_type_name].append((words.partition(" <")[0], meaning))
     usage = " ".join([name, *command.collect_usage_pieces(about)])
     yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))

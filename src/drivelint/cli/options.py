@@ -1,11 +1,18 @@
-"""The options that several commands have, and the words they take: each written down once."""
+"""The options that several commands have, each written down once: those of `DriveInput`, which every command that reads a log takes."""
 
 from __future__ import annotations
 
+import inspect
+from functools import wraps
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
+
+from drivelint.cli import values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Format = Literal["text", "json"]
 """How results are printed on stdout."""
@@ -15,30 +22,136 @@ DiffFormat = Literal["text", "json", "markdown"]
 RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 FailOn = Literal["critical", "major", "minor", "never"]
 """The least severity that makes exit code 1."""
+Texts = list[str] | None
+"""What an option that may be given several times has."""
+
+
+def argument(metavar: str, words: str) -> Any:
+    """Return an argument of a command with its help."""
+    return typer.Argument(metavar=metavar, help=words)
+
+
+def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
+    """Return an option of a command with its help."""
+    return typer.Option(flag, metavar=metavar, help=words, **more)
+
 
 Baseline = Annotated[
-    Path | None,
-    typer.Option("--baseline", metavar="DIR", help="An earlier result: its findings are known, only new ones gate."),
+    Path | None, option("--baseline", "DIR", "An earlier result: its findings are known, only new ones gate.")
 ]
 Waivers = Annotated[
-    Path | None,
-    typer.Option("--waivers", metavar="FILE", help="TOML of findings that somebody answers for: shown, but no gate."),
+    Path | None, option("--waivers", "FILE", "TOML of findings that somebody answers for: shown, but no gate.")
 ]
 Today = Annotated[
-    str | None,
-    typer.Option("--today", metavar="DATE", help="The day that waivers are held against. Default: the system's."),
+    str | None, option("--today", "DATE", "The day that waivers are held against. Default: the system's.")
 ]
 MemorySize = Annotated[
     str | None,
-    typer.Option(
+    option(
         "--memory",
-        metavar="SIZE|none",
-        help="What the database keeps to before it uses the disk: 512MB, 2GB; none, 80 % of the machine's. Results do not depend "
+        "SIZE|none",
+        "What the database keeps to before it uses the disk: 512MB, 2GB; none, 80 % of the machine's. Results do not depend "
         "on it; what cannot go to disk takes more, which is said. The program itself takes some 300 MB more. Default: 1200MB.",
     ),
 ]
-FormatOption = Annotated[Format, typer.Option("--format", help="What is printed on stdout.")]
+FormatOption = Annotated[Format, option("--format", None, "What is printed on stdout.")]
 RulesDirs = Annotated[
-    list[Path] | None,
-    typer.Option("--rules-dir", metavar="DIR", help="Folder with rule packs of your own. Repeatable."),
+    list[Path] | None, option("--rules-dir", "DIR", "Folder with rule packs of your own. Repeatable.")
 ]
+DriveInputValues = dict[str, Any]
+"""Fields of `DriveInput` -> their values."""
+
+
+class _DriveOption(NamedTuple):
+    """A field of `DriveInput` as an option, and how its value is read from that of the command line."""
+
+    type: Any
+    said: Any
+    default: Any = None
+    read: Callable[[Any], Any] = lambda value: value
+
+
+_DRIVE_OPTIONS = {
+    "map": _DriveOption(
+        Path | None,
+        option("--map", "MAP", "The road, as OpenDRIVE, Lanelet2, CommonRoad or a SUMO net: most rules need it."),
+    ),
+    "ego": _DriveOption(str | None, option("--ego", "ID|all", "The vehicle under test, or every vehicle in turn.")),
+    "mapping": _DriveOption(
+        str | None, option("--mapping", "FILE|NAME", "How a table's columns are read: a TOML file or a shipped name.")
+    ),
+    "map_offset": _DriveOption(
+        str | None, option("--map-offset", "DX,DY", "Metres added to the map's coordinates."), read=values.parse_offset
+    ),
+    "map_dir": _DriveOption(
+        Path | None, option("--map-dir", "DIR", "Folder of maps: each log gets its own, by maps.csv, name or place.")
+    ),
+    "map_origin": _DriveOption(
+        str | None,
+        option("--map-origin", "LAT,LON", "Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
+        read=values.parse_origin,
+    ),
+    "handedness": _DriveOption(
+        Literal["auto", "lht", "rht"], option("--handedness", None, "Side of the road that is driven on."), "auto"
+    ),
+    "sensor_range_m": _DriveOption(
+        float | None,
+        option(
+            "--sensor-range",
+            "M",
+            "Range in which the recorder sees everybody. Default: what the log says, else 50 m.",
+            min=0,
+        ),
+    ),
+    "visibility": _DriveOption(
+        Literal["line-of-sight", "none"],
+        option(
+            "--visibility",
+            None,
+            "Whoever is not recorded: line-of-sight, not in plain view of the recorder (2.5 s after it was lost); none, anywhere.",
+        ),
+        "line-of-sight",
+    ),
+    "ego_size": _DriveOption(
+        str | None,
+        option(
+            "--ego-size",
+            "L,W[,AHEAD]",
+            "The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
+        ),
+        read=values.parse_ego_size,
+    ),
+    "env": _DriveOption(
+        Texts,
+        option(
+            "--env",
+            "KEY=VALUE",
+            "What holds in the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
+            "Repeatable. Counts before what the map or the log says.",
+        ),
+        read=lambda words: tuple(words or ()),
+    ),
+    "topic": _DriveOption(str | None, option("--topic", "NAME", "Read this MCAP topic, where several would do.")),
+}
+
+
+def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
+    """Replace the parameter `drive` of a command by the command line options of `DriveInput`."""
+    signature = inspect.signature(command, eval_str=True)
+
+    @wraps(command)
+    def wrapped(**given: Any) -> None:
+        drive = {name: each.read(given.pop(name)) for name, each in _DRIVE_OPTIONS.items()}
+        command(**given, drive=drive)
+
+    parameters: list[inspect.Parameter] = []
+    for parameter in signature.parameters.values():
+        if parameter.name != "drive":
+            parameters.append(parameter)
+            continue
+        for name, each in _DRIVE_OPTIONS.items():
+            kind, type_ = inspect.Parameter.KEYWORD_ONLY, Annotated[each.type, each.said]
+            parameters.append(inspect.Parameter(name, kind, default=each.default, annotation=type_))
+    wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    wrapped.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return wrapped

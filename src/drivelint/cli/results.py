@@ -9,16 +9,18 @@ import typer
 
 from drivelint.cli import options, values
 from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode
 
 
 def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What check --out wrote.")],
+    folder: Annotated[Path, argument("DIR", "What check --out wrote.")],
     to: Annotated[
         options.ReportFormat,
-        typer.Option(
+        option(
             "--to",
-            help="html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
+            None,
+            "html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
             "markdown: for a comment on a pull request.",
         ),
     ] = "html",
@@ -37,12 +39,12 @@ def report(
 
 
 def diff(
-    base: Annotated[Path, typer.Argument(metavar="BASE", help="What check --out wrote, earlier.")],
-    new: Annotated[Path, typer.Argument(metavar="NEW", help="What check --out wrote, later.")],
-    format_: Annotated[options.DiffFormat, typer.Option("--format", help="What is printed on stdout.")] = "text",
+    base: Annotated[Path, argument("BASE", "What check --out wrote, earlier.")],
+    new: Annotated[Path, argument("NEW", "What check --out wrote, later.")],
+    format_: Annotated[options.DiffFormat, option("--format", None, "What is printed on stdout.")] = "text",
     fail_on: Annotated[
         options.FailOn | None,
-        typer.Option("--fail-on", help="Least severity of a new finding that makes exit code 1. Default: NEW's."),
+        option("--fail-on", None, "Least severity of a new finding that makes exit code 1. Default: NEW's."),
     ] = None,
 ) -> None:
     """Compare two results: new, fixed, changed and unchanged findings.
@@ -71,51 +73,35 @@ def diff(
 def explain(
     name: Annotated[
         str,
-        typer.Argument(
-            metavar="FINDING",
-            help="A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin.",
+        argument(
+            "FINDING", "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin."
         ),
     ],
     *,
-    folder: Annotated[Path, typer.Option("--in", metavar="DIR", help="What check --out wrote.")],
-    profile: Annotated[
-        str | None, typer.Option("--profile", metavar="NAME", help="The rule's verdict for this profile.")
-    ] = None,
-    object_: Annotated[
-        str | None, typer.Option("--object", metavar="ID", help="The rule's verdict about this actor.")
-    ] = None,
-    ego: Annotated[str | None, typer.Option("--ego", metavar="ID", help="The rule's verdict on this ego.")] = None,
-    verdict: Annotated[
-        str | None, typer.Option("--verdict", metavar="WORD", help="A verdict of this kind, such as unknown.")
-    ] = None,
-    at: Annotated[
-        float | None, typer.Option("--at", metavar="S", help="The rule's verdict about this second of the drive.")
-    ] = None,
-    trace: Annotated[
-        Path | None, typer.Option("--trace", metavar="FILE", help="Where the log is, if it was moved.")
-    ] = None,
-    map_: Annotated[
-        Path | None, typer.Option("--map", metavar="MAP", help="Where the map is, if it was moved.")
-    ] = None,
+    folder: Annotated[Path, option("--in", "DIR", "What check --out wrote.")],
+    profile: Annotated[str | None, option("--profile", "NAME", "The rule's verdict for this profile.")] = None,
+    object_: Annotated[str | None, option("--object", "ID", "The rule's verdict about this actor.")] = None,
+    ego: Annotated[str | None, option("--ego", "ID", "The rule's verdict on this ego.")] = None,
+    verdict: Annotated[str | None, option("--verdict", "WORD", "A verdict of this kind, such as unknown.")] = None,
+    at: Annotated[float | None, option("--at", "S", "The rule's verdict about this second of the drive.")] = None,
+    trace: Annotated[Path | None, option("--trace", "FILE", "Where the log is, if it was moved.")] = None,
+    map_: Annotated[Path | None, option("--map", "MAP", "Where the map is, if it was moved.")] = None,
     position: Annotated[
-        float, typer.Option("--sigma-position", metavar="M", min=0, help="Standard error of each actor's position.")
+        float, option("--sigma-position", "M", "Standard error of each actor's position.", min=0)
     ] = 0.1,
-    time: Annotated[
-        float, typer.Option("--sigma-time", metavar="S", min=0, help="Standard error of each actor's clock.")
-    ] = 0.05,
-    of_map: Annotated[
-        float, typer.Option("--sigma-map", metavar="M", min=0, help="Standard error of where the map lies.")
-    ] = 0.1,
+    time: Annotated[float, option("--sigma-time", "S", "Standard error of each actor's clock.", min=0)] = 0.05,
+    of_map: Annotated[float, option("--sigma-map", "M", "Standard error of where the map lies.", min=0)] = 0.1,
     samples: Annotated[
         int | None,
-        typer.Option(
+        option(
             "--samples",
+            None,
+            "Copies with such errors; 0 leaves them out. Default: 100, for an unknown verdict 10.",
             min=0,
             max=100_000,
-            help="Copies with such errors; 0 leaves them out. Default: 100, for an unknown verdict 10.",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Another one draws other errors.")] = 0,
+    seed: Annotated[int, option("--seed", None, "Another one draws other errors.", min=0)] = 0,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",
 ) -> None:

@@ -9,15 +9,14 @@ import typer
 
 from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.options import Texts, argument, option
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 
 
 @app.command("list")
 def list_(
-    selectors: Annotated[
-        list[str] | None, typer.Argument(metavar="[SEL]...", help="Which ones, as --rules of check. Default: all.")
-    ] = None,
+    selectors: Annotated[Texts, argument("[SEL]...", "Which ones, as --rules of check. Default: all.")] = None,
     format_: options.FormatOption = "text",
     rules_dir: options.RulesDirs = None,
 ) -> None:
@@ -39,9 +38,7 @@ def list_(
 
 
 @app.command("show")
-def show(
-    rule_id: Annotated[str, typer.Argument(metavar="ID", help="The rule's id.")], rules_dir: options.RulesDirs = None
-) -> None:
+def show(rule_id: Annotated[str, argument("ID", "The rule's id.")], rules_dir: options.RulesDirs = None) -> None:
     """Show one rule: question, clause, parameters, SQL."""
     from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
@@ -54,9 +51,9 @@ def show(
 
 @app.command("new")
 def new(
-    rule_id: Annotated[str, typer.Argument(metavar="PACK.NAME", help="The id of the rule to write.")],
-    folder: Annotated[Path, typer.Option("--dir", metavar="DIR", help="Folder of packs to write it into.")] = Path(),
-    kind: Annotated[options.RuleKind, typer.Option("--kind", help="What it is judged at.")] = "invariant",
+    rule_id: Annotated[str, argument("PACK.NAME", "The id of the rule to write.")],
+    folder: Annotated[Path, option("--dir", "DIR", "Folder of packs to write it into.")] = Path(),
+    kind: Annotated[options.RuleKind, option("--kind", None, "What it is judged at.")] = "invariant",
 ) -> None:
     """Write a rule to start from.
 
@@ -71,12 +68,8 @@ def new(
 
 @app.command("page")
 def page_(
-    folder: Annotated[
-        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE", help="Write it there; default: print it.")
-    ] = None,
+    folder: Annotated[Path | None, argument("[DIR]", "Folder with rule packs; default: the shipped ones.")] = None,
+    out: Annotated[Path | None, option("--out", "FILE", "Write it there; default: print it.")] = None,
 ) -> None:
     """Write the catalogue as one Markdown page.
 
@@ -98,14 +91,10 @@ def page_(
 
 @app.command("test")
 def run_tests(
-    folder: Annotated[
-        Path | None, typer.Argument(metavar="[DIR]", help="Folder with rule packs; default: the shipped ones.")
-    ] = None,
-    only: Annotated[
-        list[str] | None, typer.Option("--rules", metavar="SEL", help="Rule id or glob. Repeatable. Default: all.")
-    ] = None,
+    folder: Annotated[Path | None, argument("[DIR]", "Folder with rule packs; default: the shipped ones.")] = None,
+    only: Annotated[Texts, option("--rules", "SEL", "Rule id or glob. Repeatable. Default: all.")] = None,
     mutate: Annotated[
-        bool, typer.Option("--mutate", help="Break each rule in many ways, and ask whether some case notices.")
+        bool, option("--mutate", None, "Break each rule in many ways, and ask whether some case notices.")
     ] = False,
 ) -> None:
     """Run the test cases beside the rules.

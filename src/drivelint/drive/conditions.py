@@ -7,51 +7,23 @@ One vocabulary for the rules' `[applies]`, for `--env` and for what a log may sa
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.resources import facts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-TOWN_ROAD_TYPES = (
-    "town", "townExpressway", "townCollector", "townArterial", "townPrivate", "townLocal", "townPlayStreet",
-)  # fmt: skip
-ROAD_TYPES = ("motorway", "rural", *TOWN_ROAD_TYPES, "lowSpeed", "pedestrian", "bicycle")
-"""OpenDRIVE's road types (ASAM OpenDRIVE 1.8, e_roadType), without `unknown`, which is NULL."""
-BRITISH_NATIONS = ("gb", "gb-eng", "gb-wls", "gb-sct")
-
-CONDITION_VALUES: dict[str, tuple[str, ...]] = {
-    "road_type": ROAD_TYPES,
-    "carriageway": ("single", "dual"),
-    "area": ("built_up", "open"),
-    "nation": (*BRITISH_NATIONS, "de"),
-    "weather": ("dry", "wet", "ice"),
-    "light": ("day", "night"),
-    "vehicle_class": ("car", "car_towing", "bus", "goods_7t5", "goods_over_7t5", "motorcycle"),
-}
-"""Condition -> its words; `nation` also takes any other country's two letters (ISO 3166-1), see `value_problem`."""
-
-DRIVE_CONDITION_VALUES: dict[str, tuple[str, ...]] = {**CONDITION_VALUES, "engaged": ("yes", "no")}
-"""What may be given for a drive: those, and whether the automated driver drives."""
-
-CONDITION_TEXTS: dict[str, str] = {
-    "road_type": "the road is of this type; not given: as the map says",
-    "carriageway": "something lies between the two directions (dual) or not; not given: as the map's lanes show",
-    "area": "the road lies in a town or village (built_up) or not; not given: by the road type",
-    "nation": "whose law holds, of Great Britain or one of its nations, or any other country's two letters (ISO 3166-1)",
-    "weather": "how the road is",
-    "light": "whether it is dark",
-    "vehicle_class": (
-        "what the ego is for the law: goods vehicles of up to 7.5 t or more, a car that tows; not given: car, bus or motorcycle by "
-        "the ego's class, and not known for any other"
-    ),
-    "engaged": "the automated driver drives all along, or never; else as events say, and without one it drives (`alks-r157`: unknown)",
-}
+_FACTS: Final = facts(__file__, "conditions.toml")
+DRIVE_CONDITION_VALUES: Final = {name: tuple(about["words"]) for name, about in _FACTS["condition"].items()}
+"""Condition -> its words, of a drive: those by which rules are restricted, and whether the automated driver drives."""
+CONDITION_VALUES: Final = {name: words for name, words in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
+"""Condition by which rules are restricted -> its words; `nation` also takes any other country's, see `value_problem`."""
+CONDITION_TEXTS: Final = {name: str(about["says"]) for name, about in _FACTS["condition"].items()}
 """Condition -> what its words say."""
-
-_WIDER = {"gb": BRITISH_NATIONS, "town": TOWN_ROAD_TYPES}
+_NARROWER: Final[dict[str, list[str]]] = _FACTS["narrower"]
 _COUNTRY = re.compile(r"[a-z]{2}")
 _SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
@@ -76,13 +48,13 @@ def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
 
 def with_narrower_values(words: tuple[str, ...]) -> list[str]:
     """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
-    return sorted({part for word in words for part in (word, *_WIDER.get(word, ()))})
+    return sorted({part for word in words for part in (word, *_NARROWER.get(word, ()))})
 
 
 def broader_values(words: tuple[str, ...]) -> list[str]:
     """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
     inside = with_narrower_values(words)
-    return sorted(wide for wide, parts in _WIDER.items() if wide not in inside and set(parts) & set(inside))
+    return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
 
 
 def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:

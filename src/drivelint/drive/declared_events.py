@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import spelled
+from drivelint.resources import facts
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import States
@@ -25,26 +26,11 @@ class DeclaredEvent(NamedTuple):
     says: str
 
 
-ON_OFF_EVENTS: Final = {
-    "engaged": "the automated driver drives",
-    "emergency_manoeuvre": "an emergency manoeuvre of the automated driver is under way",
-    "minimal_risk_manoeuvre": "a minimal risk manoeuvre of the automated driver is under way",
-    "lane_change_procedure": "the automated driver is changing lane, from its decision to its end",
-    "headlights": "the headlights are on, dipped or main beam",
-    "horn": "the horn sounds",
-}
-"""Events that are on until they are declared off."""
-EVENTS: Final = {
-    **{mode: DeclaredEvent("on, off", says) for mode, says in ON_OFF_EVENTS.items()},
-    "mirror_check": DeclaredEvent("left, right; none: both sides", "a look into the mirrors"),
-    "blind_spot_check": DeclaredEvent("left, right; none: both sides", "a look over the shoulder"),
-    "overtake_go": DeclaredEvent("none", "the decision to overtake"),
-    "overtake_no_go": DeclaredEvent("none", "the decision not to overtake"),
-    "confidence": DeclaredEvent("a number, 0 to 1", "how sure it is that the overtake is safe"),
-    "chosen_speed": DeclaredEvent(
-        "m/s; reason, such as `12.5; wet road`", "the speed that it means not to exceed, from now on"
-    ),
-    "hazard": DeclaredEvent("an actor_id", "somebody who may become a danger"),
+_FACTS: Final = facts(__file__, "declared_events.toml")
+ON_OFF_EVENTS: Final[dict[str, str]] = _FACTS["on_off"]
+"""Events that are on until they are declared off -> what they say."""
+EVENTS: Final = {mode: DeclaredEvent("on, off", says) for mode, says in ON_OFF_EVENTS.items()} | {
+    name: DeclaredEvent(**about) for name, about in _FACTS["other"].items()
 }
 """Event -> what it says. Other events are kept and read by no rule."""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import known_motion, ways_over
+from drivelint.drive.order import extent, known_motion, ways_over
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -46,11 +46,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
     astray = ~absent & _astray(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any()):
         return []
-    spread = np.zeros(len(starts))
-    for name in ("x_m", "y_m"):
-        values = numbers[name]
-        extent = np.fmax.reduceat(values, starts) - np.fmin.reduceat(values, starts)
-        spread = np.maximum(spread, np.nan_to_num(extent))
+    spread = np.nan_to_num([extent(numbers[name], starts) for name in ("x_m", "y_m")]).max(axis=0)
     false_zero = still & (spread > MOVED_M)
     findings = []
     for which, why in (
@@ -113,10 +109,8 @@ def _suspicious(states: States, k: int) -> bool:
         went = (numbers[place][last] - numbers[place][first]) / span
         led = (v[first] + 4.0 * v[middle] + v[last]) / 6.0
         off = np.hypot(off, went - led)
-    bad, n = (
-        np.bincount(states.actor[first][rows], minlength=len(states.ids))
-        for rows in (off > MISMATCH_MPS / 2, off >= 0.0)
-    )
+    actor, rows = states.actor[first], (off > MISMATCH_MPS / 2, off >= 0.0)
+    bad, n = (np.bincount(actor[some], minlength=len(states.ids)) for some in rows)
     return bool((3 * bad > n).any())
 
 
@@ -126,11 +120,7 @@ def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
     known = ~(np.isnan(ax) & np.isnan(ay))
     if not known.any() or (ax[known] != 0.0).any() or (ay[known] != 0.0).any():
         return []
-    changes = False
-    for name in ("vx_mps", "vy_mps"):
-        values = states.numbers[name]
-        changes |= bool(np.any(np.fmax.reduceat(values, starts) - np.fmin.reduceat(values, starts) > 0.5))
-    if not changes:
+    if not any((extent(states.numbers[name], starts) > 0.5).any() for name in ("vx_mps", "vy_mps")):
         return []
     states.numbers["ax_mps2"] = np.full(len(states), np.nan)
     states.numbers["ay_mps2"] = np.full(len(states), np.nan)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import track_starts
+from drivelint.drive.order import extent, track_starts
 from drivelint.drive.velocity import LEAST_NOISE_SAMPLES, MOVED_M, Tracklets, sample_noise
 
 if TYPE_CHECKING:
@@ -65,8 +65,7 @@ def _told(states: States, place: Floats) -> Mask:
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
-    extent = np.fmax.reduceat(place, starts, axis=1) - np.fmin.reduceat(place, starts, axis=1)
-    false_zero = still & (np.nan_to_num(extent).max(axis=0) > MOVED_M)
+    false_zero = still & (np.nan_to_num(extent(place, starts)).max(axis=0) > MOVED_M)
     told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
     return told
 

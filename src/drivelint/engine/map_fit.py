@@ -18,9 +18,8 @@ SIDE_CHECK_SAMPLES: Final = 80  # where the side is known, every drive is looked
 VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
 LEAST_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions looked at to see whether a drive is on its map
-LEAST_REVERSED_EACH_WAY: Final = (
-    5  # so many of them against their lane in both directions of a road: nobody overtakes both ways
-)
+LEAST_REVERSED_EACH_WAY: Final = 5
+"""So many of them against their lane in both directions of a road: nobody overtakes both ways."""
 BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
 FACING_COSINE: Final = 0.9
 AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
@@ -160,8 +159,7 @@ def _shapes(environment: MapTables, wanted: pa.ChunkedArray) -> tuple[NDArray[np
     left, right = _xy(points, "left_x_m", "left_y_m"), _xy(points, "right_x_m", "right_y_m")
     ends = np.cumsum(counts)
     rings = [np.vstack([left[a:b], right[a:b][::-1]]) for a, b in zip(ends - counts, ends, strict=True)]
-    area = np.array([shapely.Polygon(ring) for ring in rings], dtype=object)
-    return area, line
+    return np.array([shapely.Polygon(ring) for ring in rings], dtype=object), line
 
 
 def _xy(points: object, x: str, y: str) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
+from drivelint.arrays import floats
 from drivelint.engine import common_frame
 from drivelint.engine.map_fit import (
     SIDE_CHECK_SAMPLES,
@@ -92,8 +93,11 @@ class MapLibrary:
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
                 "give the right --map, or --map-offset"
             )
-        if environment.lanes_source == "default" and (voted := self._vote(environment, trace.tables["actor_state"])):
-            environment = self._load(source, trace, voted)
+        if environment.lanes_source == "default":
+            assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
+            headings = self._headings(environment, trace.tables["actor_state"], VOTE_SAMPLES)
+            if voted := vote_handedness(environment.lanes, headings):
+                environment = self._load(source, trace, voted)
         return environment, trace
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
@@ -177,14 +181,10 @@ class MapLibrary:
             f"{correction_hint(side, source)}."
         )
 
-    def _vote(self, environment: MapTables, states: pa.Table) -> str | None:
-        assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
-        return vote_handedness(environment.lanes, self._headings(environment, states, VOTE_SAMPLES))
-
     def _headings(self, environment: MapTables, states: pa.Table, most: int) -> LaneHeadings:
-        speed = np.hypot(_floats(states, "vx_mps"), _floats(states, "vy_mps"))
+        speed = np.hypot(floats(states["vx_mps"]), floats(states["vy_mps"]))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
-        x_m, y_m, yaw_rad = (_floats(moving, name) for name in ("x_m", "y_m", "yaw_rad"))
+        x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
         return compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
 
     def _lanes(self, environment: MapTables) -> OneWayLanes:
@@ -247,7 +247,7 @@ def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table)
             f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
             f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
-    looked, found = count_on_map(lanes, _floats(states, "x_m"), _floats(states, "y_m"))
+    looked, found = count_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
     if looked and not found:
         return f"of {looked} positions looked at, none is on anything that it knows"
     return None
@@ -258,7 +258,3 @@ def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:
     if x["min"] is None or y["min"] is None:
         return None
     return x["min"], x["max"], y["min"], y["max"]
-
-
-def _floats(table: pa.Table, column: str) -> np.ndarray:
-    return np.asarray(table[column].to_numpy(zero_copy_only=False), dtype=np.float64)

@@ -57,16 +57,16 @@ class Memory:
 
     def execute(self, sql: str) -> None:
         """Run one statement, with more memory if that is short."""
-        self.run_job(lambda con: con.execute(sql), self._con)
+        self.run_job(lambda con: con.execute(sql))
 
-    def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T], con: duckdb.DuckDBPyConnection) -> T:
-        """Run a job on a connection and return its result; repeat it with more memory if that is short."""
+    def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T]) -> T:
+        """Run a job on the database and return its result; repeat it with more memory if that is short."""
         try:
-            return job(con)
+            return job(self._con)
         except duckdb.OutOfMemoryException:
             if not self.lift_limit():
                 raise
-            return job(con)
+            return job(self._con)
 
 
 def peak_bytes() -> int | None:

@@ -135,15 +135,8 @@ class JudgingSession:
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
         """Judge the egos that do not rest."""
         derive(self._con, self._tables, of_the_map=False)
-        margins, keep_measure_series = self._margins is not None, bool(self._observers)
-        evaluate(
-            self._con,
-            self._rules,
-            self._params,
-            margins=margins,
-            keep_measure_series=keep_measure_series,
-            may_retry=may_retry,
-        )
+        margins, series = self._margins is not None, bool(self._observers)
+        evaluate(self._con, self._rules, self._params, margins=margins, keep_measure_series=series, may_retry=may_retry)
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
@@ -216,9 +209,8 @@ class JudgingSession:
 
 def _on_map(drive: Drive) -> pa.Table:
     log, geo = drive.trace.tables["data_log"], drive.geo
-    found: dict[str, str | float | None] = {
-        "environment_id": drive.environment.environment_id if drive.environment else None
-    }
+    place = drive.environment.environment_id if drive.environment else None
+    found: dict[str, str | float | None] = {"environment_id": place}
     if geo:
         found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
     for name, value in found.items():

@@ -22,7 +22,7 @@ from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, sufficient_part
 from drivelint.reasons import reason_text
-from drivelint.reasons.remedies import condition_of
+from drivelint.reasons.signals import condition_of
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
 

@@ -87,45 +87,33 @@ def rows_read(
 
 def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
     row = target.verdict_row
-    terms: list[str] = []
-    values: list[Any] = []
+    terms: dict[str, list[Any]] = {}
     if "ego_id" in columns:
-        terms.append("ego_id = ?")
-        values.append(row["ego_id"])
+        terms["ego_id = ?"] = [row["ego_id"]]
     if "profile" in columns and row["profile"] is not None:
-        terms.append("profile IS NOT DISTINCT FROM ?")
-        values.append(row["profile"])
+        terms["profile IS NOT DISTINCT FROM ?"] = [row["profile"]]
     if t_ns is not None:
-        _at_time(columns, t_ns, terms, values)
-    if row["object_id"] is not None:
-        who = [column for column in _OBJECTS if column in columns]
-        if who:
-            terms.append(f"({' OR '.join(f'{column} = ?' for column in who)})")
-            values += [row["object_id"]] * len(who)
+        terms |= _at_time(columns, t_ns)
+    who = [column for column in _OBJECTS if column in columns and row["object_id"] is not None]
+    if who:
+        terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
+    values = [value for some in terms.values() for value in some]
     where = f" WHERE {' AND '.join(terms)}" if terms else ""
     # a table of the catalogue's own list, never a word of a user
     ours = [row["ego_id"], row["object_id"] or ""] if "actor_id" in columns else []  # their rows come first
     first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
     everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_ROWS}", [*values, *ours])
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
-    return TableRows(table, [_plain(each) for each in everything], max(0, n - len(everything)))
+    # the keys that are the same everywhere are left out
+    plain = [{column: each[column] for column in each if column not in {"drive_id", "ego_id"}} for each in everything]
+    return TableRows(table, plain, max(0, n - len(everything)))
 
 
-def _at_time(columns: list[str], t_ns: int, terms: list[str], values: list[Any]) -> None:
+def _at_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
+    """Return the term that chooses the rows of one time, with its values."""
     if "t_ns" in columns:
-        terms.append("t_ns = ?")
-        values.append(t_ns)
-        return
+        return {"t_ns = ?": [t_ns]}
     for start, end in _SPANS:
         if start in columns and end in columns:
-            terms.append(f"{start} <= ? AND coalesce({end}, {start}) >= ?")
-            values += [t_ns, t_ns]
-            return
-    if "t0_ns" in columns:
-        terms.append("t0_ns <= ?")
-        values.append(t_ns)
-
-
-def _plain(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row without the keys that are the same everywhere."""
-    return {column: value for column, value in row.items() if column not in {"drive_id", "ego_id"}}
+            return {f"{start} <= ? AND coalesce({end}, {start}) >= ?": [t_ns, t_ns]}
+    return {"t0_ns <= ?": [t_ns]} if "t0_ns" in columns else {}

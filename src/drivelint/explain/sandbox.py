@@ -56,7 +56,7 @@ class Sandbox:
         self._derive()
 
     def _insert(self, table: str, rows: pa.Table) -> None:
-        self._memory.run_job(lambda con: store.insert(con, table, rows), self.con)
+        self._memory.run_job(lambda con: store.insert(con, table, rows))
 
     def _fill(self, drives: Sequence[Drive]) -> None:
         environment = drives[0].environment
@@ -83,7 +83,7 @@ class Sandbox:
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
-        return self._memory.run_job(lambda _con: self._judged(params), self.con)
+        return self._memory.run_job(lambda _con: self._judged(params))
 
     def _judged(self, params: Mapping[str, object]) -> Judgement:
         for table in _JUDGED:

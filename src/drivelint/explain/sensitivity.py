@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import floats
 from drivelint.engine.batch import BATCH_STATES, Drive
 from drivelint.explain.model import Sensitivity
 from drivelint.explain.sandbox import renamed, with_column
@@ -52,7 +53,7 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[D
     samples = errors.samples or 0
     drawn = rng.standard_normal((samples, len(ids), 3))
     of_map = rng.standard_normal((samples, 2))
-    numbers = {name: _floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps")}
+    numbers = {name: floats(states[name]) for name in ("x_m", "y_m", "vx_mps", "vy_mps")}
     at_once = max(1, BATCH_STATES // max(1, states.num_rows))
     for start in range(0, samples, at_once):
         yield [
@@ -93,7 +94,3 @@ def verdict_sensitivity(
     counts: dict[str, int] = {verdict: found.count(verdict) for verdict in _VERDICTS if verdict in found}
     start, end = span or (None, None)
     return Sensitivity(**asdict(errors), counts=counts, from_ns=start, to_ns=end)
-
-
-def _floats(table: pa.Table, column: str) -> NDArray[np.float64]:
-    return np.asarray(table[column].to_numpy(zero_copy_only=False), dtype=np.float64)

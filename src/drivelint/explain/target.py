@@ -154,13 +154,9 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     if meant:
         return _only(name, meant, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
-    hint = (
-        f"did you mean {near[0]!r}?"
-        if near
-        else f"it has {len(findings)} findings, by rules such as {rules[0]}"
-        if rules
-        else ""
-    )
+    hint = f"it has {len(findings)} findings, by rules such as {rules[0]}" if rules else ""
+    if near:
+        hint = f"did you mean {near[0]!r}?"
     raise UsageError(f"no finding begins with {name!r} and no rule of this result is called so; {hint}")
 
 

@@ -14,7 +14,7 @@ from rich.text import Text
 from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
-from drivelint.reasons.remedies import condition_of, remedy
+from drivelint.reasons.signals import condition_of, remedy
 from drivelint.result.text import finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store

@@ -73,11 +73,8 @@ def _drive(
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
-            entries.append(
-                _entry(
-                    "changed", now, was, has, LookupResult("fail", f"a part of {was.row['finding_id']}, which was one")
-                )
-            )
+            said = LookupResult("fail", f"a part of {was.row['finding_id']}, which was one")
+            entries.append(_entry("changed", now, was, has, said))
         else:
             said = had.verdict_at(base_id, now, same_log=same_log)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
@@ -85,15 +82,8 @@ def _drive(
     for was in (each for j, each in enumerate(theirs) if j not in told):
         wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
         if wholes:
-            gone.append(
-                _entry(
-                    "changed",
-                    ours[wholes[0]],
-                    was,
-                    has,
-                    LookupResult("fail", f"{was.row['finding_id']} is a part of it now"),
-                )
-            )
+            said = LookupResult("fail", f"{was.row['finding_id']} is a part of it now")
+            gone.append(_entry("changed", ours[wholes[0]], was, has, said))
         else:
             said = _noting_rule(has.verdict_at(drive_id, was, same_log=same_log), was, had, has)
             gone.append(_gone(was, drive_id, said, had))
@@ -246,9 +236,8 @@ class ResultLookup:
         if each["n_judged"] == each["n_expected"]:
             return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
         missing = each["n_expected"] - each["n_judged"]
-        return LookupResult(
-            "unknown", f"the rule fails at another time, and {missing} of {each['n_expected']} steps were not judged"
-        )
+        why = f"the rule fails at another time, and {missing} of {each['n_expected']} steps were not judged"
+        return LookupResult("unknown", why)
 
     def _not_looked(self, drive_id: str | None, row: Row) -> LookupResult | None:
         """Return why the rule was not judged in the drive at all; None: it was."""
@@ -256,9 +245,8 @@ class ResultLookup:
             return LookupResult("none", "the drive was not checked")
         drive, rule = self.drives[drive_id], self.rules.get(row["rule_id"])
         if drive["status"] == "not_judged":
-            return LookupResult(
-                "unknown", f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}"
-            )
+            why = f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}"
+            return LookupResult("unknown", why)
         if rule is None:
             return LookupResult("none", "the rule was not run")
         if row["profile"] is not None and row["profile"] not in rule["profiles"]:

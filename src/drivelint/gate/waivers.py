@@ -92,12 +92,8 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
 
 def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
     """Return whether a finding is what a waiver is about: all of what it says."""
-    patterns = (
-        (waiver.rule, row["rule_id"]),
-        (waiver.ego, row["ego_id"]),
-        (waiver.object, row["object_id"]),
-        (waiver.profile, row["profile"]),
-    )
+    columns = {"rule": "rule_id", "ego": "ego_id", "object": "object_id", "profile": "profile"}
+    patterns = ((getattr(waiver, name), row[column]) for name, column in columns.items())
     if any(pattern is not None and not fnmatchcase(text or "", pattern) for pattern, text in patterns):
         return False
     names = (row["drive_id"], drive["file_name"])

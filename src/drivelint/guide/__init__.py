@@ -12,22 +12,9 @@ from drivelint.phrases import hint
 from drivelint.resources import folder
 
 TOPICS: Final = (
-    "traces",
-    "mapping",
-    "maps",
-    "convert",
-    "reading-an-unknown",
-    "explain",
-    "viewer",
-    "columns",
-    "ci",
-    "fleets",
-    "writing-a-rule",
-    "rule-durations",
-    "rule-reference",
-    "adding-a-format",
-    "architecture",
-)
+    "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "viewer", "columns", "ci", "fleets",
+    "writing-a-rule", "rule-durations", "rule-reference", "adding-a-format", "architecture",
+)  # fmt: skip
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
 REFERENCE_TOPICS: Final = ("dictionary", "catalogue", "reasons", "macros")
@@ -71,9 +58,9 @@ def text(name: str, table: str | None = None) -> str:
 
         return dictionary.text() if table is None else dictionary.table_text(table)
     if name in {"reasons", "macros"}:
-        from drivelint.guide import listings
+        from drivelint.guide import dictionary
 
-        return listings.reasons_page() if name == "reasons" else listings.macros_page()
+        return dictionary.reasons_page() if name == "reasons" else dictionary.macros_page()
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables

@@ -1,4 +1,7 @@
-"""The data dictionary: every table of `schemas/*.sql` with its columns, and from which tables the derived ones are derived."""
+"""The data dictionary: every table of `schemas/*.sql` with its columns, and from which tables the derived ones are derived.
+
+Beside it, as made from the sources too: every reason code with its words, and every macro that SQL can call.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.reasons.reason_text import shared_texts
+from drivelint.resources import folder
 from drivelint.result import geometry
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.result.text_templates import cell, text_template
@@ -25,6 +30,7 @@ Distances are metres, speeds metres per second, angles radians, and times intege
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
 """
+_MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\([^)]*\))", re.MULTILINE)
 _MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _GROUPS: Final = {
     "model": "The recorded drive",
@@ -166,3 +172,19 @@ def _types() -> dict[tuple[str, str], str]:
 
 def _links(names: Iterable[str]) -> str:
     return ", ".join(f"[{name}](#{name})" for name in names)
+
+
+def reasons_page() -> str:
+    """Return every reason code as Markdown: those of all rules, then those of one rule each."""
+    return text_template(__file__, "reasons.md.j2").render(shared=shared_texts(), rules=sorted(load_rules(()).items()))
+
+
+def macros_page() -> str:
+    """Return every macro as Markdown, by file: its parameters and the comment above it, which may be about several."""
+    files: dict[str, list[tuple[str, str]]] = {}
+    for file in sorted((folder("queries") / "macros").glob("*.sql")):
+        about = ""
+        for comment, signature in _MACRO.findall(file.read_text(encoding="utf-8")):
+            about = " ".join(line.removeprefix("--").strip() for line in comment.splitlines()) or about
+            files.setdefault(file.stem.replace("_", " ").capitalize(), []).append((signature, about))
+    return text_template(__file__, "macros.md.j2").render(files=files)

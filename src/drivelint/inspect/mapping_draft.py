@@ -6,33 +6,20 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
+from drivelint.resources import facts
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
-_FUSED: Final = {"vx": "v x", "vy": "v y", "ax": "a x", "ay": "a y", "xcenter": "x", "ycenter": "y"}
-_UNIT_WORDS: Final = {
-    "kmh": "km/h", "kph": "km/h", "mph": "mph", "deg": "deg", "degrees": "deg", "cm": "cm", "mm": "mm", "ns": "ns",
-    "nanos": "ns", "ms": "ms", "us": "us", "millis": "ms",
-}  # fmt: skip
-_TIME: Final = {"t", "time", "timestamp", "stamp", "nanos", "ns"}
-_ID: Final = {"id", "idx", "actor", "agent", "object", "track", "vehicle", "no"}
-_SPEED: Final = {"v", "vel", "velocity", "speed"}
-_ACCELERATION: Final = {"a", "acc", "accel", "acceleration"}
-_FILLERS: Final = {"m", "mps", "s", "rad", "pos", "position", "world", "center", "centre"}
-_NAMES: Final = {
-    "yaw": {"yaw", "heading", "psi", "hdg"},
-    "length": {"length"},
-    "width": {"width"},
-    "height": {"height"},
-    "indicator": {"indicator", "blinker"},
-    "class": {"type", "class", "kind", "category"},
-    "speed": _SPEED,
-}
-_OTHERS: Final = {"rate", "lane", "relative", "rel", "wheel", "distance", "center", "reference"}
-"""Words of quantities that look like ours and are not."""
+_FACTS: Final = facts(__file__, "mapping_words.toml")
+_FUSED: Final[dict[str, str]] = _FACTS["fused"]
+_UNIT_WORDS: Final[dict[str, str]] = _FACTS["units"]
+_TIME, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
+    frozenset[str](_FACTS[name]) for name in ("time", "id", "speed", "acceleration", "fillers", "others")
+)
+_NAMES: Final[dict[str, Collection[str]]] = _FACTS["fields"] | {"speed": _SPEED}
 REQUIRED_FIELDS: Final = ("time", "actor_id", "x", "y")
 _ORDER: Final = (
     "actor_id", "x", "y", "z", "yaw", "vx", "vy", "speed", "ax", "ay", "length", "width", "height",
@@ -74,7 +61,7 @@ def _meaning(column: str) -> str | None:
     if words & _OTHERS:
         return None
     for meant, some in _NAMES.items():
-        if words & some:
+        if not words.isdisjoint(some):
             return meant
     if (bare and bare <= _TIME) or "nanos" in words:
         return "time"

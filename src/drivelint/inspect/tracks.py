@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
+from drivelint.arrays import floats
 from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.inspect.model import Actor, ClassCount, Clock
@@ -15,8 +16,6 @@ from drivelint.result.text import utc
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy.typing import NDArray
 
     from drivelint.drive.trace import Trace
 
@@ -52,7 +51,7 @@ def actors(trace: Trace) -> list[Actor]:
     code = encoded.indices.to_numpy()
     firsts = np.flatnonzero(np.r_[True, code[1:] != code[:-1]])
     counts = np.diff(np.r_[firsts, len(code)])
-    x, y, vx, vy = (_floats(states, name) for name in ("x_m", "y_m", "vx_mps", "vy_mps"))
+    x, y, vx, vy = (floats(states[name]) for name in ("x_m", "y_m", "vx_mps", "vy_mps"))
     step = np.nan_to_num(np.hypot(np.diff(x, prepend=np.nan), np.diff(y, prepend=np.nan)))
     step[firsts] = 0.0
     way = np.add.reduceat(step, firsts)
@@ -71,10 +70,6 @@ def actors(trace: Trace) -> list[Actor]:
         )
         for k, name in enumerate(names)
     ]
-
-
-def _floats(states: object, name: str) -> NDArray[np.float64]:
-    return np.asarray(pc.fill_null(states[name], float("nan")).to_numpy(), np.float64)  # type: ignore[index]
 
 
 def count_classes(found: Sequence[Actor]) -> list[ClassCount]:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import msgspec
+
+from drivelint.resources import facts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,7 +57,7 @@ def shared_texts() -> dict[str, ReasonText]:
 
 @cache
 def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
-    raw = tomllib.loads((files(__package__) / "words.toml").read_text(encoding="utf-8"))
+    raw = dict(facts(__file__, "words.toml"))
     values = raw.pop("values")
     return msgspec.convert(raw, dict[str, ReasonText]), values
 

@@ -1,17 +1,16 @@
-"""Says how to provide a signal that rules require."""
+"""Says how to provide a signal that rules require, and by reason code what would decide an unknown verdict."""
 
 from __future__ import annotations
 
-import tomllib
-from importlib.resources import files
-from typing import Any, Final
+from typing import Final
 
-from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES
+from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
+from drivelint.resources import facts
 
-TEXTS: Final[dict[str, Any]] = tomllib.loads((files(__package__) / "signals.toml").read_text(encoding="utf-8"))
+TEXTS: Final = facts(__file__, "signals.toml")
 """`advice`: signal -> what to give; `remedies`: reason code -> what to do; `where`: format -> key -> where its logs have it."""
 ADVICE: Final[dict[str, str]] = {
     **{
@@ -28,6 +27,10 @@ SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
 """What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
 SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
+_SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
+_A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
+_AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
+REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 
 def problem(signal: str) -> str | None:
@@ -45,3 +48,27 @@ def how_to_provide(signal: str, log_format: str) -> str:
     where = {key: f"drivelint convert --to parquet, and in its tables {table}" for key, table in tables}
     where |= TEXTS["where"].get(name, {})
     return ADVICE.get(signal, "see what the rules that need it say: drivelint rules show ID").format_map(where)
+
+
+def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
+    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
+    if code.startswith("missing_") and code not in REMEDIES:
+        return how_to_provide(code.removeprefix("missing_"), log_format) + _AGAIN
+    condition = code.removesuffix("_unknown")
+    if condition in DRIVE_CONDITION_VALUES or condition == "limit":
+        return (
+            how_to_provide({**SIGNAL_OF_CONDITION, "engaged": "mode_engaged"}.get(condition, condition), log_format)
+            + _AGAIN
+        )
+    return REMEDIES.get(code, "{advice}").format(
+        object="the object" if object_id is None else f"object {object_id}",
+        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
+    )
+
+
+def condition_of(code: str) -> str | None:
+    """Return the column of `ego_condition` that a reason code says is not known; None: it is about none."""
+    condition = code.removesuffix("_unknown")
+    if condition == code:
+        return None
+    return condition if condition in DRIVE_CONDITION_VALUES else "limit_mps" if condition == "limit" else None

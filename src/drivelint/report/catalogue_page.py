@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -18,6 +16,7 @@ from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
+from drivelint.resources import facts
 from drivelint.result.counts import grouped
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of
@@ -127,10 +126,9 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
     )
 
 
-@cache
 def map_features() -> dict[str, Any]:
     """Return what stands in `map_features.toml`: `name_parts` of signals, and each `feature`."""
-    return tomllib.loads((files(__package__) / "map_features.toml").read_text(encoding="utf-8"))
+    return facts(__file__, "map_features.toml")
 
 
 def _sign(kind: str, name_part: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from drivelint.report import html, junit, markdown, sarif, summary, xqar
-from drivelint.result import gate_file, request
+from drivelint.result import gate, request
 from drivelint.result.files import parquet_bytes, publish
 from drivelint.result.schemas import TABLE_OF_FILE
 
@@ -35,9 +35,9 @@ def write(result: Result, out: Path) -> None:
     contents["junit.xml"] = junit.render(result)
     moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
     moved |= {name: None for name, _ in REPORT_FORMATS.values() if name not in contents}  # of an earlier result
-    moved |= {gate_file.FILE: None, request.RUN_FILE: None}
+    moved |= {gate.FILE: None, request.RUN_FILE: None}
     if result.gate is not None:
-        contents[gate_file.FILE] = gate_file.render(result.gate)
+        contents[gate.FILE] = gate.render(result.gate)
     if result.asked is not None:
         contents[request.RUN_FILE] = request.render(result.asked, out)
     contents["summary.json"] = summary.render(result)

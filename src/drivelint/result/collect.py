@@ -1,4 +1,4 @@
-"""The output tables, taken from a database that has been judged: verdicts, findings and one row per drive."""
+"""The output tables: verdicts, findings and drives, taken from a database that has been judged, and the rules that were selected."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ from drivelint.result.schemas import arrow_schema, conform
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     import duckdb
+
+    from drivelint.catalogue import Rule
 
 _KEYS: Final = (
     "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, ref_id NULLS FIRST, "
@@ -24,9 +28,8 @@ _ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # no
 
 def verdicts(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return the table `verdict`, of these drives or all, totally ordered."""
-    return conform(
-        con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {_KEYS}", {"only": only}).to_arrow_table(), "verdict"
-    )
+    rows = con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {_KEYS}", {"only": only})
+    return conform(rows.to_arrow_table(), "verdict")
 
 
 def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
@@ -38,9 +41,8 @@ def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> p
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
-    return conform(
-        con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS}).to_arrow_table(), "drive"
-    )
+    rows = con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS})
+    return conform(rows.to_arrow_table(), "drive")
 
 
 def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
@@ -52,3 +54,35 @@ def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | Non
     row |= {"drive_id": drive_id, "file_name": file_name, "sha256": sha256, "km": 0.0, "lossy": False}
     row |= {"status": "not_judged", "status_reason": reason}
     return pa.Table.from_pylist([row], schema=schema)
+
+
+def rule_table(rules: Sequence[Rule], params: Mapping[str, Mapping[str, object]], profiles: Sequence[str]) -> pa.Table:
+    """Return one row of the table `rule` per rule, with the parameters that were used, sorted by id."""
+    rows = [_rule_row(rule, params.get(rule.id, {}), profiles) for rule in sorted(rules, key=lambda r: r.id)]
+    return pa.Table.from_pylist(rows, schema=arrow_schema("rule"))
+
+
+def _rule_row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -> dict[str, object]:
+    values = {name: overrides.get(name, param.default) for name, param in rule.params.items()}
+    same = (
+        "pack", "pack_title", "title", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
+        "sense", "unit", "observes", "near_margin",
+    )  # fmt: skip
+    window = values.get(rule.window_s) if isinstance(rule.window_s, str) else rule.window_s
+    return {key: getattr(rule, key) for key in same} | {
+        "rule_id": rule.id,
+        "rule_version": rule.version,
+        "window_s": window,
+        "tags": list(rule.tags),
+        "requires": list(rule.requires),
+        "profiles": sorted(profiles) if rule.per_profile else [],
+        "params": [
+            {
+                "name": name,
+                "value": str(value).lower() if isinstance(value, bool) else str(value),
+                "unit": rule.params[name].unit,
+                "overridden": name in overrides,
+            }
+            for name, value in sorted(values.items())
+        ],
+    }

@@ -1,15 +1,28 @@
-"""Defines the gate's data: the comparison with a baseline, and the waivers."""
+"""Defines the gate's data, the comparison with a baseline and the waivers; reads and writes it as `gate.json`.
+
+The file is there only if a baseline or waivers were given.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "unknown", "lost")
 """Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), unknown
 (NEW cannot tell), lost (NEW did not look there). Neither of the last two is fixed."""
+FILE: Final = "gate.json"
+GATE_VERSION: Final = 1
+"""Version of the file: raised when a key changes its meaning or goes."""
 
 
 @dataclass(frozen=True)
@@ -139,3 +152,30 @@ class Gate:
     def is_gating(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is neither waived nor in the baseline."""
         return finding_id not in self.waived and not self.in_baseline(finding_id)
+
+
+@dataclass(frozen=True)
+class _File:
+    gate_schema: int
+    gate: Gate
+
+
+def render(gate: Gate) -> bytes:
+    """Return a gate as UTF-8 JSON with a final newline; numbers that are not finite are null."""
+    return msgspec.json.format(msgspec.json.encode(_File(GATE_VERSION, gate)), indent=2) + b"\n"
+
+
+def load(folder: Path) -> Gate | None:
+    """Return what a result folder says of its gate; None: there was none. Errors: `UsageError` for a file of another kind."""
+    path = folder / FILE
+    try:
+        found = msgspec.json.decode(path.read_bytes(), type=_File)
+    except FileNotFoundError:
+        return None
+    except (OSError, msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path}: cannot be read as the gate of a result ({error}): check the drives again") from error
+    if found.gate_schema != GATE_VERSION:
+        raise UsageError(
+            f"{path}: written with gate schema {found.gate_schema}, this drivelint reads {GATE_VERSION}: check the drives again"
+        )
+    return found.gate

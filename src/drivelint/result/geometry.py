@@ -12,6 +12,8 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
+from drivelint.arrays import floats
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -52,7 +54,7 @@ def without_geometry(rows: pa.Table) -> pa.Table:
 
 
 def _points(rows: pa.Table) -> Geometries:
-    xy = np.column_stack([_floats(rows["x_m"]), _floats(rows["y_m"])])
+    xy = np.column_stack([floats(rows["x_m"]), floats(rows["y_m"])])
     points = np.full(len(xy), None, object)
     known = np.isfinite(xy).all(axis=1)
     points[known] = shapely.points(xy[known])
@@ -60,8 +62,7 @@ def _points(rows: pa.Table) -> Geometries:
 
 
 def _rings(rows: pa.Table) -> Geometries:
-    xy, offsets = _coordinates(rows, "")
-    return _polygons(xy, offsets)
+    return _polygons(*_coordinates(rows, ""))
 
 
 def _lanes(rows: pa.Table) -> Geometries:
@@ -85,7 +86,7 @@ def _boxes(rows: pa.Table) -> Geometries:
         return np.empty(0, object)
     row = _row_of(np.asarray(actors.offsets) - actors.offsets[0].as_py())
     x, y, yaw, length, width = (
-        _floats(actors.flatten().field(name)) for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m")
+        floats(actors.flatten().field(name)) for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m")
     )
     along, across = np.array([1, -1, -1, 1, 1]) * length[:, None] / 2, np.array([1, 1, -1, -1, 1]) * width[:, None] / 2
     cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
@@ -111,18 +112,15 @@ def _tracks(rows: pa.Table) -> Geometries:
 def _moments(rows: pa.Table) -> Geometries:
     xy, offsets = _coordinates(rows, "")
     known = np.isfinite(xy).all(axis=1)
-    return np.asarray(
-        shapely.multipoints(
-            shapely.points(xy[known]), indices=_row_of(offsets)[known], out=np.full(rows.num_rows, None, object)
-        )
-    )
+    none = np.full(rows.num_rows, None, object)
+    return np.asarray(shapely.multipoints(shapely.points(xy[known]), indices=_row_of(offsets)[known], out=none))
 
 
 def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the points of lists of coordinates, and where those of each row begin."""
     columns = [rows[f"{prefix}{axis}_m"] for axis in "xy"]
     lengths = np.asarray(pa.compute.list_value_length(columns[0]).fill_null(0), np.int64)
-    xy = np.column_stack([_floats(pa.compute.list_flatten(column)) for column in columns])
+    xy = np.column_stack([floats(pa.compute.list_flatten(column)) for column in columns])
     return xy, np.concatenate([[0], np.cumsum(lengths)])
 
 
@@ -133,10 +131,6 @@ def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries
 
 def _row_of(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-
-
-def _floats(column: pa.ChunkedArray | pa.Array) -> NDArray[np.float64]:
-    return np.asarray(column.to_numpy(zero_copy_only=False), np.float64)
 
 
 SHAPES: Final[Mapping[str, Shape]] = {

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.result import gate_file
+from drivelint.result import gate as gates
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
 from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
@@ -30,7 +30,7 @@ def load_result(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
-    gate = gate_file.load(folder)
+    gate = gates.load(folder)
     try:
         return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate)
     except DriveLintError as error:

@@ -33,9 +33,10 @@ class RunRequest(DriveInput):
     rules_dirs: tuple[Path, ...] = ()
 
     @classmethod
-    def from_options(cls, given: DriveInput, **more: Any) -> RunRequest:
-        """Return what was asked with these options."""
-        return cls(**{each.name: getattr(given, each.name) for each in fields(DriveInput)}, **more)
+    def from_options(cls, given: DriveInput, traces: dict[str, str]) -> RunRequest:
+        """Return what was asked with the options of `check`, of which all but the traces are kept as they are."""
+        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name != "traces"}
+        return cls(**kept, traces=traces)
 
 
 def render(asked: RunRequest, out: Path) -> bytes:

@@ -44,11 +44,5 @@ def cell(value: Any) -> Any:
 
 
 _FILTERS: Final[dict[str, Callable[..., Any]]] = {
-    "cell": cell,
-    "number": number,
-    "plural": plural,
-    "rule_name": rule_name,
-    "seconds": seconds,
-    "subject": subject,
-    "with_count": with_count,
+    each.__name__: each for each in (cell, number, plural, rule_name, seconds, subject, with_count)
 }

@@ -1,56 +1,25 @@
 """Translates a signal's code into the values of the `traffic_signal` table.
 
-The codes stand in `signcodes.toml`. Where a code is not known, the signal's name may say its kind.
+The codes stand in `signcodes.toml`, the rest in `signnames.toml`. Where a code is not known, the signal's name may say its kind.
 """
 
 from __future__ import annotations
 
 import re
-import tomllib
 from functools import cache
-from importlib.resources import files
+from typing import Final
 
-_ALL_TURNS = ("left", "straight", "right", "u_turn")
-_FULL_LIGHTS = {"1000001": {"", "-1", "0", "none"}, "1000009": {"", "-1", "10", "20", "30"}}  # and their subtypes
-_ARROW_LIGHTS = {"1000010", "1000011", "1000012"}
-_ARROWS = {
-    "10": ("left",), "20": ("right",), "30": ("straight",), "40": ("left", "straight"), "50": ("straight", "right"),
-}  # fmt: skip
-# CommonRoad's words
-_DIRECTIONS = {
-    "all": _ALL_TURNS, "left": ("left",), "straight": ("straight",), "right": ("right",),
-    "leftStraight": ("left", "straight"), "straightRight": ("straight", "right"), "leftRight": ("left", "right"),
-}  # fmt: skip
-_DOTTED = re.compile(r"\d\.\d{3}\.\d{3}")
-_COUNTRIES = {
-    **dict.fromkeys(
-        ("", "opendrive", "de", "deu", "germany"), "de"
-    ),  # RoadRunner and CARLA write StVO numbers without a country
-    **dict.fromkeys(("gb", "gbr", "uk", "united kingdom"), "gb"),
-    **dict.fromkeys(("us", "usa"), "us"),
-    **dict.fromkeys(("es", "esp", "spain"), "es"),
-}
-_NAMES = [
-    (re.compile(pattern), kind)
-    for pattern, kind in (
-        (r"stop_?line", "stop_line"),
-        (r"overtaking.*end", "no_overtaking_end"),
-        (r"no_?overtaking|overtaking_?ban", "no_overtaking"),
-        (r"speed_?lowest|min(imum)?_?speed", "minimum_speed"),
-        (r"speed_?limit|speed_?highest|max(imum)?_?speed|^speed_\d", "speed_limit"),
-        (r"give_?way|yield", "give_way"),
-        (r"no_?entry", "no_entry"),
-        (r"(^|[_ ])exit($|[_ \d])", "exit"),
-        (r"(^|[_ ])stop($|[_ \d])", "stop"),
-        (r"traffic_?light|signal_\dlight", "traffic_light"),
-        (r"pedestrian_?crossing|crosswalk|zebra", "crossing"),
-    )
-]
+from drivelint.resources import facts
+
+_FACTS: Final = facts(__file__, "signnames.toml")
+_NAMES: Final = [(re.compile(pattern), kind) for kind, pattern in _FACTS["names"].items()]
+_ARROW_LIGHTS: Final = frozenset({"1000010", "1000011", "1000012"})
+_DOTTED: Final = re.compile(r"\d\.\d{3}\.\d{3}")
 
 
 def kind_of(country: str, code: str, name: str) -> str | None:
     """Return the kind of a signal by country (any case), code and name; None: not recognised."""
-    codes = _kinds(_COUNTRIES.get(country.lower(), ""))
+    codes = _kinds(_FACTS["countries"].get(country.lower(), ""))
     plain = _plain(code).upper()
     for candidate in (plain, plain.partition("-")[0] if plain[:1].isdecimal() else plain.replace("-", "")):
         if candidate in codes:
@@ -61,12 +30,7 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 def codes_of(kind: str) -> dict[str, list[str]]:
     """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb, us, es; lists without one are left out."""
-    return _lists().get(kind, {})
-
-
-@cache
-def _lists() -> dict[str, dict[str, list[str]]]:
-    return tomllib.loads((files(__package__) / "signcodes.toml").read_text(encoding="utf-8"))
+    return dict(facts(__file__, "signcodes.toml").get(kind, {}))
 
 
 @cache
@@ -74,7 +38,7 @@ def _kinds(country: str) -> dict[str, str]:
     """Return code -> kind, of OpenDRIVE's list and of a country's."""
     return {
         code: kind
-        for kind, lists in _lists().items()
+        for kind, lists in facts(__file__, "signcodes.toml").items()
         for name in ("OpenDRIVE", country)
         for code in lists.get(name, ())
     }
@@ -87,16 +51,14 @@ def turns_of(code: str, subtype: str) -> list[str] | None:
     and straight, 50 right and straight) and SUMO writes it.
     """
     plain, finer = _plain(code), subtype.lower().removesuffix(".0")
-    if finer in _FULL_LIGHTS.get(plain, ()):
-        return list(_ALL_TURNS)
-    found = _ARROWS.get(finer) if plain in _ARROW_LIGHTS else None
-    return list(found) if found else None
+    if finer in _FACTS["full_lights"].get(plain, ()):
+        return turns_of_direction("all")
+    return list(_FACTS["arrows"].get(finer, ())) or None if plain in _ARROW_LIGHTS else None
 
 
 def turns_of_direction(word: str) -> list[str] | None:
     """Return the turns that a CommonRoad traffic light holds for by its `direction`; None: it does not say."""
-    found = _DIRECTIONS.get(word)
-    return list(found) if found else None
+    return list(_FACTS["directions"].get(word, ())) or None
 
 
 def _plain(code: str) -> str:

@@ -26,7 +26,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import MAGIC, summary_is_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -147,22 +147,18 @@ class Original:
 
     def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
         """Unpack a chunk to find where its messages are."""
-        entries: dict[int, list[tuple[int, int]]] = {}
-        for opcode, at, body in self.chunk_records(record):
-            if opcode == Opcode.MESSAGE:
-                channel, _, log_time = _MESSAGE.unpack_from(body)
-                entries.setdefault(channel, []).append((log_time, at))
-        return index_arrays(entries)
+        inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
+        return index_arrays((*_MESSAGE.unpack_from(body), at) for _, at, body in inside)
 
     def message_index_header(self, record: Record) -> tuple[int, int]:
         """Return channel and number of entries of a message index record."""
         channel, length = _INDEX.unpack_from(self._view, record.body)
         return channel, length // 16
 
-    def message_header(self, record: Record) -> tuple[int, int]:
-        """Return channel and log time of a message record."""
-        channel, _, log_time = _MESSAGE.unpack_from(self._view, record.body)
-        return channel, log_time
+    def message_header(self, record: Record) -> tuple[int, int, int]:
+        """Return channel, sequence number and log time of a message record."""
+        channel, sequence, log_time = _MESSAGE.unpack_from(self._view, record.body)
+        return channel, sequence, log_time
 
     def _survey(self) -> bool:
         """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
@@ -366,18 +362,18 @@ class _Copy:
             return
         loose, self._loose = self._loose, []
         start, end = loose[0].at, loose[-1].end
-        entries: dict[int, list[tuple[int, int]]] = {}
-        for record in loose:
-            if record.opcode == Opcode.MESSAGE:
-                channel, log_time = self._original.message_header(record)
-                entries.setdefault(channel, []).append((log_time, record.at - start))
-        if entries:
+        messages = [record for record in loose if record.opcode == Opcode.MESSAGE]
+        if messages:
             self._flush()
-            self._sink.add_chunk(self._original.read(start, end), index_arrays(entries), compressed=False)
+            index = index_arrays((*self._original.message_header(each), each.at - start) for each in messages)
+            self._sink.add_chunk(self._original.read(start, end), index, compressed=False)
             self._from = end
         self._to = end
 
 
-def index_arrays(entries: dict[int, list[tuple[int, int]]]) -> ChunkMessageIndex:
-    """Return message index entries as arrays of log time and offset."""
-    return {channel: np.array(pairs, np.uint64).reshape(-1, 2) for channel, pairs in sorted(entries.items())}
+def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
+    """Return the index of messages (channel, sequence number, log time, offset): by channel an array of log time and offset."""
+    entries: dict[int, list[tuple[int, int]]] = {}
+    for channel, _, log_time, at in messages:
+        entries.setdefault(channel, []).append((log_time, at))
+    return {channel: np.array(pairs, np.uint64) for channel, pairs in sorted(entries.items())}

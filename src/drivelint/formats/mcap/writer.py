@@ -146,11 +146,8 @@ class Sink:
             for record in group:
                 self._record(record)
             if group:
-                places.append(
-                    records.SummaryOffset(
-                        group_opcode=opcode, group_start=group_start, group_length=self.offset - group_start
-                    )
-                )
+                length = self.offset - group_start
+                places.append(records.SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=length))
         offsets = self.offset
         for place in places:
             self._record(place)

@@ -46,14 +46,13 @@ def read(
         said = mark.classification
         if said.is_out_of_service:
             continue
+        symbol = said.traffic_main_sign_type if said.type == kinds.SYMBOL_MARKING else None
         if not np.isfinite(_outline(mark, road)).all():
             message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
             quality.add("road_marking_without_place", "warning", None, message)
-        elif said.type == kinds.SYMBOL_MARKING and said.traffic_main_sign_type == kinds.ZEBRA:
+        elif symbol == kinds.ZEBRA:
             crossings += _zebra(mark, road)
-        elif (said.type == kinds.SYMBOL_MARKING and said.traffic_main_sign_type == kinds.STOP_SIGN) or _code(
-            said
-        ) == "stop_line":
+        elif symbol == kinds.STOP_SIGN or _code(said) == "stop_line":
             stops += _stop_line(mark, road, quality)
     return {
         "traffic_signal": sorted(signals, key=lambda r: (r["signal_id"], r["type"] or "", r["lanelet_id"])),

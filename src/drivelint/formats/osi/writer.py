@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from mcap.writer import CompressionType, Writer
 
+from drivelint.arrays import floats
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
@@ -103,18 +104,14 @@ def _objects(trace: Trace, numbers: dict[str, int]) -> Objects:
     states, actors = trace.tables["actor_state"], trace.tables["actor"]
     row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
     ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
-    columns = {name: _floats(states[name]) for name in STATE_COLUMNS}
-    columns |= {name: _floats(actors[name])[row] for name in SIZE_COLUMNS}
+    columns = {name: floats(states[name]) for name in STATE_COLUMNS}
+    columns |= {name: floats(actors[name])[row] for name in SIZE_COLUMNS}
     codes = {
         "actor_class": _codes(actors["actor_class"], ACTOR_CLASSES)[row],
         "indicator": _codes(states["indicator"], INDICATORS),
         "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
     }
     return Objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
-
-
-def _floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
-    return np.asarray(pc.fill_null(column, float("nan")).to_numpy(), np.float64)
 
 
 def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> NDArray[np.int8]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -82,18 +83,10 @@ def _once(ego: States, others: States, topic: str, findings: list[QualityFinding
 
 def concatenate_states(first: States, second: States) -> States:
     """Return the rows of two sets of states; an actor of both is one actor."""
-    place = {name: i for i, name in enumerate(first.ids)}
-    for name in second.ids:
-        place.setdefault(name, len(place))
+    ids = list(dict.fromkeys([*first.ids, *second.ids]))
+    place = {name: i for i, name in enumerate(ids)}
     moved = np.array([place[name] for name in second.ids], np.int32)
-    return States(
-        list(place),
-        np.concatenate([first.actor, moved[second.actor]]),
-        np.concatenate([first.t_ns, second.t_ns]),
-        {name: np.concatenate([first.numbers[name], second.numbers[name]]) for name in first.numbers},
-        {name: np.concatenate([first.codes[name], second.codes[name]]) for name in first.codes},
-        np.concatenate([first.not_finite, second.not_finite]),
-    )
+    return States.joined([replace(first, ids=ids), replace(second, ids=ids, actor=moved[second.actor])])
 
 
 def _free(name: str, taken: list[str]) -> str:

@@ -1,7 +1,8 @@
-"""Incidents: what failed or nearly failed at one time of one ego, with its plan view and the measured values."""
+"""Incidents: what failed or nearly failed at one time of one ego, with its plan view and the measured values, and who was involved."""
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import anchor
@@ -171,3 +172,36 @@ def _gauge(observed: float | None, required: float | None) -> dict[str, str] | N
     start, end = sorted((at(0.0), at(observed)))
     places = {"zero": at(0.0), "x": start, "w": max(end - start, 0.4), "required": at(required)}
     return {name: f"{num(value)}%" for name, value in places.items()}
+
+
+def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
+    """Return the egos and objects of one drive's findings and near misses, in words, from their scenes; egos first.
+
+    `n`: findings that are about it.
+    """
+    findings: Counter[tuple[bool, str]] = Counter()
+    seen: dict[str, list[Row]] = defaultdict(list)
+    for line in lines:
+        scene = scenes.get(incident_key(line.row))
+        actors = {actor["actor_id"]: actor for actor in scene["actors"]} if scene else {}
+        for is_object, who in ((False, line.row["ego_id"]), (True, line.row["object_id"])):
+            if who is not None:
+                findings[is_object, who] += line.kind == "fail"
+                if who in actors:
+                    seen[who].append(actors[who])
+    order = sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
+    return [
+        {
+            "name": f"{'object' if is_object else 'ego'} {who}",
+            "what": _kind(seen[who]),
+            "sized": next((a for a in seen[who] if None not in {a["length_m"], a["width_m"]}), None),
+            "speeds": [a["speed_mps"] for a in seen[who] if a["speed_mps"] is not None],
+            "n": n,
+        }
+        for (is_object, who), n in order
+        if not (is_object and (False, who) in findings)
+    ]
+
+
+def _kind(actors: Sequence[Row]) -> str:
+    return next((a["actor_class"] for a in actors if a["actor_class"]), "of unknown kind").replace("_", " ")

@@ -11,11 +11,9 @@ from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_logs
-from drivelint.report.html.incidents import finding_line, incidents, plan_views
-from drivelint.report.html.involved_actors import involved_actors
+from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
 from drivelint.report.html.margin_series import margin_series
-from drivelint.report.html.overtakes import overtake_views
-from drivelint.report.html.overtaking_opportunities import overtaking_opportunities
+from drivelint.report.html.overtakes import overtake_views, overtaking_opportunities
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,

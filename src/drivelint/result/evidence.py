@@ -1,4 +1,7 @@
-"""Gathers the actors around the worst step of every finding and near miss: `scene` and `danger_space`."""
+"""Evidence for pictures and charts, taken from the database while a batch is in it, into tables that stay until the end of the run.
+
+Scenes of findings and near misses with lanes and danger spaces; tracks; overtakes and opportunities. (Courses are the evaluation's.)
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,8 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from drivelint.result.evidence.lane_shapes import SIMPLIFY_TOLERANCE_M
+from drivelint.reasons.reason_table import make_reason_table
+from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 
@@ -18,6 +22,16 @@ if TYPE_CHECKING:
     import duckdb
     from numpy.typing import NDArray
 
+_KEYS: Final = {
+    "scenes": "drive_id, ego_id, t_ns",
+    "lanes": "environment_id, lanelet_id",
+    "spaces": "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id",
+    "courses": "finding_id IS NULL, finding_id, drive_id, ego_id, rule_id, profile, object_id, occurrence",
+    "tracks": "drive_id, NOT is_ego, actor_id, part",
+    "overtakes": "drive_id, ego_id, occurrence",
+    "opportunities": "drive_id, ego_id, occurrence, style, profile",
+}
+"""Table of evidence in a result -> the order of its rows."""
 PATH_S: Final = 5.0
 """How long before and after the moment the ways are kept."""
 PATH_STEP_NS: Final = 200_000_000
@@ -28,9 +42,31 @@ SCENES_AT_ONCE: Final = 400
 """Moments whose scenes are made at once: their ways are lists, which the database holds in memory."""
 SCENES_PER_RULE: Final = 20
 """Scenes per ego, rule and profile: those with the worst margins."""
+SIMPLIFY_TOLERANCE_M: Final = 0.1
 
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
+    """Add the evidence of the batch that was just judged.
+
+    Reads `finding` and `verdict` (of which those of this batch have their states in `ego_state` and `pair`).
+    """
+    _scenes(con)
+    _lane_shapes(con)
+    con.execute(statement("evidence/track"), {"step_ns": PATH_STEP_NS})
+    make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM overtake_sda")
+    con.execute(statement("evidence/overtake_record"))
+    con.execute(statement("evidence/opportunity_record"))
+
+
+def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
+    """Return the tables of evidence under the names that `Result` has for them, totally ordered."""
+    return {
+        name: con.execute(f"SELECT * FROM {TABLE_OF_FILE[name]} ORDER BY {keys}").to_arrow_table()
+        for name, keys in _KEYS.items()
+    }
+
+
+def _scenes(con: duckdb.DuckDBPyConnection) -> None:
     """Add the scenes of the batch that was just judged, and the danger spaces in them."""
     least, most = REACH_M
     con.execute(statement("evidence/every_moment"), {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": most})
@@ -71,3 +107,25 @@ def _rings(edges: pa.Table) -> pa.Table:
     for name, values in (("x_m", x), ("y_m", y)):
         rows = rows.append_column(name, pa.ListArray.from_arrays(offsets, pa.array(values)))
     return rows
+
+
+def _lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
+    """Add the shapes of lanes near scenes that are not in `lane_shape` yet."""
+    con.execute(statement("evidence/near_lane"))
+    lanes = con.execute(statement("evidence/lane")).to_arrow_table()
+    if lanes.num_rows:
+        points = con.execute(statement("evidence/lane_point")).fetchnumpy()
+        for side in ("left", "right"):
+            for axis, values in zip("xy", _simplified(points, side, lanes.num_rows), strict=True):
+                lanes = lanes.append_column(f"{side}_{axis}_m", values)
+        store.insert(con, "lane_shape", lanes)
+
+
+def _simplified(points: dict[str, NDArray[np.float64]], side: str, n: int) -> tuple[pa.ListArray, pa.ListArray]:
+    """Return the x and y of `n` bounds as lists in centimetres, with only the points that keep them true."""
+    xy = np.column_stack([points[f"{side}_x_m"], points[f"{side}_y_m"]])
+    lines = shapely.linestrings(xy, indices=points["lane"].astype(np.intp))
+    kept, index = shapely.get_coordinates(shapely.simplify(lines, SIMPLIFY_TOLERANCE_M), return_index=True)
+    offsets = pa.array(np.searchsorted(index, np.arange(n + 1)), pa.int32())
+    x, y = np.round(kept, 2).T
+    return pa.ListArray.from_arrays(offsets, pa.array(x)), pa.ListArray.from_arrays(offsets, pa.array(y))

@@ -9,18 +9,17 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import pyarrow as pa
 
-from drivelint.convert.guard import refuse_to_overwrite
-from drivelint.convert.tables import MAP_FILE, parquet_bytes
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
 from drivelint.formats import expand_traces, read_trace
-from drivelint.formats.files import CANONICAL_FILES
+from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import ego_independent_quality
+from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
-from drivelint.result.files import OutputError, prepare_folder, publish
+from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
@@ -29,6 +28,11 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
+MAP_FILE: Final = "map.xodr"
+_MARK: Final = "drivelint.converted"
+"""Key in the metadata of every Parquet file that is written."""
+_HEAD_BYTES: Final = 64
+"""Enough of an MCAP file for its magic bytes and header, in which its writer names itself."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     (path,) = paths
     stem = path.resolve().name if path.is_dir() else path.stem
     target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
-    refuse_to_overwrite(path, request.out, target)
+    _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
@@ -93,6 +97,33 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         has_ego=has_ego,
         notes=tuple(notes),
     )
+
+
+def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
+    """Check that nothing foreign would be overwritten. Errors: `UsageError` that names the file in the way."""
+    if not out.exists():
+        return
+    if not out.is_dir():
+        raise UsageError(f"--out {out} is a file: name a folder")
+    ours = [out / name for name in CANONICAL_FILES] if target == out else [target]
+    if out.samefile(source) or any(file.exists() and file.samefile(source) for file in ours):
+        raise UsageError(f"--out {out}: that would overwrite the log itself: choose another folder")
+    if target != out:
+        if target.exists() and not _is_our_mcap(target):
+            raise UsageError(f"{target} exists and was not written by convert: choose another --out")
+    elif next(out.iterdir(), None) is not None and not (
+        is_canonical_folder(out) and _is_our_parquet(out / "actor_state.parquet")
+    ):
+        raise UsageError(f"--out {out} holds other files: a converted log is a folder of its own: choose another")
+
+
+def _is_our_mcap(path: Path) -> bool:
+    with path.open("rb") as file:
+        return osi_log.LIBRARY.encode() in file.read(_HEAD_BYTES)
+
+
+def _is_our_parquet(path: Path) -> bool:
+    return _MARK.encode() in (parquet.schema(path).metadata or {})
 
 
 def _of_a_check(request: ConvertRequest) -> list[str]:
@@ -169,7 +200,7 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
 def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
     names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
-    contents = {f"{name}.parquet": parquet_bytes(tables[name], name) for name in names}
+    contents = {f"{name}.parquet": described_parquet(tables[name], name, {_MARK: name}) for name in names}
     if road is not None:
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})
