@@ -17,6 +17,7 @@ from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
 from drivelint.reasons.signals import REMEDIES, SIGNALS
+from drivelint.result.geometry import SHAPES
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
 from tests.guide.blocks import PAGES
@@ -113,7 +114,8 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**TABLE_OF_FILE, "margins": "margin"}.items():
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
-        assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == list(column_comments()[table]), stem
+        columns = [*column_comments()[table], *(["geom"] if table in SHAPES else [])]
+        assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == columns, stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
 
 
