@@ -96,13 +96,15 @@ def rarely() -> Drive:
 
 
 def bridged() -> tuple[Drive, ...]:
-    """Return a drive with a trailer under a bridge that somebody crosses, once with heights and once without."""
+    """Return a drive with a trailer under a bridge that somebody crosses, with and without heights, or stays on to the end."""
     low, high = bridge()
     t = times(8.0)
     ego = moving("ego", low, t, 240 + 12 * t, low.own)
     actors = [ego, drawn("trailer", ego, kind="trailer"), moving("over", high, t, 140 + 12 * t, high.own)]
     flat, tall = (drive(actors, low.environment, drive_id=name) for name in ("bridge", "bridge-tall"))
-    return flat, lifted(tall, {"ego": 0.0, "trailer": 0.3, "over": 6.0}, 0.01)
+    heights = {"ego": 0.0, "trailer": 0.3, "over": 6.0}
+    last = drive([ego, moving("over", high, t, 104 + 12 * t, high.own)], low.environment, drive_id="bridge-last")
+    return flat, lifted(tall, heights, 0.01), lifted(last, heights, 0.01)
 
 
 def streets() -> tuple[Drive, ...]:
