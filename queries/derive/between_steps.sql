@@ -27,6 +27,15 @@ step_interval AS (
 ),
 -- Both actors at both steps. (x, y) is the place of the object seen from the ego at the first step; ego_way and object_way are their ways
 -- to the second step (see between_way).
+-- The object at both ends of an interval. Each is looked up by itself: joined to each other first, the two would be all pairs of samples of a
+-- track.
+pair_begin AS MATERIALIZED (
+    SELECT p.* FROM pair p SEMI JOIN step_interval n ON n.drive_id = p.drive_id AND n.ego_id = p.ego_id AND n.object_id = p.object_id AND n.t_ns = p.t_ns
+),
+pair_end AS MATERIALIZED (
+    SELECT p.* RENAME (t_ns AS t_next_ns) FROM pair p
+    SEMI JOIN step_interval n ON n.drive_id = p.drive_id AND n.ego_id = p.ego_id AND n.object_id = p.object_id AND n.t_next_ns = p.t_ns
+),
 interval_motion AS (
     SELECT
         n.drive_id, n.ego_id, n.object_id, n.t_ns, n.t_next_ns, (n.t_next_ns - n.t_ns) / 1e9 AS dt_s, least(a.clearance_m, b.clearance_m) AS end_clearance_m,
@@ -36,8 +45,8 @@ interval_motion AS (
         between_way(e.x_m, e.y_m, f.x_m, f.y_m, e0.vx_mps, e0.vy_mps, e1.vx_mps, e1.vy_mps, dt_s) AS ego_way,
         between_way(a.x_m, a.y_m, b.x_m, b.y_m, o0.vx_mps, o0.vy_mps, o1.vx_mps, o1.vy_mps, dt_s) AS object_way
     FROM step_interval n
-    JOIN pair a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.object_id = n.object_id AND a.t_ns = n.t_ns
-    JOIN pair b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.object_id = n.object_id AND b.t_ns = n.t_next_ns
+    JOIN pair_begin a ON a.drive_id = n.drive_id AND a.ego_id = n.ego_id AND a.object_id = n.object_id AND a.t_ns = n.t_ns
+    JOIN pair_end b ON b.drive_id = n.drive_id AND b.ego_id = n.ego_id AND b.object_id = n.object_id AND b.t_next_ns = n.t_next_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     JOIN ego_state f ON f.drive_id = n.drive_id AND f.ego_id = n.ego_id AND f.t_ns = n.t_next_ns
     LEFT JOIN state_dynamics e0 ON e0.drive_id = n.drive_id AND e0.actor_id = n.ego_id AND e0.t_ns = n.t_ns
