@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from shapely import affinity
@@ -356,6 +356,9 @@ def safe_distance(  # noqa: PLR0917 - the formula's own symbols
 
 
 @settings(max_examples=8, deadline=None)
+@example(
+    14.5, 13.5, 17.0, 8.0, 12.0
+)  # drawn once: on its way out over the lane the ego is a little faster, which is enough
 @given(st.floats(5, 30), st.floats(0, 25), st.floats(1, 30), st.floats(3.8, 18.0), st.floats(3.5, 12))
 def test_safe_distance_ahead_is_the_papers_formula(
     v_av: float, v_vbp: float, v_ov: float, l_av: float, l_vbp: float
@@ -386,6 +389,10 @@ def test_safe_distance_ahead_is_the_papers_formula(
         assert row["spare_m"] == pytest.approx(spare)
         assert row["spare_s"] == pytest.approx(spare / (o["v_av_mps"] + o["v_ov_mps"]))
         seconds = spare / (o["v_av_mps"] + o["v_ov_mps"])
+        if '"sped_up_truncated"' in (row["reason"] or ""):
+            assert spare <= 0
+            assert row["zone"] is None
+            continue
         assert row["zone"] == ("A" if spare <= 0 else "B" if seconds < 0.5 else "C" if seconds <= 2.5 else "D")
 
 
