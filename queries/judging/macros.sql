@@ -1,4 +1,4 @@
--- Macros of the statements in this folder. They are made anew for each evaluation; no rule can call them.
+-- The statements in this folder call these macros. Each evaluation creates them anew. No rule can call them.
 
 -- What makes a kept row a near miss.
 CREATE OR REPLACE TEMP MACRO is_near_miss(margin, near_margin) AS round(margin, 6) < near_margin;

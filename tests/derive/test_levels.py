@@ -171,17 +171,34 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
         moving("lead", low, t, 260 + 14 * t, low.own),
         moving("met", low, t, 580 - 15 * t, low.other),
         standing("stands", high, t, 200 + low.own, high.own),
+        standing("beside", high, t, 200 - high.own, high.own),
     ]
     scene = drive([ego, *others], low.environment)
     known = lifted(
-        scene, {a.actor_id: 6.0 if a.actor_id in {"over", "back", "stands"} else 0.0 for a in (ego, *others)}, 1e-4
+        scene,
+        {a.actor_id: 6.0 if a.actor_id in {"over", "back", "stands", "beside"} else 0.0 for a in (ego, *others)},
+        1e-4,
     )
 
-    def passed(it: Drive) -> set[tuple[object, ...]]:
-        found = judged([it], rules=["ukhc", "criticality", "rss", "stvo"])
-        # an unknown in between parts one occurrence into two, so occurrences are not counted
-        return {(r["rule_id"], r["profile"], r["object_id"]) for r in found if r["verdict"] == "pass"}
+    def passed(it: Drive) -> dict[tuple[object, ...], list[tuple[int, int]]]:
+        found: dict[tuple[object, ...], list[tuple[int, int]]] = {}
+        for r in judged([it], rules=["ukhc", "criticality", "rss", "stvo"]):
+            if r["verdict"] == "pass":
+                of = (r["rule_id"], r["profile"], r["object_id"])
+                found.setdefault(of, []).append((r["t_start_ns"], r["t_end_ns"]))
+        return found
 
     before, after = passed(known), passed(scene)
     assert before
-    assert after <= before
+    met: dict[object, list[int]] = {}
+    for row in rows(derived(known, tables=["pair"]), "SELECT object_id, t_ns FROM pair"):
+        met.setdefault(row["object_id"], []).append(row["t_ns"])
+    new = [
+        (of, begin, end)
+        for of, spans in after.items()
+        for begin, end in spans
+        # an actor that the heights put on another level has no verdict at those steps
+        for t_ns in ([at for at in met.get(of[2], []) if begin <= at <= end] if of[2] else [begin, end])
+        if not any(first <= t_ns <= last for first, last in before.get(of, ()))
+    ]
+    assert new == []

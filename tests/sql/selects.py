@@ -11,7 +11,7 @@ import duckdb
 
 from drivelint import catalogue
 from drivelint.evaluate import temp_tables
-from drivelint.evaluate.evaluation import Evaluation
+from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.resources import folder
 from drivelint.sql import store
@@ -57,22 +57,14 @@ def fixed() -> dict[str, str]:
 
 
 @dataclass
-class _Recorder(Evaluation):
-    """An evaluation that runs all alternatives and keeps the text of every statement."""
+class _Recorder(PlanRecorder):
+    """An evaluation that runs all alternatives and keeps the text of every statement, without its plan."""
 
-    keep_measure_series: bool = True
     texts: list[str] = field(default_factory=list, init=False)
-
-    def prepare(self) -> None:
-        super().prepare()
-        self._has_holes = self._check_engagement = True
-
-    def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
-        return False
 
     def _execute(self, sql: str, binding: Binding) -> int:
         self.texts.append(sql)
-        return super()._execute(sql, binding)
+        return Evaluation._execute(self, sql, binding)
 
 
 def _shape(rule: Rule) -> str:

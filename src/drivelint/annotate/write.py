@@ -35,9 +35,9 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """What is written beside the log: one drive's evidence and summary, the road it is drawn on (None: no map), where it is on the
-    earth (None: nothing says it).
+    """One drive's evidence and summary, which are written beside the log.
 
+    `road` is None without a map. `geo` is None if neither log nor map has a usable reference.
     `versions` and `sense_by_rule` are rule id -> hash of its file, rule id -> relation that must hold.
     """
 

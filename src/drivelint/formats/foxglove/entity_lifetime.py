@@ -40,7 +40,7 @@ def with_persisted(
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
     whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in gone[1]], np.int32)
-    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]  # what is all but sorted and single is sorted faster
+    new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]
     grid_ns = np.unique(np.concatenate([rows.t_ns[new], gone[0]]))
     row, t_ns, stood_still = _persisted(rows, actor, (gone[0], whom), grid_ns)
     if not len(row):

@@ -54,7 +54,7 @@ def short_type_name(name: str) -> str:
 
 
 class _DefinitionError(ValueError):
-    """What is wrong with a definition; caught where the definition is named."""
+    """A definition is wrong; the caller catches this and names the definition."""
 
 
 def parse(path: Path, name: str, text: bytes) -> Types:
