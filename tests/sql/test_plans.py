@@ -93,7 +93,11 @@ def loops(plan: dict[str, Any], statement: str = "") -> Iterator[Loop]:
         left, right = (int(child.get("operator_cardinality", 0)) for child in children[:2])
         repeats = name == "CROSS_PRODUCT" and min(left, right) <= A_FEW
         # the planner takes a nested loop for a side of a handful of rows, too, although it has keys
-        if name == "BLOCKWISE_NL_JOIN" or min(left, right) > A_FEW or (left * right > A_FEW * MOST_ROWS and not repeats):
+        if (
+            name == "BLOCKWISE_NL_JOIN"
+            or min(left, right) > A_FEW
+            or (left * right > A_FEW * MOST_ROWS and not repeats)
+        ):
             yield Loop(" ".join(statement.split()), name, left, right)
     for child in children:
         yield from loops(child, statement)
