@@ -65,7 +65,7 @@ rideable_lanelet AS (
     ANTI JOIN lane_boundary b ON b.environment_id = n.environment_id AND b.lanelet_id = n.lanelet_id AND b.marking IN ('curb', 'grass')
         AND b.side = CASE WHEN n.left_id = r.lanelet_id THEN 'left' ELSE 'right' END
 ),
-on_strip AS (
+object_on_rideable_lanelet AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, n.object_id, bool_or(y.is_certain) AS is_certain
     FROM beside_object n
     JOIN data_log g ON g.drive_id = n.drive_id
@@ -104,6 +104,6 @@ JOIN clock k USING (drive_id, ego_id)
 LEFT JOIN adjacent_lane l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN object_on_lane o USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN object_on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
-LEFT JOIN on_strip z USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN object_on_rideable_lanelet z USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
 SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM possibly_beside

@@ -25,10 +25,7 @@ step_interval AS (
     UNION
     SELECT drive_id, ego_id, object_id, t_before_ns, t_ns FROM near_pair WHERE t_ns - t_before_ns <= max_gap_ns
 ),
--- Both actors at both steps. (x, y) is the place of the object seen from the ego at the first step; ego_way and object_way are their ways
--- to the second step (see between_way).
--- The object at both ends of an interval. Each is looked up by itself: joined to each other first, the two would be all pairs of samples of a
--- track.
+-- The object at both ends of an interval. Each end is looked up separately: a join of the two ends alone would pair all samples of a track.
 pair_begin AS MATERIALIZED (
     SELECT p.* FROM pair p SEMI JOIN step_interval n ON n.drive_id = p.drive_id AND n.ego_id = p.ego_id AND n.object_id = p.object_id AND n.t_ns = p.t_ns
 ),
@@ -36,6 +33,8 @@ pair_end AS MATERIALIZED (
     SELECT p.* RENAME (t_ns AS t_next_ns) FROM pair p
     SEMI JOIN step_interval n ON n.drive_id = p.drive_id AND n.ego_id = p.ego_id AND n.object_id = p.object_id AND n.t_next_ns = p.t_ns
 ),
+-- Both actors at both steps. (x, y) is the place of the object seen from the ego at the first step; ego_way and object_way are their ways to
+-- the second step (see between_way).
 interval_motion AS (
     SELECT
         n.drive_id, n.ego_id, n.object_id, n.t_ns, n.t_next_ns, (n.t_next_ns - n.t_ns) / 1e9 AS dt_s, least(a.clearance_m, b.clearance_m) AS end_clearance_m,

@@ -45,7 +45,7 @@ match_off_level AS (
     JOIN lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
     JOIN (FROM match_height WHERE is_same) o ON o.drive_id = m.drive_id AND o.actor_id = m.actor_id AND o.t_ns = m.t_ns AND o.lanelet_id = a.other_id
 )
--- Lanes over each other are rare. Where there are none, all matches need not be hashed to find that out.
+-- Lanes over each other are rare. Without any, all matches are returned directly: the anti join below would hash all of them.
 SELECT * FROM lane_match WHERE (SELECT count(*) FROM match_off_level) = 0
 UNION ALL BY NAME
 SELECT * FROM lane_match ANTI JOIN match_off_level USING (drive_id, actor_id, t_ns, lanelet_id) WHERE (SELECT count(*) FROM match_off_level) > 0

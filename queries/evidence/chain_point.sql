@@ -1,4 +1,4 @@
--- The points of the chains on which these danger spaces lie.
+-- The points of the chains on which the danger spaces of overtake_space.sql lie.
 SELECT c.drive_id, c.ego_id, c.chain_id, c.s_start_m + p.s_m AS s_m, p.x_m, p.y_m, p.z_m, p.tx, p.ty
 FROM corridor c
 SEMI JOIN (

@@ -1,6 +1,6 @@
--- One row per log in the database, or per one of $only: judged, and on what.
+-- One row per log in the database, or per log in $only: map, distance, conditions, occasions judged, quality, and what could not be judged.
 WITH
-    way AS (
+    exposure_of_egos AS (
         SELECT drive_id,
             list({'ego_id': ego_id, 'km': km, 'hours': hours, 'engaged_km': engaged_km, 'engaged_hours': engaged_hours,
                 'n_steps': n_steps} ORDER BY ego_id) AS exposure
@@ -30,7 +30,7 @@ WITH
     given AS (
         SELECT drive_id, list({'condition': condition, 'value': value, 'source': source} ORDER BY condition) AS conditions
         FROM drive_condition WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
-    gaps AS (
+    missing_signals AS (
         SELECT drive_id,
             list({'ego_id': ego_id, 'signal': signal, 'reason': words} ORDER BY ego_id, signal) AS not_judged
         FROM capability JOIN _worded ON cause = reason
@@ -46,10 +46,10 @@ SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS 
     coalesce(g.not_judged, []) AS not_judged
 FROM data_log l
 LEFT JOIN environment e USING (environment_id)
-LEFT JOIN way w USING (drive_id)
+LEFT JOIN exposure_of_egos w USING (drive_id)
 LEFT JOIN occasion o USING (drive_id)
 LEFT JOIN defects d USING (drive_id)
 LEFT JOIN given c USING (drive_id)
-LEFT JOIN gaps g USING (drive_id)
+LEFT JOIN missing_signals g USING (drive_id)
 WHERE coalesce(list_contains($only::VARCHAR[], l.drive_id), true)
 ORDER BY l.drive_id

@@ -1,17 +1,18 @@
--- As the runtime assertions say it: touching is inside; a vehicle that cannot be placed could only make it worse.
-CREATE OR REPLACE TEMP MACRO said_of(depth_m, ov_id, ov_known) AS CASE WHEN ov_id IS NULL AND ov_known THEN 'nobody'
+-- The same verdicts as in the four rules on danger spaces (r126.ds-*): touching counts as inside. A vehicle that cannot be placed could
+-- only make a verdict worse.
+CREATE OR REPLACE TEMP MACRO danger_space_verdict(depth_m, ov_id, ov_known) AS CASE WHEN ov_id IS NULL AND ov_known THEN 'nobody'
     WHEN depth_m >= 0 THEN 'fail' WHEN depth_m < 0 AND ov_known THEN 'pass' ELSE 'unknown' END;
 
 INSERT INTO overtake_record BY NAME
-WITH said AS (
+WITH step_verdicts AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, o.t_ns, o.stage, t.k, t.seg,
         [CASE WHEN vbp_in_ds_av_m >= 0 THEN 'fail' WHEN vbp_in_ds_av_m < 0 THEN 'pass' ELSE 'unknown' END,
-            said_of(ov_in_ds_av_m, ov_id, ov_known), said_of(av_in_ds_ov_m, ov_id, ov_known), said_of(ds_overlap_m, ov_id, ov_known)] AS said,
+            danger_space_verdict(ov_in_ds_av_m, ov_id, ov_known), danger_space_verdict(av_in_ds_ov_m, ov_id, ov_known), danger_space_verdict(ds_overlap_m, ov_id, ov_known)] AS said,
         vbp_in_ds_av_m AS a, ov_in_ds_av_m AS b, av_in_ds_ov_m AS c, ds_overlap_m AS d
     FROM overtake_step o JOIN step t USING (drive_id, ego_id, t_ns)
 ),
 changed AS (
-    SELECT *, (lag((stage, seg, said)) OVER w IS DISTINCT FROM (stage, seg, said))::INTEGER AS fresh FROM said
+    SELECT *, (lag((stage, seg, said)) OVER w IS DISTINCT FROM (stage, seg, said))::INTEGER AS fresh FROM step_verdicts
     WINDOW w AS (PARTITION BY drive_id, ego_id, occurrence ORDER BY t_ns)
 ),
 numbered AS (

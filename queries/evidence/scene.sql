@@ -25,7 +25,7 @@ way AS (
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     GROUP BY ALL
 ),
-cast_ AS (
+scene_actors AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, list({
             'actor_id': p.actor_id, 'actor_class': p.actor_class, 'length_m': p.length_m, 'width_m': p.width_m,
             'x_m': round(p.x_m, 3), 'y_m': round(p.y_m, 3), 'yaw_rad': round(p.yaw_rad, 4),
@@ -49,5 +49,5 @@ near AS (
 )
 SELECT m.drive_id, m.ego_id, m.t_ns, m.environment_id, round(m.reach_m, 1) AS reach_m, coalesce(n.lanelets, []) AS lanelets, c.actors
 FROM _moment m
-JOIN cast_ c USING (drive_id, ego_id, t_ns)
+JOIN scene_actors c USING (drive_id, ego_id, t_ns)
 LEFT JOIN near n USING (drive_id, ego_id, t_ns)

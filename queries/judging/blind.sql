@@ -1,9 +1,8 @@
--- Stretches of the ego's time without a position or heading (for rules that require a registration), without a known
--- indicator (for rules that require that), or without any step: a hole in the log (`signal` NULL, for rules with reference
--- points; an invariant has its own row for a hole that it reaches). Where nothing of the kind is ever known the signal is
--- missing altogether, and the rule is not run.
+-- Stretches in which an ego's log lacks something. `signal` is `registration` where position or heading is missing, `indicator` where its
+-- state is missing, NULL for a hole without any step. Holes matter only to rules with reference points: invariants get their own row, see
+-- outcome_of_holes.sql. If a signal is missing in the whole log, the rule is not run at all.
 CREATE OR REPLACE TEMP TABLE _blind AS
-WITH _state AS (
+WITH _step_signal AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, s.k, n.signal,
         CASE n.signal WHEN 'indicator' THEN e.indicator IS NULL
             ELSE e.x_m IS NULL OR e.y_m IS NULL OR e.yaw_rad IS NULL END AS lacks
@@ -13,12 +12,12 @@ WITH _state AS (
 ), _run AS (
     SELECT *, k - row_number() OVER (PARTITION BY drive_id, ego_id, signal, lacks ORDER BY k) AS run,
         bool_or(NOT lacks) OVER (PARTITION BY drive_id, ego_id, signal) AS ever
-    FROM _state
+    FROM _step_signal
 ), _stretches AS (
     SELECT drive_id, ego_id, signal, min(t_ns) AS a_ns, max(t_ns) AS b_ns FROM _run WHERE lacks AND ever
     GROUP BY drive_id, ego_id, signal, run
     UNION ALL
     SELECT drive_id, ego_id, NULL, lag(t_last_ns) OVER (PARTITION BY drive_id, ego_id ORDER BY seg), t_first_ns FROM _segment
 )
--- our default: what is shorter hides no occasion whole; what is cut by it is unknown in the rule's own tables
+-- Our default: a shorter stretch cannot hide a whole occasion. An occasion that it cuts is unknown in the tables that the rule reads.
 SELECT * FROM _stretches WHERE b_ns - a_ns >= 1_000_000_000

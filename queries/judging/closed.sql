@@ -1,13 +1,14 @@
 -- A verdict for every rule and subject: at least one row each.
 CREATE OR REPLACE TEMP TABLE _closed AS
--- clean groups of the first pass are outcomes too; a subject for which a rule erred has no other row of that rule
+-- Groups that passed in the first pass (`clean`, see group.sql) are outcomes, too. If a rule failed with an error for a subject, that error
+-- is its only row.
 WITH _rows AS (
     SELECT * FROM _outcome UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, '' AS profile, object_id, t_start_ns, t_end_ns, t_worst_ns,
         t_worst_ns AS t_decides_ns,
         'pass' AS verdict, code, reason, observed, required, margin, n AS n_expected, n AS n_judged
     FROM _group WHERE clean
-), _kept AS (
+), _rule_row AS (
     SELECT r.* FROM _rows r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
         AND e.ego_id = r.ego_id
     UNION ALL BY NAME
@@ -17,7 +18,7 @@ WITH _rows AS (
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'other_nation' AS code FROM _foreign
-), _gap AS (
+), _blind_stretch_of_rule AS (
     SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
     FROM _blind b
     JOIN _subject s ON s.drive_id = b.drive_id AND s.ego_id = b.ego_id
@@ -27,34 +28,34 @@ WITH _rows AS (
         UNION
         SELECT rule_no, signal FROM _needs
     ) r ON r.signal IS NOT DISTINCT FROM b.signal
-), _gaps AS (
-    -- one outcome per rule and subject for the stretches that no unknown row of the rule speaks of; none where the rule's
-    -- conditions never held, or the automated driver never drives
+), _blind_outcome AS (
+    -- One unknown outcome per rule and subject for the blind stretches that no unknown or error row of the rule covers already. None if the
+    -- rule's conditions never held, or if the automated driver never drives.
     SELECT b.rule_no, b.drive_id, b.ego_id, min(b.a_ns) AS t_start_ns, min({'a': b.a_ns, 'b': b.b_ns}).b AS t_end_ns, 'unknown' AS verdict,
         min({'a': b.a_ns, 'code': CASE signal WHEN 'indicator' THEN 'indicator_unknown' WHEN 'registration' THEN 'ego_not_placed'
             ELSE 'log_hole' END}).code AS code,
         why(min({'a': b.a_ns, 'code': CASE signal WHEN 'indicator' THEN 'indicator_gap' WHEN 'registration' THEN 'ego_place_gap'
                 ELSE 'log_gap' END}).code,
             {'from_ns': min(b.a_ns), 'to_ns': min({'a': b.a_ns, 'b': b.b_ns}).b, 'n_more': nullif(count(*) - 1, 0)}) AS reason
-    FROM _gap b
+    FROM _blind_stretch_of_rule b
     LEFT JOIN _watched w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id
     LEFT JOIN (
-        SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions')) AS elsewhere FROM _kept GROUP BY ALL
+        SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions')) AS elsewhere FROM _rule_row GROUP BY ALL
     ) k ON k.rule_no = b.rule_no AND k.drive_id = b.drive_id AND k.ego_id = b.ego_id
     ANTI JOIN (
         -- an error, or an unknown without times, speaks of the whole drive
         SELECT rule_no, drive_id, ego_id, coalesce(CASE WHEN verdict = 'unknown' THEN t_start_ns END, -9_000_000_000_000_000_000) AS from_ns,
             coalesce(CASE WHEN verdict = 'unknown' THEN t_end_ns END, 9_000_000_000_000_000_000) AS to_ns
-        FROM _kept WHERE verdict IN ('error', 'unknown')
+        FROM _rule_row WHERE verdict IN ('error', 'unknown')
     ) u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
         AND u.from_ns <= b.b_ns + b.max_gap_ns AND u.to_ns >= b.a_ns - b.max_gap_ns
     WHERE w.never IS DISTINCT FROM true AND k.elsewhere IS DISTINCT FROM true
     GROUP BY b.rule_no, b.drive_id, b.ego_id
-), _seen AS (
-    SELECT * FROM _kept UNION ALL BY NAME SELECT * FROM _gaps
+), _outcome_or_blind AS (
+    SELECT * FROM _rule_row UNION ALL BY NAME SELECT * FROM _blind_outcome
 )
-SELECT * FROM _seen UNION ALL BY NAME
+SELECT * FROM _outcome_or_blind UNION ALL BY NAME
 SELECT r.rule_no, s.drive_id, s.ego_id, 'not_applicable' AS verdict,
     CASE WHEN w.never THEN 'not_engaged' ELSE 'not_triggered' END AS code
     FROM _rule r CROSS JOIN _subject s LEFT JOIN _watched w ON w.drive_id = s.drive_id AND w.ego_id = s.ego_id
-ANTI JOIN _seen k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id
+ANTI JOIN _outcome_or_blind k ON k.rule_no = r.rule_no AND k.drive_id = s.drive_id AND k.ego_id = s.ego_id

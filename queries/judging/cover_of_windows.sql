@@ -1,5 +1,5 @@
 -- part of `outcome_of_references.sql`: per reference what keeps its window from being seen whole; NULL: nothing
-_seen AS (
+_window_extent AS (
     SELECT o.ref_id, any_value(o.a_ns) AS a_ns, any_value(o.b_ns) AS b_ns, any_value(s.max_gap_ns) AS max_gap_ns,
         any_value(s.t_start_ns) AS t_start_ns,
         any_value(s.t_end_ns) AS t_end_ns, count(p.t_ns) AS n_points, min(p.t_ns) AS t_min, max(p.t_ns) AS t_max,
@@ -14,4 +14,4 @@ _seen AS (
         WHEN t_min - a_ns > max_gap_ns AND t_min <= t_start_ns THEN 'window_truncated'
         WHEN b_ns - t_max > max_gap_ns AND t_max >= t_end_ns THEN 'window_truncated'
         WHEN t_min - a_ns > max_gap_ns OR b_ns - t_max > max_gap_ns OR seg_min <> seg_max THEN 'log_hole' END AS problem
-    FROM _seen)
+    FROM _window_extent)

@@ -5,4 +5,4 @@
         CASE WHEN a.applies IS NULL THEN 'applies_unknown' ELSE {doubt} END AS doubt
     FROM _base a
     {condition_joins}
-), _grid AS (SELECT a.* FROM _restricted a{todo}{unsettled} WHERE a.applies IS DISTINCT FROM false)
+), _step_to_judge AS (SELECT a.* FROM _restricted a{todo}{unsettled} WHERE a.applies IS DISTINCT FROM false)

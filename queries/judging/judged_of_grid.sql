@@ -8,7 +8,7 @@ WITH {condition}, {grid}, _joined AS (
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'
             WHEN v.applies IS NULL THEN coalesce(v.code, 'applies_unknown') ELSE v.code END AS code,
         CASE WHEN g.applies THEN v.reason WHEN g.applies IS NULL AND g.doubt = 'applies_unknown' THEN g.why END AS reason
-    FROM _grid g {profiles}
+    FROM _step_to_judge g {profiles}
     LEFT JOIN _state v ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id AND g.t_ns = v.t_ns{same_key}
 ), _steps AS (SELECT * REPLACE (CASE WHEN applies THEN holds END AS holds) FROM _joined
 {kept}

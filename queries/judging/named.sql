@@ -1,26 +1,26 @@
--- `_closed` with what its rule and drive are, and why a value is unknown where the rule itself gives no reason (`cause`): the ego lacks
--- something, or the object of the verdict, or somebody near has no place; else an ego that is off the lanes.
+-- The verdicts of `_closed` with the columns of their rule and drive. If a verdict is unknown and the rule gives no reason, `cause` says
+-- why: the ego, the object of the verdict or an actor nearby has no place, or the ego is off the lanes.
 CREATE OR REPLACE TEMP TABLE _named AS
-WITH _closed_rule AS (
+WITH _verdict_with_rule AS (
     SELECT v.* REPLACE (nullif(v.profile, '') AS profile, nullif(v.object_id, '') AS object_id,
         nullif(v.label, '') AS label), r.* EXCLUDE (rule_no), coalesce(s.start_ns, 0) AS start_ns,
         s.t_start_ns AS ego_from_ns, s.t_end_ns AS ego_to_ns
     FROM _closed v JOIN _rule r USING (rule_no) LEFT JOIN _subject s ON s.drive_id = v.drive_id AND s.ego_id = v.ego_id
-), _doubted AS (
+), _unexplained_verdict AS (
     SELECT DISTINCT drive_id, ego_id, start_ns, t_decides_ns AS t_ns, object_id, of_hidden, of_lanes
-    FROM _closed_rule
+    FROM _verdict_with_rule
     WHERE verdict = 'unknown' AND reason IS NULL AND tells_no_cause(code)
 ), _tracked AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS from_ns, max(t_ns) AS to_ns
-    FROM pair SEMI JOIN _doubted d USING (drive_id, ego_id)
+    FROM pair SEMI JOIN _unexplained_verdict d USING (drive_id, ego_id)
     GROUP BY ALL
-), _near AS (
+), _nearest_hidden AS (
     SELECT drive_id, ego_id, t_ns, min({
         'm': h.lane_m, 'id': h.object_id,
         'code': coalesce(u.code, lack(p.off_level, p.x_m, p.y_m, p.yaw_rad, p.length_m, p.width_m), 'off_lanes'),
         'from_ns': k.from_ns, 'to_ns': k.to_ns
     }) AS nearest
-    FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden)
+    FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _unexplained_verdict WHERE of_hidden)
     JOIN hidden h USING (drive_id, ego_id, t_ns)
     LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
     LEFT JOIN _tracked k USING (drive_id, ego_id, object_id)
@@ -29,7 +29,7 @@ WITH _closed_rule AS (
 ), _speedless AS (
     -- a measure over some time needs every speed in that time
     SELECT DISTINCT d.drive_id, d.ego_id, d.t_ns
-    FROM _doubted d
+    FROM _unexplained_verdict d
     JOIN ego_state e ON e.drive_id = d.drive_id AND e.ego_id = d.ego_id AND e.speed_mps IS NULL
         AND e.t_ns >= d.t_ns - 1_000_000_000 AND e.t_ns <= d.t_ns + 1_000_000_000
 ), _ahead AS (
@@ -37,7 +37,7 @@ WITH _closed_rule AS (
     SELECT drive_id, ego_id, t_ns, n.id AS object_id, n.actor_class AS actor_class
     FROM (
         SELECT drive_id, ego_id, t_ns, min({'s_m': p.rear_s_m, 'id': p.object_id, 'actor_class': p.actor_class}) AS n
-        FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _doubted WHERE of_hidden AND of_lanes AND object_id IS NULL)
+        FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _unexplained_verdict WHERE of_hidden AND of_lanes AND object_id IS NULL)
         JOIN ego_state e USING (drive_id, ego_id, t_ns)
         JOIN pair p USING (drive_id, ego_id, t_ns)
         WHERE is_vehicle(p.actor_class) IS DISTINCT FROM true AND in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.front_s_m > e.rear_s_m
@@ -52,7 +52,7 @@ WITH _closed_rule AS (
         WHEN p.object_id IS NOT NULL AND lack IS NOT NULL THEN why('object_lacks', {'object_id': p.object_id, 'lack': lack})
         WHEN p.object_id IS NULL AND o.to_ns < d.t_ns THEN why('track_ends', {'object_id': d.object_id, 't_ns': o.to_ns})
         WHEN p.object_id IS NULL AND o.from_ns > d.t_ns THEN why('track_begins', {'object_id': d.object_id, 't_ns': o.from_ns})
-        -- a rule that finds its object itself does not know whom
+        -- a rule without object_id looks for the object itself, so the verdict does not say which object is meant
         WHEN n.nearest IS NOT NULL AND d.of_hidden AND d.object_id IS NULL THEN hidden_reason(n.nearest)
         WHEN e.speed_mps IS NULL THEN why(CASE WHEN c.drive_id IS NULL THEN 'ego_speed_unknown' ELSE 'ego_speed_contradicted' END)
         WHEN p.object_id IS NOT NULL AND p.speed_mps IS NULL
@@ -66,15 +66,15 @@ WITH _closed_rule AS (
             THEN why(CASE WHEN f.actor_class IS NULL THEN 'may_be_vehicle_ahead' ELSE 'no_vehicle_ahead' END, {'object_id': f.object_id})
         WHEN b.drive_id IS NOT NULL
             THEN why(CASE WHEN c.drive_id IS NULL THEN 'ego_speed_unknown_near' ELSE 'ego_speed_contradicted_near' END) END AS because
-    FROM _doubted d
+    FROM _unexplained_verdict d
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
-    LEFT JOIN _near n USING (drive_id, ego_id, t_ns)
+    LEFT JOIN _nearest_hidden n USING (drive_id, ego_id, t_ns)
     LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
     LEFT JOIN _ahead f USING (drive_id, ego_id, t_ns)
     LEFT JOIN _tracked o USING (drive_id, ego_id, object_id)
     LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'velocity_unknown') c USING (drive_id)
 )
 SELECT n.*, coalesce(n.reason, CASE WHEN n.verdict = 'unknown' AND tells_no_cause(n.code) THEN c.because END) AS cause
-FROM _closed_rule n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
+FROM _verdict_with_rule n LEFT JOIN _cause c ON c.key.drive_id = n.drive_id AND c.key.ego_id = n.ego_id AND c.key.t_ns = n.t_decides_ns
     AND c.key.object_id = coalesce(n.object_id, '') AND c.key.of_hidden = n.of_hidden AND c.key.of_lanes = n.of_lanes

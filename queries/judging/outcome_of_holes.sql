@@ -1,6 +1,7 @@
--- A row of its own for each hole between two applicable steps that an invariant reaches from either side.
+-- One unknown row per hole between two steps at which an invariant applies, if the rule applied at the last step before the hole or at the
+-- first step after it.
 INSERT INTO _outcome BY NAME
-WITH _across AS (
+WITH _step_with_previous AS (
     SELECT drive_id, ego_id, object_id, profile, t_ns, seg, lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
     FROM _judged WHERE applies IS DISTINCT FROM false
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, profile ORDER BY t_ns)
@@ -8,7 +9,7 @@ WITH _across AS (
     SELECT j.drive_id, j.ego_id, j.object_id, j.profile, j.seg_prev, j.seg,
         p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge,
         s.period_ns
-    FROM _across j JOIN _subject s USING (drive_id, ego_id)
+    FROM _step_with_previous j JOIN _subject s USING (drive_id, ego_id)
     JOIN _segment p ON p.drive_id = j.drive_id AND p.ego_id = j.ego_id AND p.seg = j.seg_prev
     JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
     WHERE j.seg_prev <> j.seg

@@ -1,5 +1,6 @@
-    -- part of `judged_of_references.sql`: the points times the objects present, and those that were lost and could still be there
-    -- (`lost`: why). An anchor without a time is unknown whoever is there; nobody is a row only where the objects are combined.
+    -- part of `judged_of_references.sql`: each point with each object present at it, and with each lost object that could still be there
+    -- (`lost`: why). An anchor without a time is unknown, whatever objects there are. A point without objects has a row only if objects are
+    -- combined.
     SELECT p.* REPLACE (q.object_id AS object_id), q.object_id IS NULL AND p.t_ns IS NOT NULL AS nobody,
         s.sensor_range_m, NULL::VARCHAR AS lost
     FROM reference_step p JOIN _subject s ON s.drive_id = p.drive_id AND s.ego_id = p.ego_id

@@ -1,7 +1,7 @@
 -- The rows of `_named` or `_failed` with what each says, as the column `sentence`, and whether that tells what was observed and what is
 -- required (`reason_measures`). Columns that are read: verdict, code, reason (the author's, or NULL), cause (that, or what the engine found
 -- out), and the times, numbers and names that the codes of the engine tell. `_worded` has the words of the causes.
-CREATE OR REPLACE TEMP MACRO with_sentences(closed) AS TABLE
+CREATE OR REPLACE TEMP MACRO with_sentences(verdict_table) AS TABLE
 WITH _parts AS (
     -- a person counts from the drive's first time stamp, as every other output does: the log's clock may be that of 1970
     SELECT n.*, w.words, w.cause_code, w.cause_args,
@@ -10,7 +10,7 @@ WITH _parts AS (
         coalesce('object ' || object_id, 'an object') AS who,
         CASE WHEN observes IS NULL THEN '' ELSE capital(observes) || ' ' END AS what,
         amount(observed, unit) AS measured
-    FROM query_table(closed) n
+    FROM query_table(verdict_table) n
     LEFT JOIN _worded w USING (rule_no, cause, start_ns)
 ), _told AS (
     SELECT *, CASE
@@ -18,7 +18,7 @@ WITH _parts AS (
         WHEN verdict = 'unknown' THEN CASE code
             WHEN 'missing_step' THEN 'The rule''s data has no row at ' || at_time || '.'
             WHEN 'null_value' THEN 'A value that the rule needs is not known at ' || at_time || '.'
-            -- the bound of the step that is not decided, not of the worst one that is
+            -- the bound at the undecided step (`bound`), not the value at the worst decided step (`observed`)
             WHEN 'only_a_bound' THEN 'Only a bound is known at ' || at_time
                 || coalesce(' (' || amount(bound, unit) || ', required ' || threshold(sense, asked, unit) || ')', '') || '.'
             WHEN 'applies_unknown' THEN 'Whether the rule applies is not known' || if_at_time

@@ -7,7 +7,7 @@ LEFT JOIN _law l ON l.rule_no = r.rule_no AND l.nation = n.nation
 GROUP BY ALL
 HAVING bool_and(n.nation IS NOT NULL AND l.nation IS NULL);
 
--- The first of a rule's required signals that the log cannot give; a signal nobody answered for is not there.
+-- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing.
 CREATE OR REPLACE TEMP TABLE _gated AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,

@@ -1,5 +1,5 @@
--- Shapes as geometries, for candidates that cheap arithmetic left over and for what is written: all in the map's metres, NULL if an argument
--- is NULL. `ST_Intersects(danger_space(...), actor_box(...))` reads as the rule does.
+-- Shapes as geometries, for the candidates that remain after a check by cheap arithmetic, and for output. All are in metres of the map,
+-- NULL if an argument is NULL. `ST_Intersects(danger_space(...), actor_box(...))` reads as the rule does.
 
 -- The box of an actor: its centre, heading, length and width.
 CREATE OR REPLACE MACRO actor_box(x_m, y_m, yaw_rad, length_m, width_m) AS

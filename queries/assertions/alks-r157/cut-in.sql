@@ -35,18 +35,18 @@
 -- [params.visible_s]
 -- default = 0.72
 -- unit = "s"
--- why = "so long the system is to have seen it move over"
+-- why = "the system must have seen the vehicle move over for this long"
 -- source = "UN R157 5.2.5.2"
 --
 -- [params.pause_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: one whose centre comes into the lane later than that, at less than 0.5 m/s across, comes in then once more"
+-- why = "our default: if the centre of the vehicle comes into the lane later than this after its edge did, the vehicle cuts in a second time"
 --
 -- [params.moved_m]
 -- default = 0.05
 -- unit = "m"
--- why = "our default: further to the side than it is moves a vehicle that begins to come over; who had not, jumps out"
+-- why = "our default: a vehicle that comes nearer to the line by more than this has begun to move over; one that has not gives no warning"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, object_id, again

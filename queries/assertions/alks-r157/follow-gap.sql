@@ -27,12 +27,12 @@
 -- [params.lead_brakes_mps2]
 -- default = 1.0
 -- unit = "m/s2"
--- why = "our default: so the vehicle ahead takes distance away by braking"
+-- why = "our default: a vehicle ahead that brakes at least this hard takes distance away"
 --
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: so much faster than when the vehicle ahead braked the ego closes in by its own doing; a held speed jitters by less"
+-- why = "our default: an ego that is faster by more than this than while the vehicle ahead braked closes the gap by its own doing; a held speed jitters by less"
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,

@@ -28,7 +28,7 @@
 -- [params.tolerance_mps2]
 -- default = 0.05
 -- unit = "m/s2"
--- why = "our default: what an acceleration from recorded speeds is good for; scripted vehicles drive at exactly the limit"
+-- why = "our default: the error of an acceleration from recorded speeds; scripted vehicles drive at exactly the limit"
 --
 -- [params.edge_s]
 -- default = 0.5

@@ -1,5 +1,5 @@
 -- title = "Deceleration within ISO 15622"
--- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do, the less the faster"
+-- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do; the faster the vehicle, the less hard"
 -- hypothesis = "At every step, was the ego's mean deceleration over the last 2 s at most 5 m/s2 up to 5 m/s, falling to 3.5 m/s2 at 20 m/s?"
 -- kind = "invariant"
 -- derivation = "model"
@@ -28,7 +28,7 @@
 -- [params.tolerance_mps2]
 -- default = 0.05
 -- unit = "m/s2"
--- why = "our default: what an acceleration from recorded speeds is good for; scripted vehicles drive at exactly the limit"
+-- why = "our default: the error of an acceleration from recorded speeds; scripted vehicles drive at exactly the limit"
 --
 -- [params.edge_s]
 -- default = 2.5

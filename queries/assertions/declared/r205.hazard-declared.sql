@@ -13,7 +13,7 @@
 -- [params.window_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: an older hypothesis was about another place"
+-- why = "our default: a hazard declared longer ago was about another place"
 --
 -- [params.near_m]
 -- default = 3.0

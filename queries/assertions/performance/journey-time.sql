@@ -20,7 +20,7 @@
 -- [params.least_m]
 -- default = 1000.0
 -- unit = "m"
--- why = "our default: over less than this one light decides"
+-- why = "our default: on a shorter journey a single traffic light decides the result"
 
 -- @reference
 -- This rule is a draft: how much of the delay the ego causes, and how much the traffic, is a matter of judgement.

@@ -34,7 +34,7 @@
 -- [params.lat_brake_mps2]
 -- default = 0.8
 -- unit = "m/s2"
--- why = "braking of a movement to the side after it"
+-- why = "braking of the lateral movement after the response time"
 -- source = "ad-rss-lib, parameter discussion"
 --
 -- [params.mu_m]

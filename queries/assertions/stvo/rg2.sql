@@ -26,7 +26,7 @@
 -- [params.lately_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: the ego brakes so much later than the vehicle ahead, and goes on when that has stopped braking, or is no longer too near"
+-- why = "our default: the ego may begin to brake this much later than the vehicle ahead, and may go on braking this long after that vehicle stopped braking or is no longer too near"
 --
 -- [params.reaction_s]
 -- default = 0.3

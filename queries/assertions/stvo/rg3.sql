@@ -29,7 +29,7 @@
 -- [params.open_mps]
 -- default = 27.78
 -- unit = "m/s"
--- why = "100 km/h elsewhere, but on roads whose directions are apart and on those with two lanes each way"
+-- why = "100 km/h elsewhere; no such limit on roads whose directions are apart, nor on those with two lanes each way"
 -- source = "StVO 3(3) no. 2 c"
 --
 -- [params.heavy_mps]

@@ -28,7 +28,7 @@
 -- [params.lights_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time in which the hazard lights of one that breaks down are on, which StVO 15 asks for at once"
+-- why = "our default: the ego puts its hazard lights on within this time if it breaks down, which StVO 15 asks for at once"
 --
 -- [reasons.may_have_broken_down]
 -- says = "it had its hazard lights on, or declared an emergency or minimal risk manoeuvre: whether it broke down is for a person to say"

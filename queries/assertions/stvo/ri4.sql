@@ -26,7 +26,7 @@
 -- [params.border_m]
 -- default = 0.75
 -- unit = "m"
--- why = "our default: so close to the border is beside it; why this is a draft"
+-- why = "our default: an ego this close to the border keeps to it; this number is a judgement, so the rule is a draft"
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, $border_m AS required,

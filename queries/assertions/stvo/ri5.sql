@@ -17,7 +17,7 @@
 -- [params.near_m]
 -- default = 100.0
 -- unit = "m"
--- why = "our default: who is nearer may be about to enter; that he does is not asked, why this is a draft"
+-- why = "our default: a vehicle nearer than this may be about to enter; whether it does is not checked, so the rule is a draft"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence

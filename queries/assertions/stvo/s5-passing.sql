@@ -34,7 +34,7 @@
 -- [params.junction_m]
 -- default = 60.0
 -- unit = "m"
--- why = "our default: so near before a junction, or in it, a vehicle waits there: who rides past it on the right need not be given the distance either (StVO 5(4) sentence 4)"
+-- why = "our default: a vehicle this near before a junction, or in it, counts as waiting there; a cyclist who rides past it on the right need not be given the distance (StVO 5(4) sentence 4)"
 --
 -- [reasons.built_up_unknown]
 -- says = "whether the area is built up is not known"

@@ -32,7 +32,7 @@
 -- [params.walk_mps]
 -- default = 3.0
 -- unit = "m/s"
--- why = "our default: people walk at 2 m/s at most, recorded ones from one step to the next; a gain counts of one who is faster than even a hurried one"
+-- why = "our default: a pedestrian walks at 2 m/s at most, but recorded speeds of pedestrians jump; a gain of speed counts only above this speed, which even a person in a hurry does not reach"
 --
 -- [reasons.close_between_samples]
 -- says = "object {object_id} came close between two samples"

@@ -31,7 +31,8 @@ WHERE opposing IS DISTINCT FROM false
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.at_least) AS at_least,
-    -- An overtake that was not completed has no angles of its own: it fails if no profile would have left enough time.
+    -- An overtake that was not completed has no pull-out and cut-in angles of its own, so the profile `observed` has no zone: the rule
+    -- fails if no other profile would have left enough time.
     coalesce(
         any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END

@@ -17,7 +17,7 @@
 -- [params.settle_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time to make the gap anew after one of the two changed into the lane, as for the two seconds"
+-- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second"
 
 -- @applies
 -- A vehicle that is not seen is at least free_m away: if that is enough, the rule does not apply.

@@ -16,7 +16,7 @@
 -- [params.astride_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: longer is no correction any more; time standing, or round somebody, does not count"
+-- why = "our default: an ego astride a line for longer than this is not correcting its course; time in which it stands or goes round somebody does not count"
 --
 -- [params.change_s]
 -- default = 10.0

@@ -18,7 +18,7 @@
 -- [params.window_s]
 -- default = 4.0
 -- unit = "s"
--- why = "our default: a driver's reaction and the braking that it leads to; the library looks at the follower for as long"
+-- why = "our default: time for a driver's reaction and the braking that it leads to; lane_change looks at the follower for the same time"
 --
 -- [params.decel_mps2]
 -- default = 2.0

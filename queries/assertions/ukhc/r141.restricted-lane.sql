@@ -14,7 +14,7 @@
 -- [params.always_in_force]
 -- default = false
 -- unit = ""
--- why = "our default: maps do not say in which hours such a lane is kept for others, so being there is unknown, not wrong; true for maps whose lanes always are"
+-- why = "our default: maps do not say in which hours such a lane is kept for others, so it is unknown whether the ego may be there; set true for a map whose lanes are always kept for others"
 --
 -- # Draft: hours, and how many sit in the vehicle, are in no table; what can be proved is that the ego was never there.
 --

@@ -29,7 +29,7 @@
 -- [params.manoeuvring_s]
 -- default = 30.0
 -- unit = "s"
--- why = "our default: so long before and after, what it goes against its lane is added up, so that going again and again is driving too"
+-- why = "our default: the distance against the lane is summed over this time before and after a step, so that many short stretches count as driving, too"
 --
 -- [params.passing_s]
 -- default = 10.0
@@ -39,7 +39,7 @@
 -- [params.closed_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: so long before and after something that stands in its own lane, and after an overtaken vehicle, the ego may be in the opposing lane, at its present speed"
+-- why = "our default: the ego may be in the opposing lane for the distance that it drives in this time at its present speed, before and after an object that stands in its own lane, and after an overtaken vehicle"
 --
 -- [params.closed_m]
 -- default = 10.0
@@ -49,12 +49,12 @@
 -- [params.junction_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: in a junction lanes of all directions overlap; against every one of them for so long, as the wrong way round a roundabout, is against the traffic"
+-- why = "our default: in a junction lanes of all directions overlap; an ego that is against every one of them for this long, as the wrong way round a roundabout, drives against the traffic"
 --
 -- [params.against_rad]
 -- default = 2.618
 -- unit = "rad"
--- why = "our default: within 30 degrees of straight against a lane of a junction; a turn that is cut is not"
+-- why = "our default: a heading within 30 degrees of the opposite direction is against a lane of a junction; a turn that cuts the corner is not"
 --
 -- [reasons.passing_unknown]
 -- says = "whether it is on its way past another vehicle is not known"

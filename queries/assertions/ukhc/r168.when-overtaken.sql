@@ -24,7 +24,7 @@
 -- [params.gained_mps]
 -- default = 1.5
 -- unit = "m/s"
--- why = "our default: 3 mph, what a steady foot makes of a gradient; so much gained while somebody overtakes, however gently, makes it longer"
+-- why = "our default: 3 mph, as much as the speed varies on a gradient with a steady foot; an ego that gains more while it is overtaken, however gently, makes the overtake longer"
 --
 -- [params.queue_mps]
 -- default = 4.47
@@ -34,7 +34,7 @@
 -- [params.coming_s]
 -- default = 4.0
 -- unit = "s"
--- why = "our default, that of r162.not-being-overtaken: who is out in the opposing lane and there so soon is overtaking the ego"
+-- why = "our default, that of r162.not-being-overtaken: a vehicle in the opposing lane that reaches the ego within this time is overtaking it"
 --
 -- [reasons.accelerates_and_drifts]
 -- says = "accelerates by {accel_mps2:.2f} m/s2, drifts towards it at {drift_mps:.2f} m/s[, is {gained_mps:.1f} m/s faster than before]"

@@ -26,7 +26,7 @@
 -- [params.hazard_m]
 -- default = 30.0
 -- unit = "m"
--- why = "our default: so far off somebody on foot, an animal or a thing in the way the ego may have stopped for it"
+-- why = "our default: the ego may have stopped for a pedestrian, an animal or an object in its way at up to this distance"
 --
 -- [params.queue_mps]
 -- default = 2.78

@@ -19,7 +19,7 @@
 -- [params.through_m]
 -- default = 500.0
 -- unit = "m"
--- why = "our default: a lane that is as long up to the end of the map is no lane for joining, which are shorter"
+-- why = "our default: a lane that goes on for at least this long up to the end of the map is a through lane; lanes for joining are shorter"
 
 -- @condition
 -- Lighter goods vehicles are banned if they have a speed limiter, which no log says. A lane that ends beside a lane that goes on is for

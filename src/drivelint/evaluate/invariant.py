@@ -38,7 +38,7 @@ def first_pass_sql(rule: Rule, partial: bool) -> str:
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
-    """Return CTEs ending in `_grid`; `unsettled`: only the groups that a first pass did not settle."""
+    """Return CTEs ending in `_step_to_judge`; `unsettled`: only the groups that a first pass did not settle."""
     keep = ""
     if unsettled:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
@@ -86,19 +86,19 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
         same_key += " AND p.profile = v.profile"
     kept = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
-        kept = statement("judging/aged", walked=_walked("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"))
-    grid = _grid(rule, partial, True, check_engagement) if unsettled else "_grid AS (SELECT * FROM _asked)"
+        kept = statement("judging/aged", steps_with_episode=_steps_with_episode("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"))
+    grid = _grid(rule, partial, True, check_engagement) if unsettled else "_step_to_judge AS (SELECT * FROM _asked)"
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
 
 def episodes_sql(rule: Rule) -> str:
     """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
-    broken = "SEMI JOIN (FROM _flagged WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
-    return rule_statement("outcome_of_episodes", rule, walked=_walked(f"SELECT l.* FROM _live l {broken}"))
+    broken = "SEMI JOIN (FROM _key_with_break WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
+    return rule_statement("outcome_of_episodes", rule, steps_with_episode=_steps_with_episode(f"SELECT l.* FROM _applicable_step l {broken}"))
 
 
-def _walked(source: str) -> str:
-    return statement("judging/walked", source=source)
+def _steps_with_episode(source: str) -> str:
+    return statement("judging/steps_with_episode", source=source)
 
 
 def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:

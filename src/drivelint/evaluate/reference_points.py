@@ -65,7 +65,7 @@ def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> st
         human = f"({applicability.ENGAGED}) IS DISTINCT FROM true"
         why_human = "CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
         joins = applicability.fragments(rule, "g", "g.t_ns", check_engagement)["condition_joins"]
-    series = ", _series AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"
+    series = ", _point AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"
     if rule.combine != "each":
         whose = "'who': object_id, 'gain': gain, "
         decides = step_by_rank(2, 0, 1, "", whose) if rule.combine == "all" else step_by_rank(0, 2, 1, "-", whose)
