@@ -86,7 +86,8 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
         same_key += " AND p.profile = v.profile"
     kept = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
-        kept = statement("judging/aged", steps_with_episode=_steps_with_episode("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"))
+        numbered = _steps_with_episode("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
+        kept = statement("judging/aged", steps_with_episode=numbered)
     grid = _grid(rule, partial, True, check_engagement) if unsettled else "_step_to_judge AS (SELECT * FROM _asked)"
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
@@ -94,7 +95,8 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
 def episodes_sql(rule: Rule) -> str:
     """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
     broken = "SEMI JOIN (FROM _key_with_break WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
-    return rule_statement("outcome_of_episodes", rule, steps_with_episode=_steps_with_episode(f"SELECT l.* FROM _applicable_step l {broken}"))
+    numbered = _steps_with_episode(f"SELECT l.* FROM _applicable_step l {broken}")
+    return rule_statement("outcome_of_episodes", rule, steps_with_episode=numbered)
 
 
 def _steps_with_episode(source: str) -> str:
