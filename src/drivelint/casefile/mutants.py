@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from drivelint.catalogue.allowed import macros
-from drivelint.sql.syntax import parser, syntax_tree
+from drivelint.sql.syntax import column_name, parser, syntax_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -149,12 +149,8 @@ def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
     if not outputs:
         return set()
     first = _at(root, outputs[0])["select_list"]
-    chosen = [i for i, item in enumerate(first) if _name(item) in names]
+    chosen = [i for i, item in enumerate(first) if column_name(item) in names]
     return {(*way, "select_list", i) for way in outputs for i in chosen}
-
-
-def _name(item: Node) -> str:
-    return str(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")).lower()
 
 
 def _at(root: Any, way: NodePath) -> Any:
