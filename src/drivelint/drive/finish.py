@@ -41,21 +41,24 @@ TRACE_TABLES = (
 """The tables of `schemas/model.sql` that a trace has, in its order."""
 
 
+# what is unknown is NaN, and so is what is worked out of it
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     if not len(recording.states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
     states, restarts = unknown_at_restarts(recording.states)
-    states, findings = without_duplicates(sorted_states(states))
+    states, repeated = without_duplicates(sorted_states(states))
+    findings = [*recording.findings, *restarts, *repeated]
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
-    gone: list[QualityFinding] = []
     parted = jumps.NO_SPLIT
     if not assumed:
         states, gone = jumps.without_removed_actors(states, step, kept=named)
         step = steps(states) if gone else step
         parted = jumps.split_tracks(states, step, kept=named)
+        findings += [*gone, *parted.findings]
     if parted.alias:
         states = sorted_states(states)
         step = steps(states)
@@ -63,34 +66,23 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
     # what a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
-    motion = complete_velocities(states, step, most_replaced_share=most_replaced)
-    varying: list[QualityFinding] = []
+    findings += complete_velocities(states, step, most_replaced_share=most_replaced)
+    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in findings)
     if recording.actors is None:
         actors, varying = actor_rows.from_states(states)
+        findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, parted.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
-    chosen += ego.fill_sizes(actors, egos, options.ego_size)
-    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
+    findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
-    unclear = contradiction.resolve(states, step, actors, derived=derived, parted=parted) if not assumed else []
+    findings += checked
+    if not assumed:
+        findings += contradiction.resolve(states, step, actors, derived=derived, parted=parted)
     states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
-    findings = [
-        *recording.findings,
-        *restarts,
-        *findings,
-        *gone,
-        *parted.findings,
-        *motion,
-        *varying,
-        *checked,
-        *unclear,
-        *chosen,
-        *moved,
-        *_lights(states, egos, is_ego),
-    ]
+    findings += [*moved, *_lights(states, egos, is_ego)]
     drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
     given = dict(options.conditions)  # what the user gives counts more than what the log says
