@@ -110,7 +110,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table("model", name, drive, rows) for name, rows in content.items()}
+    tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
     tables["quality"] = _quality(drive, findings)
     return Trace(
         drive,
@@ -166,7 +166,7 @@ def _log_row(
     offset = recording.map_offset or (None, None)
     known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
     return {
-        **dict.fromkeys(arrow_schemas("model")["data_log"].names),
+        **dict.fromkeys(arrow_schemas()["data_log"].names),
         "file_name": identity.file_name, "sha256": identity.sha256, "format": recording.format, "n_states": len(states),
         "t_start_ns": start, "t_end_ns": int(states.t_ns.max()),
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
@@ -189,7 +189,7 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return owned_table("model", "quality", drive, [vars(row) for row in rows])
+    return owned_table("quality", drive, [vars(row) for row in rows])
 
 
 def _nullable(values: Floats) -> pa.Array:
