@@ -49,6 +49,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
     turn, stretch = _similarity(own, theirs, low, high)
+    # what lies a metre beside a place tells by how much a heading turns there
     there, beside = np.split(_through(own, theirs, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2)
     now = replace(trace, geo_reference=theirs.reference, geo_offset=(theirs.x_m, theirs.y_m, theirs.yaw_rad))
     if np.abs(there - xy[placed]).max() < SAME_M:

@@ -13,6 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
+from drivelint.sql.statements import texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -231,11 +232,9 @@ def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
     return [int(no) for (no,) in con.execute(_CODES).fetchall()]
 
 
-@cache
 def macro_definitions() -> str:
     """Return the text of `queries/macros`."""
-    files = sorted((folder("queries") / "macros").glob("*.sql"))
-    return "\n".join(file.read_text(encoding="utf-8") for file in files)
+    return "\n".join(texts("macros").values())
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:
