@@ -157,7 +157,9 @@ def sums_over(values: Floats | Mask, k: int) -> Floats:
 
 def sums_until(values: Floats | Mask) -> Floats:
     """Return the sums of the first 0, 1, ... m values along the last axis (m + 1)."""
-    return np.insert(np.cumsum(values, axis=-1, dtype=np.float64), 0, 0.0, axis=-1)
+    total = np.zeros((*values.shape[:-1], values.shape[-1] + 1))
+    np.cumsum(values, axis=-1, out=total[..., 1:])
+    return total
 
 
 def track_starts(actor: NDArray[np.int32]) -> Indices:

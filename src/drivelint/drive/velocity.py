@@ -101,11 +101,10 @@ class Tracklets(NamedTuple):
 
         def over(values: Floats) -> Floats:
             sums = sums_until(values)
-            found: Floats = sums[..., end] - sums[..., low]
-            return found
+            return sums.take(end, axis=-1) - sums.take(low, axis=-1)
 
         # from the run's own begin, so that the sums keep their digits
-        t, moved = self.t_s, np.nan_to_num(place - place[:, self.first])
+        t, moved = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
         mean_t = over(t) / n
         spread = over(t * t) - n * mean_t * mean_t
         spread = np.where(spread > 1e-9, spread, np.nan)
