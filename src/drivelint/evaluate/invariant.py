@@ -86,8 +86,7 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
         same_key += " AND p.profile = v.profile"
     kept = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
-        walked = statement("judging/walked", source="SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
-        kept = statement("judging/aged", walked=walked)
+        kept = statement("judging/aged", walked=_walked("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"))
     grid = _grid(rule, partial, True, check_engagement) if unsettled else "_grid AS (SELECT * FROM _asked)"
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
@@ -95,8 +94,11 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
 def episodes_sql(rule: Rule) -> str:
     """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
     broken = "SEMI JOIN (FROM _flagged WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
-    walked = statement("judging/walked", source=f"SELECT l.* FROM _live l {broken}")
-    return rule_statement("outcome_of_episodes", rule, walked=walked)
+    return rule_statement("outcome_of_episodes", rule, walked=_walked(f"SELECT l.* FROM _live l {broken}"))
+
+
+def _walked(source: str) -> str:
+    return statement("judging/walked", source=source)
 
 
 def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
