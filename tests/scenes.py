@@ -257,7 +257,7 @@ def drive(
         }
         for a in actors
     ]  # fmt: skip
-    tables = {name: store.arrow_schemas("model")[name].empty_table() for name in TRACE_TABLES}
+    tables = {name: store.arrow_schemas()[name].empty_table() for name in TRACE_TABLES}
     tables["data_log"] = pa.Table.from_pylist([log], schema=tables["data_log"].schema)
     tables["actor"] = pa.Table.from_pylist(who, schema=tables["actor"].schema)
     tables["actor_state"] = pa.table(states, schema=tables["actor_state"].schema)

@@ -15,7 +15,9 @@ def of(t: np.ndarray, x: np.ndarray, y: np.ndarray | None = None) -> DerivedVelo
     period = int(np.median(dt))
     same = np.ones(len(dt), np.bool_)
     step = Steps(same, dt * 1e-9, same & (dt <= 2.5 * period), period)
-    return derive_velocities(t_ns, np.zeros(len(t), np.int32), x, np.zeros_like(x) if y is None else y, step)
+    return derive_velocities(
+        t_ns, np.zeros(len(t), np.int32), np.stack([x, np.zeros_like(x) if y is None else y]), step
+    )
 
 
 def noisy(values: np.ndarray, sigma: float, seed: int = 1) -> np.ndarray:
@@ -34,7 +36,7 @@ def test_exact_positions_give_central_differences(hertz: int) -> None:
     x = np.cumsum(v) / hertz
     found = of(t, x, 0.5 * t)
     assert not found.filtered.any()
-    assert found.vx[1:-1] == pytest.approx((x[2:] - x[:-2]) * hertz / 2)
+    assert found.v_mps[0][1:-1] == pytest.approx((x[2:] - x[:-2]) * hertz / 2)
     turn = of(t, 30 * np.cos(t / 2), 30 * np.sin(t / 2))
     assert not turn.filtered.any()
 
@@ -44,9 +46,9 @@ def test_exact_positions_give_central_differences(hertz: int) -> None:
 def test_who_stands_in_noise_stands(hertz: int, sigma: float) -> None:
     t = np.arange(30 * hertz) / hertz
     found = of(t, noisy(np.zeros_like(t), sigma), noisy(np.zeros_like(t), sigma, 2))
-    known = np.isfinite(found.vx)
-    assert (np.hypot(found.vx, found.vy)[known] == 0.0).mean() > 0.9
-    assert np.abs(found.vx[known]).max() <= 0.5
+    known = np.isfinite(found.v_mps[0])
+    assert (np.hypot(*found.v_mps)[known] == 0.0).mean() > 0.9
+    assert np.abs(found.v_mps[0][known]).max() <= 0.5
 
 
 @RATES
@@ -54,8 +56,8 @@ def test_who_stands_in_noise_stands(hertz: int, sigma: float) -> None:
 def test_the_error_of_a_moving_one_is_as_said_or_it_is_unknown(hertz: int, sigma: float) -> None:
     t = np.arange(60 * hertz) / hertz
     found = of(t, noisy(12 * t, sigma), noisy(np.zeros_like(t), sigma, 2))
-    known = np.isfinite(found.vx)
-    off = np.abs(found.vx[known] - 12.0)
+    known = np.isfinite(found.v_mps[0])
+    off = np.abs(found.v_mps[0][known] - 12.0)
     assert np.sqrt((off**2).mean()) < LARGEST_ERROR_MPS / 2
     assert off.max() < 2 * LARGEST_ERROR_MPS
     assert known[2 * hertz : -2 * hertz].mean() > (0.9 if sigma <= 0.05 or hertz >= 10 else 0.0)
@@ -64,7 +66,7 @@ def test_the_error_of_a_moving_one_is_as_said_or_it_is_unknown(hertz: int, sigma
 def test_what_no_filter_tells_is_unknown() -> None:
     t = np.arange(300) / 10
     found = of(t, noisy(12 * t, 1.0))
-    assert np.isnan(found.vx).all()
+    assert np.isnan(found.v_mps[0]).all()
     assert found.filtered.all()
 
 
@@ -73,4 +75,4 @@ def test_a_hole_is_not_filtered_over() -> None:
     t = np.concatenate([np.arange(100), np.arange(110, 200)]) / 10
     x = noisy(np.where(t < 10.5, 0.0, 20.0), 0.05)
     found = of(t, x, noisy(np.zeros_like(t), 0.05, 2))
-    assert np.nanmax(np.abs(found.vx)) <= 0.5
+    assert np.nanmax(np.abs(found.v_mps[0])) <= 0.5

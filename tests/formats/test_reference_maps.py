@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from drivelint.formats import load_map, read_source
-from drivelint.sql.store import arrow_schemas, connect, insert
+from drivelint.sql.store import arrow_schemas, column_comments, connect, insert
 from tests.formats.opendrive.naive import NaiveMap
 from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 from tests.shared_data import shared
@@ -73,9 +73,9 @@ def test_reads_whole(file: str) -> None:
 @every_map
 def test_tables_are_those_of_the_schema_and_finite(file: str) -> None:
     environment = read(file)
-    assert environment.tables.keys() == arrow_schemas("map").keys()
+    assert environment.tables.keys() == column_comments("map").keys()
     for name, table in environment.tables.items():
-        assert table.schema.equals(arrow_schemas("map")[name])
+        assert table.schema.equals(arrow_schemas()[name])
         assert set(table.column("environment_id").to_pylist()) <= {environment.environment_id}
         for row in table.to_pylist():
             assert all(math.isfinite(v) for v in row.values() if isinstance(v, float))

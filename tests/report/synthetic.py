@@ -7,7 +7,7 @@ from typing import Any
 import pyarrow as pa
 
 from drivelint.result.model import Result
-from drivelint.result.schemas import arrow_schema
+from drivelint.sql.store import arrow_schemas
 
 SECOND = 1_000_000_000
 SDA = "ukhc.r162.safe-distance-ahead"
@@ -15,7 +15,7 @@ SDA = "ukhc.r162.safe-distance-ahead"
 
 def table(name: str, rows: list[dict[str, Any]]) -> pa.Table:
     """Return a schema table from rows that name only some columns; the others are NULL."""
-    schema = arrow_schema(name)
+    schema = arrow_schemas()[name]
     unknown = {key for row in rows for key in row} - set(schema.names)
     assert not unknown, f"no such columns in {name}: {unknown}"
     return pa.Table.from_pylist(rows, schema=schema)
@@ -37,7 +37,7 @@ def finding(**over: Any) -> dict[str, Any]:
     """Return the finding of a failing `verdict`."""
     row = verdict("fail", **over)
     row = {"finding_id": f"{row['drive_id']}-{row['rule_id']}-{row['profile']}-{row['occurrence']}"} | row
-    return {key: row[key] for key in arrow_schema("finding").names if key in row}
+    return {key: row[key] for key in arrow_schemas()["finding"].names if key in row}
 
 
 def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:

@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
+    Crowd = Sequence[merged_cases.NumberedCase]
+
 CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
@@ -243,17 +245,19 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     return found
 
 
-class MergedResult(NamedTuple):
-    """The result of cases judged together: '' or the first problem, and all reason codes."""
-
-    problem: str
-    codes: frozenset[str]
+def crowd_difference(cases: Sequence[Case], crowd: Crowd, outcome: merged_cases.CaseOutcome) -> tuple[Case, str] | None:
+    """Return the first case of a crowd that comes out otherwise than it expects, and how; None: there is none."""
+    found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in crowd)
+    return next(((case, message) for case, rows in found if (message := difference(case, rows))), None)
 
 
 def run_merged_cases(
     rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
-) -> MergedResult:
-    """Judge all cases in one database. Errors: `RuleError`. `keys`: by what they are told apart there, in turn."""
+) -> tuple[str, set[str]]:
+    """Judge all cases in one database; return '' or the first problem, and all reason codes.
+
+    Errors: `RuleError`. `keys`: by what they are told apart there, in turn.
+    """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()
     for key, where in keys.items():
@@ -262,12 +266,10 @@ def run_merged_cases(
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
                     codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
-            for member in group:
-                case = cases[member.no]
-                if message := difference(case, merged_cases.outcome_of_case(outcome, member.no)):
-                    problem = f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?"
-                    return MergedResult(problem, frozenset(codes))
-    return MergedResult("", frozenset(codes))
+            if wrong := crowd_difference(cases, group, outcome):
+                case, message = wrong
+                return f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?", codes
+    return "", codes
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:

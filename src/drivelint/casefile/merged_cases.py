@@ -16,8 +16,6 @@ from drivelint.sql.store import column_comments
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import duckdb
-
     from drivelint.catalogue import Rule
 
 MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
@@ -59,9 +57,9 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
             fill(con, table, rows)
         evaluate(con, rules, {rule.id: params for rule in rules})
         outcomes = {rule.id: CaseOutcome([], []) for rule in rules}
-        for row in _fetch(con, f"SELECT * FROM verdict ORDER BY {_ORDER}"):
+        for row in con.execute(f"FROM verdict ORDER BY {_ORDER}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].verdicts.append(row)
-        for row in _fetch(con, f"SELECT * FROM finding ORDER BY {_FOUND}"):
+        for row in con.execute(f"FROM finding ORDER BY {_FOUND}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].findings.append(row)
         return outcomes
     finally:
@@ -128,9 +126,3 @@ def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
             if any(text.startswith(mark) for text in marked.values()):
                 mine.append(row | {name: text.removeprefix(mark) for name, text in marked.items()})
     return found
-
-
-def _fetch(con: duckdb.DuckDBPyConnection, sql: str) -> list[Row]:
-    result = con.execute(sql)
-    names = [column[0] for column in result.description or ()]
-    return [dict(zip(names, row, strict=True)) for row in result.fetchall()]

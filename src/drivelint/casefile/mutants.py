@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from drivelint.catalogue.allowed import macros
-from drivelint.sql.syntax import parser, syntax_tree
+from drivelint.sql.syntax import column_name, parser, syntax_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -99,7 +99,7 @@ def _of_the_sql(rule: Rule) -> Iterator[Mutant]:
     for section, sql in rule.sections.items():
         tree = syntax_tree(sql)
         for place in _places(tree["statements"][0]["node"]):
-            for fault, changed in _faults(tree, place):
+            for fault, changed in _faults(tree, *place):
                 yield Mutant(f"@{section} {fault}", _with_section(rule, section, _sql(changed)))
 
 
@@ -107,24 +107,17 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
     return msgspec.structs.replace(rule, sections={**rule.sections, name: sql})
 
 
-class _Place(NamedTuple):
-    """A node of a syntax tree: the way to it from the statement's node, and itself."""
-
-    way: NodePath
-    node: Node
-
-
-def _places(root: Node) -> list[_Place]:
-    """Return every node that can matter to a verdict, in the order of the text."""
+def _places(root: Node) -> list[tuple[NodePath, Node]]:
+    """Return every node that can matter to a verdict, in the order of the text, each after the way to it."""
     wording = _columns(root, frozenset({"reason", "reason_code"}))
-    found: list[_Place] = []
+    found: list[tuple[NodePath, Node]] = []
     todo: list[tuple[NodePath, Any]] = [((), root)]
     while todo:
         way, part = todo.pop()
         if way in wording:
             continue
         if isinstance(part, dict):
-            found.append(_Place(way, part))
+            found.append((way, part))
             todo += [((*way, key), part[key]) for key in reversed(part)]
         elif isinstance(part, list):
             todo += [((*way, i), part[i]) for i in range(len(part) - 1, -1, -1)]
@@ -149,12 +142,8 @@ def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
     if not outputs:
         return set()
     first = _at(root, outputs[0])["select_list"]
-    chosen = [i for i, item in enumerate(first) if _name(item) in names]
+    chosen = [i for i, item in enumerate(first) if column_name(item) in names]
     return {(*way, "select_list", i) for way in outputs for i in chosen}
-
-
-def _name(item: Node) -> str:
-    return str(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")).lower()
 
 
 def _at(root: Any, way: NodePath) -> Any:
@@ -163,12 +152,11 @@ def _at(root: Any, way: NodePath) -> Any:
     return root
 
 
-def _faults(tree: Node, place: _Place) -> Iterator[tuple[str, Node]]:
+def _faults(tree: Node, way: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
     """Yield the faults of one node: words and the changed tree."""
-    node, way = place.node, place.way
     if (turned := _TURNED.get(str(node.get("type")))) is not None:
         yield f"turned: {_text(node)}", _replaced(tree, way, node | {"type": turned})
-    if _is_threshold(tree, place):
+    if _is_threshold(tree, way, node):
         for factor in _THRESHOLD:
             yield f"{_text(node)} * {factor:g}", _replaced(tree, way, _scaled(node, factor))
     for key, words in _CLAUSES.items():
@@ -194,8 +182,7 @@ def _without_terms(tree: Node, way: NodePath, clause: Node, words: str) -> Itera
         yield f"{words} without: {_text(term)}", _replaced(tree, way, new)
 
 
-def _is_threshold(tree: Node, place: _Place) -> bool:
-    node = place.node
+def _is_threshold(tree: Node, way: NodePath, node: Node) -> bool:
     kind = node.get("class")
     if kind == "CONSTANT":
         return _is_number(node["value"])
@@ -203,7 +190,7 @@ def _is_threshold(tree: Node, place: _Place) -> bool:
         return True
     if kind in {None, "PARAMETER"}:
         return False
-    return place.way in _columns(tree["statements"][0]["node"], frozenset({"required"}))
+    return way in _columns(tree["statements"][0]["node"], frozenset({"required"}))
 
 
 def _is_number(value: Node) -> bool:

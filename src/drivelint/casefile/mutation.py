@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
-from drivelint.casefile import case_location, difference, numbered_cases, read_cases
-from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups, outcome_of_case
+from drivelint.casefile import case_location, crowd_difference, numbered_cases, read_cases
+from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
 
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.casefile import Case
-    from drivelint.casefile.merged_cases import CaseOutcome, NumberedCase
     from drivelint.casefile.mutants import Mutant
     from drivelint.catalogue import Rule
 
@@ -138,18 +136,11 @@ def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
     for key, where in MERGE_KEYS.items():
         for crowd in mergeable_groups(everybody, key):
             outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
-            if message := _wrong(rule, cases, crowd, outcomes[rule.id]):
-                raise RuleError(f"{message} (the rule itself, its cases judged as {where}: see rules test)")
-            alive = [mutant for mutant in alive if not _wrong(rule, cases, crowd, outcomes[mutant.rule.id])]
+            if wrong := crowd_difference(cases, crowd, outcomes[rule.id]):
+                place = case_location(rule, wrong[0])
+                raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
+            alive = [mutant for mutant in alive if not crowd_difference(cases, crowd, outcomes[mutant.rule.id])]
     return alive
-
-
-def _wrong(rule: Rule, cases: Sequence[Case], crowd: Sequence[NumberedCase], outcome: CaseOutcome) -> str:
-    """Return '' where every case of a crowd comes out as it expects, else how one does not."""
-    for member in crowd:
-        if message := difference(cases[member.no], outcome_of_case(outcome, member.no)):
-            return f"{case_location(rule, cases[member.no])}: {message}"
-    return ""
 
 
 def entries_without_rule(rules: Sequence[Rule]) -> list[str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from decimal import Decimal
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from statistics import median
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import duckdb
 
@@ -96,8 +96,8 @@ def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
     n = lengths.pop() if lengths else 1
     times = columns.get("t_ns")
     for column, value in columns.items():
-        if isinstance(value, _Spread):
-            columns[column] = value.over(n)
+        if callable(value):
+            columns[column] = value(n)
         elif isinstance(value, dict):
             columns[column] = _by_time(value, times, f"{where}.{column}")
         elif not isinstance(value, list):
@@ -117,16 +117,9 @@ def column_of(table: str, name: str, where: str) -> tuple[str, int]:
     raise RuleError(f"{where} has no column {name!r}; it has: {', '.join(columns)}")
 
 
-class _Spread(NamedTuple):
-    """`a..b`: evenly over as many rows as the block has."""
-
-    first: Decimal
-    last: Decimal
-    scale: int
-
-    def over(self, n: int) -> list[float | int]:
-        step = (self.last - self.first) / max(n - 1, 1)
-        return [_scaled(self.first + step * i, self.scale) for i in range(n)]
+def _spread(first: Decimal, last: Decimal, scale: int, n: int) -> list[float | int]:
+    step = (last - first) / max(n - 1, 1)
+    return [_scaled(first + step * i, scale) for i in range(n)]
 
 
 def _scaled(value: Decimal, scale: int) -> float | int:
@@ -134,7 +127,7 @@ def _scaled(value: Decimal, scale: int) -> float | int:
 
 
 def _values(value: Any, scale: int) -> Any:
-    """Return a list, a scalar, a spread or a by-time mapping, in the column's own unit."""
+    """Return a list, a scalar, a by-time mapping, or what `a..b` is over n rows as a function of n, in the column's own unit."""
     if isinstance(value, list):
         return [_values(item, scale) for item in value]
     if isinstance(value, dict):
@@ -142,7 +135,7 @@ def _values(value: Any, scale: int) -> Any:
     if isinstance(value, str) and (match := _RANGE.fullmatch(value.strip())):
         first, last = Decimal(match[1]), Decimal(match[2])
         if match[3] is None:
-            return _Spread(first, last, scale)
+            return partial(_spread, first, last, scale)
         step = Decimal(match[3])
         return [_scaled(first + step * i, scale) for i in range(int((last - first) / step + Decimal("1e-9")) + 1)]
     if scale != 1 and isinstance(value, int | float) and not isinstance(value, bool):

@@ -15,7 +15,7 @@ import duckdb
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.sql.syntax import parser, syntax_tree
+from drivelint.sql.syntax import column_name, parser, syntax_tree, walk
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
@@ -73,7 +73,8 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     text = _Text(sql, file, line)
     statement, node = _parsed(text)
     found = _Found(text)
-    found.walk(node)
+    for part, ctes in walk(node):
+        found.meet(part, ctes)
     parameters = frozenset(statement.named_parameters)
     places = found.tables | {f"${name}": text.at(_parameter(sql, name)) for name in parameters}
     return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons))
@@ -104,31 +105,15 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _Found:
-    """Walks a syntax tree, refuses what is not allowed, and keeps the tables read (name -> file:line) and the reasons given."""
+    """Refuses what is not allowed in a syntax tree, and keeps the tables read (name -> file:line) and the reasons given."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
         self.tables: dict[str, str] = {}
         self.reasons: list[GivenReason] = []
 
-    def walk(self, root: Node) -> None:
-        """Look at every node, without recursion: a deep expression must not exhaust the stack."""
-        todo: list[tuple[Any, frozenset[str]]] = [(root, frozenset())]
-        while todo:
-            part, ctes = todo.pop()
-            if isinstance(part, list):
-                todo.extend((item, ctes) for item in reversed(part))
-            elif isinstance(part, dict):
-                self._meet(part, ctes)
-                rest = dict(part)
-                if isinstance(part.get("cte_map"), dict):
-                    # a CTE sees those before it; only its own SELECT, and what is inside, sees it
-                    for entry in rest.pop("cte_map")["map"]:
-                        todo.append((entry["value"], ctes))
-                        ctes |= {self._cte(entry)}
-                todo.extend((value, ctes) for value in reversed(list(rest.values())))
-
-    def _meet(self, part: Node, ctes: frozenset[str]) -> None:
+    def meet(self, part: Node, ctes: frozenset[str]) -> None:
+        """Look at one node; `ctes`: the names of those in sight."""
         kind = part.get("type")
         if part.get("sample"):
             self._refuse(part, "a sample is another one every time: a rule may not take one")
@@ -144,6 +129,8 @@ class _Found:
                 self._refuse(part["function"], f"table function {name}() is not allowed in a rule")
         elif _is_foreign(part):
             self._refuse(part, f"{_plain(kind)} is not allowed in a rule: write a plain SELECT")
+        for entry in part.get("cte_map", {}).get("map", ()):
+            self._cte(entry)
 
     def _expression(self, part: Node) -> None:
         kind = part["class"]
@@ -178,12 +165,11 @@ class _Found:
             self._refuse(part, f"there is no table {whole!r} for rules; they read the tables of schemas/*.sql only")
         self.tables.setdefault(name, self._text.at(part["query_location"]))
 
-    def _cte(self, entry: Node) -> str:
+    def _cte(self, entry: Node) -> None:
         name = str(entry["key"]).lower()
         if name in allowed.tables() or name.startswith("_"):
             select = entry["value"]["query"]["node"]
             self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
-        return name
 
     def _refuse(self, part: Node, message: str) -> None:
         raise RuleError(f"{self._text.at(_offset(part))}: {message}")
@@ -239,12 +225,5 @@ def _columns(node: Node) -> tuple[str, ...] | None:
         node = node["left"] if "left" in node else node["children"][0]
     if node["type"] != "SELECT_NODE":
         return None
-    names: list[str] = []
-    for item in node["select_list"]:
-        if item["class"] == "STAR":
-            return None
-        name = item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else "")
-        if not name:
-            return None
-        names.append(name.lower())
-    return tuple(names)
+    names = tuple("" if item["class"] == "STAR" else column_name(item) for item in node["select_list"])
+    return names if all(names) else None

@@ -126,9 +126,8 @@ def read_rule(file: Path) -> Rule:
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
     _check_params(header, queries, file, toml)
     _check_reasons(header, queries, file, toml)
-    fields = {name: getattr(header, name) for name in header.__struct_fields__}
     return Rule(
-        **fields,
+        **msgspec.structs.asdict(header),
         id=rule_id_of(file),
         pack=pack,
         pack_title=_title(file.resolve().parent),

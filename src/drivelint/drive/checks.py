@@ -84,12 +84,9 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
 
 def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     """Report holes of the whole log, and holes of single tracks that the log goes on recording through."""
-    import pyarrow as pa
-    import pyarrow.compute as pc
-
     if step.period_ns <= 0:
         return []
-    times = np.sort(pc.unique(pa.array(states.t_ns)).to_numpy())
+    times = np.unique(states.t_ns)
     dt = np.diff(times)
     wide = dt > MAX_GAP_PERIODS * step.period_ns
     findings = []
@@ -110,13 +107,11 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
 
 
 def _jumps(states: States, step: Steps) -> Mask:
-    speed = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
+    speed = np.hypot(*states.velocity)
     # where neither speed is known, none says that it is a jump
     reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
     jump = np.zeros(len(states), np.bool_)
-    way = np.hypot(np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"]))
-    with np.errstate(invalid="ignore"):
-        jump[1:] = step.continuous & (way > reach)
+    jump[1:] = step.continuous & (np.hypot(*np.diff(states.place)) > reach)
     return jump
 
 
@@ -127,20 +122,17 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     """
     error, told, moved, usable = _against_positions(states, step, jump, 1)
     wrong = np.zeros(len(states), np.bool_)
-    with np.errstate(invalid="ignore"):
-        wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+    wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
     second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
     for n_steps in {second: None, 1: None}:
         error, told, moved, usable = _against_positions(states, step, jump, n_steps)
-        with np.errstate(invalid="ignore"):
-            moving = usable & (np.maximum(moved, told) > YAW_CHECK_LEAST_MPS)
-            off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+        moving = usable & (np.maximum(moved, told) > YAW_CHECK_LEAST_MPS)
+        off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
         n, n_moving = int(off.sum()), int(moving.sum())
         if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
         if n > WRONG_UNITS_SHARE * n_moving:
-            with np.errstate(invalid="ignore", divide="ignore"):
-                ratio = float(np.nanmedian((told / moved)[moving]))
+            ratio = float(np.nanmedian((told / moved)[moving]))
             text = (
                 f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
                 f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
@@ -157,11 +149,10 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
     Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
     no jump or hole lies between.
     """
-    told_mps = np.hypot(states.numbers["vx_mps"], states.numbers["vy_mps"])
     known = known_motion(states, step) & ~jump[1:]
     went, led, usable, span_s = ways_over(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-    told = sums_over(integral_per_step(told_mps, step, known), n_steps) / span_s
+    told = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
     return np.hypot(*(went / span_s - led / span_s)), told, np.hypot(*(went / span_s)), usable
 
 
@@ -184,17 +175,16 @@ def _cause(ratio: float) -> str:
 
 def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     """Compare the heading of vehicles with their direction of motion."""
-    numbers = states.numbers
+    (vx, vy), yaw = states.velocity, states.numbers["yaw_rad"]
     place = {name: i for i, name in enumerate(actors.ids)}
     long_kind = np.array(
         [actors.classes[place[name]] in {*LONGER_THAN_WIDE_CLASSES, None} for name in states.ids], np.bool_
     )
-    speed = np.hypot(numbers["vx_mps"], numbers["vy_mps"])
-    with np.errstate(invalid="ignore"):
-        moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(numbers["yaw_rad"])
-        off = np.abs(wrapped(numbers["yaw_rad"] - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
-        wrong = moving & (off > YAW_MISMATCH_RAD)
-        backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
+    speed = np.hypot(vx, vy)
+    moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(yaw)
+    off = np.abs(wrapped(yaw - np.arctan2(vy, vx)))
+    wrong = moving & (off > YAW_MISMATCH_RAD)
+    backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
     # of one that never drives forwards, in company that does, or alone, it is the heading that is right
     fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0

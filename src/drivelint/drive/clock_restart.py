@@ -81,8 +81,6 @@ def _among(one: Times, other: Times) -> int:
 def _agreed(states: States, rows: Mask) -> Mask:
     """Say which of the chosen rows are there more than once for their actor and time, and say the same each time."""
     agreed = np.zeros(len(rows), np.bool_)
-    if not rows.any():
-        return agreed
     chosen = np.flatnonzero(rows)
     chosen = chosen[np.lexsort((states.t_ns[chosen], states.actor[chosen]))]
     ordered = states.take(chosen)

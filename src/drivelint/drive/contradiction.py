@@ -13,16 +13,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.jumps import (
-    COUNT_PREFIX,
-    MOTION_COLUMNS,
-    MOVING_MPS,
-    NO_SPLIT,
-    RejectedPositions,
-    SplitTracks,
-    set_unknown,
-)
-from drivelint.drive.order import integral_per_step, known_motion, ways_over, wrapped
+from drivelint.drive.jumps import COUNT_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
+from drivelint.drive.order import integral_per_step, known_motion, sums_until, ways_over, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity import Tracklets, sample_noise
 from drivelint.phrases import listed
@@ -91,7 +83,7 @@ def resolve(
     if not derived:
         frozen = _frozen(states, step)
         if frozen.any():
-            places.append(RejectedPositions.from_rows(states, frozen))
+            places.append(states.take(frozen))
         text = COUNT_PREFIX + "position and velocity contradict each other: they are unknown"
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
@@ -113,33 +105,32 @@ def resolve(
 
 
 def _upon_others(
-    states: States, step: Steps, actors: Actors, refused: RejectedPositions, alias: Mapping[str, str]
+    states: States, step: Steps, actors: Actors, refused: States, alias: Mapping[str, str]
 ) -> list[QualityFinding]:
     """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
     index = {name: i for i, name in enumerate(actors.ids)}
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
     half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
     half_of = half[[index[name] for name in states.ids]][states.actor]
-    placed = np.flatnonzero(np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"]))
+    placed = np.flatnonzero(np.isfinite(states.place).all(axis=0))
     placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
     t_ns, beside = states.t_ns[placed], max(step.period_ns, 1)
     first = np.searchsorted(t_ns, refused.t_ns - beside)
     n = np.searchsorted(t_ns, refused.t_ns + beside, side="right") - first
     place = np.repeat(np.arange(len(n)), n)
     other = placed[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
-    away = np.hypot(
-        refused.x_m[place] - states.numbers["x_m"][other], refused.y_m[place] - states.numbers["y_m"][other]
-    )
-    own = half[[index[name] for name in refused.actor_ids.tolist()]][place] if len(n) else np.zeros(0)
-    names = np.array(states.ids, dtype=np.str_)
+    away = np.hypot(*(refused.place[:, place] - states.place[:, other]))
+    own_names = [refused.ids[i] for i in refused.actor]
+    own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
     # the track that goes on after the jump is the same actor's in the log
     in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
-    own_in_log = np.array([alias.get(name, name) for name in refused.actor_ids.tolist()], dtype=np.str_)
+    own_in_log = np.array([alias.get(name, name) for name in own_names], dtype=np.str_)
     upon = (away <= own + half_of[other]) & (in_log[states.actor[other]] != own_in_log[place])
     findings = []
-    for name in np.unique(refused.actor_ids[place[upon]]).tolist():
-        rows = upon & (refused.actor_ids[place] == name)
-        others = np.unique(names[states.actor[other[rows]]]).tolist()
+    for number in np.unique(refused.actor[place[upon]]):
+        name = refused.ids[number]
+        rows = upon & (refused.actor[place] == number)
+        others = sorted({states.ids[i] for i in states.actor[other[rows]]})
         times = np.unique(refused.t_ns[place[rows]])
         message = (
             f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
@@ -175,7 +166,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
     def between(values: Floats) -> Floats:
-        sums = np.insert(np.cumsum(values, axis=-1), 0, 0.0, axis=-1)
+        sums = sums_until(values)
         return sums[..., last] - sums[..., first]
 
     frozen: Mask = beside | contradict(between(went), between(led), between(slack))
@@ -184,14 +175,11 @@ def _frozen(states: States, step: Steps) -> Mask:
 
 def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
     """Return how far positions go and velocities lead in each step (2, n - 1), and how far off the velocity's way may be."""
-    went, led, slack = np.zeros((2, len(usable))), np.zeros((2, len(usable))), np.zeros(len(usable))
-    for i, (place, rate_of) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
-        v = states.numbers[rate_of]
-        went[i] = np.where(usable, np.diff(states.numbers[place]), 0.0)
-        led[i] = integral_per_step(v, step, usable)
-        # what the velocity did between two samples is not known
-        slack = np.hypot(slack, np.where(usable, 0.5 * np.abs(np.diff(v)) * step.dt_s, 0.0))
-    return went, led, slack
+    went = np.where(usable, np.diff(states.place), 0.0)
+    led = integral_per_step(states.velocity, step, usable)
+    # what the velocity did between two samples is not known
+    slack = np.where(usable, 0.5 * np.abs(np.diff(states.velocity)) * step.dt_s, 0.0)
+    return went, led, np.hypot(*slack)
 
 
 def _drifts(rest: Floats, step: Steps) -> bool:
@@ -204,7 +192,7 @@ def _drifts(rest: Floats, step: Steps) -> bool:
 
 def _mismatched(states: States, step: Steps) -> Mask:
     """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
-    n, numbers = len(states), states.numbers
+    n = len(states)
     found = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
@@ -217,14 +205,11 @@ def _mismatched(states: States, step: Steps) -> Mask:
     went, led = went / span, led / span
     off, fastest = np.hypot(*(went - led)), np.hypot(*np.maximum(np.abs(went), np.abs(led)))
     allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _most(slack, k) / span
-    with np.errstate(invalid="ignore"):
-        wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
+    wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
         return found
-    runs = Tracklets.from_samples(states.t_ns, numbers["x_m"], numbers["y_m"], step)
-    sigma = sample_noise(numbers["x_m"], numbers["y_m"], runs, states.actor)
-    with np.errstate(invalid="ignore"):
-        wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
+    sigma = sample_noise(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
+    wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
@@ -254,9 +239,8 @@ def _leads(states: States, rows: Mask) -> Mask:
     """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
     found = np.flatnonzero(rows)
     first, last = _around(states, states.actor, found)
-    numbers = states.numbers
-    speed = np.hypot(numbers["vx_mps"][found], numbers["vy_mps"][found])
-    way = np.hypot(numbers["x_m"][last] - numbers["x_m"][first], numbers["y_m"][last] - numbers["y_m"][first])
+    place, speed = states.place, np.hypot(*states.velocity[:, found])
+    way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
     kept = rows.copy()
     kept[found] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
@@ -271,16 +255,15 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     gain speed from the standstill between; a stretch across the motion is a slide if the heading turns into it and out of it
     as far as a vehicle can.
     """
-    n, numbers = len(states), states.numbers
+    n, yaw, (vx, vy) = len(states), states.numbers["yaw_rad"], states.velocity
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     long_kind = np.array([kinds.get(name) in DIRECTED_CLASSES for name in states.ids], np.bool_)[states.actor]
-    yaw, speed = numbers["yaw_rad"], np.hypot(numbers["vx_mps"], numbers["vy_mps"])
-    with np.errstate(invalid="ignore"):
-        off = np.abs(wrapped(yaw - np.arctan2(numbers["vy_mps"], numbers["vx_mps"])))
-        moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
-        backwards = moving & (off > BACKWARDS_RAD)
-        across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
-        turn = np.where(step.same, np.abs(wrapped(np.diff(yaw))), 0.0)
+    speed = np.hypot(vx, vy)
+    off = np.abs(wrapped(yaw - np.arctan2(vy, vx)))
+    moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
+    backwards = moving & (off > BACKWARDS_RAD)
+    across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
+    turn = np.where(step.same, np.abs(wrapped(np.diff(yaw))), 0.0)
     nothing = np.zeros(n, np.bool_)
     if not (backwards.any() or across.any()):
         return nothing, nothing
@@ -319,8 +302,6 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
 
 def _runs(states: States, rows: Mask) -> list[tuple[int, int]]:
     """Return the first and the last row of each stretch of marked rows of one actor."""
-    if not rows.any():
-        return []
     same = np.r_[False, (states.actor[1:] == states.actor[:-1]) & rows[:-1] & rows[1:]]
     first = np.flatnonzero(rows & ~same)
     last = np.flatnonzero(rows & ~np.r_[same[1:], False])

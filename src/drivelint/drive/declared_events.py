@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow as pa
@@ -17,22 +17,14 @@ if TYPE_CHECKING:
 HEADLIGHTS: Final = "headlights"
 """Name of the code in `States.codes`, which indexes `HEADLIGHT_STATES`, and of the event."""
 HEADLIGHT_STATES: Final = ("off", "on")
-
-
-class DeclaredEvent(NamedTuple):
-    """What the value of an event is, and what the event says."""
-
-    value: str
-    says: str
-
-
 _FACTS: Final = facts(__file__, "declared_events.toml")
 ON_OFF_EVENTS: Final[dict[str, str]] = _FACTS["on_off"]
 """Events that are on until they are declared off -> what they say."""
-EVENTS: Final = {mode: DeclaredEvent("on, off", says) for mode, says in ON_OFF_EVENTS.items()} | {
-    name: DeclaredEvent(**about) for name, about in _FACTS["other"].items()
+EVENTS: Final[dict[str, dict[str, str]]] = {
+    **{mode: {"value": "on, off", "says": says} for mode, says in ON_OFF_EVENTS.items()},
+    **_FACTS["other"],
 }
-"""Event -> what it says. Other events are kept and read by no rule."""
+"""Event -> `value`: what its value is, `says`: what it says. Other events are kept and read by no rule."""
 
 
 def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table | None:

@@ -41,21 +41,24 @@ TRACE_TABLES = (
 """The tables of `schemas/model.sql` that a trace has, in its order."""
 
 
+# what is unknown is NaN, and so is what is worked out of it
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     if not len(recording.states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
     states, restarts = unknown_at_restarts(recording.states)
-    states, findings = without_duplicates(sorted_states(states))
+    states, repeated = without_duplicates(sorted_states(states))
+    findings = [*recording.findings, *restarts, *repeated]
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
-    gone: list[QualityFinding] = []
     parted = jumps.NO_SPLIT
     if not assumed:
         states, gone = jumps.without_removed_actors(states, step, kept=named)
         step = steps(states) if gone else step
         parted = jumps.split_tracks(states, step, kept=named)
+        findings += [*gone, *parted.findings]
     if parted.alias:
         states = sorted_states(states)
         step = steps(states)
@@ -63,34 +66,23 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
     # what a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
-    motion = complete_velocities(states, step, most_replaced_share=most_replaced)
-    varying: list[QualityFinding] = []
+    findings += complete_velocities(states, step, most_replaced_share=most_replaced)
+    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in findings)
     if recording.actors is None:
         actors, varying = actor_rows.from_states(states)
+        findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, parted.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
-    chosen += ego.fill_sizes(actors, egos, options.ego_size)
-    derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in [*recording.findings, *motion])
+    findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
-    unclear = contradiction.resolve(states, step, actors, derived=derived, parted=parted) if not assumed else []
+    findings += checked
+    if not assumed:
+        findings += contradiction.resolve(states, step, actors, derived=derived, parted=parted)
     states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
-    findings = [
-        *recording.findings,
-        *restarts,
-        *findings,
-        *gone,
-        *parted.findings,
-        *motion,
-        *varying,
-        *checked,
-        *unclear,
-        *chosen,
-        *moved,
-        *_lights(states, egos, is_ego),
-    ]
+    findings += [*moved, *_lights(states, egos, is_ego)]
     drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
     given = dict(options.conditions)  # what the user gives counts more than what the log says
@@ -118,7 +110,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table("model", name, drive, rows) for name, rows in content.items()}
+    tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
     tables["quality"] = _quality(drive, findings)
     return Trace(
         drive,
@@ -174,7 +166,7 @@ def _log_row(
     offset = recording.map_offset or (None, None)
     known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
     return {
-        **dict.fromkeys(arrow_schemas("model")["data_log"].names),
+        **dict.fromkeys(arrow_schemas()["data_log"].names),
         "file_name": identity.file_name, "sha256": identity.sha256, "format": recording.format, "n_states": len(states),
         "t_start_ns": start, "t_end_ns": int(states.t_ns.max()),
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
@@ -197,7 +189,7 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return owned_table("model", "quality", drive, [vars(row) for row in rows])
+    return owned_table("quality", drive, [vars(row) for row in rows])
 
 
 def _nullable(values: Floats) -> pa.Array:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.outliers import outlier_samples
-from drivelint.drive.trace import QualityFinding
+from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
@@ -39,35 +39,21 @@ CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
 MOVING_MPS: Final = 1.0
 """Below this the direction of motion is noise, and the heading is what there is."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
-STATE_COLUMNS: Final = ("x_m", "y_m", "z_m", "yaw_rad", *MOTION_COLUMNS)
 SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""
 COUNT_PREFIX: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
-class RejectedPositions:
-    """Positions from the log that are rejected, as parallel arrays; `actor_ids` are those of the finished drive."""
-
-    actor_ids: NDArray[np.str_]
-    t_ns: Times
-    x_m: Floats
-    y_m: Floats
-
-    @classmethod
-    def from_rows(cls, states: States, rows: Mask) -> RejectedPositions:
-        """Take the places of these rows."""
-        names = np.array(states.ids, dtype=np.str_)[states.actor[rows]]
-        return cls(names, states.t_ns[rows], states.numbers["x_m"][rows], states.numbers["y_m"][rows])
-
-
-@dataclass(frozen=True)
 class SplitTracks:
-    """`alias`: new actor id -> the id in the log, where a track goes on elsewhere after a jump."""
+    """`alias`: new actor id -> the id in the log, where a track goes on elsewhere after a jump.
+
+    `refused`: the states at rejected positions as the log has them, of the actors of the finished drive.
+    """
 
     findings: list[QualityFinding]
     alias: dict[str, str]
-    refused: RejectedPositions | None = None
+    refused: States | None = None
 
 
 NO_SPLIT: Final = SplitTracks([], {})
@@ -80,24 +66,17 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
-    jump = jumps(states, step)
-    findings: list[QualityFinding] = []
-    alias: dict[str, str] = {}
-    unknown, pieces = _around_jumps(states, jump)
-    if jump.any():
-        text = COUNT_PREFIX + "the position jumps: they are unknown around it"
-        findings = states.findings(unknown, "teleport", "warning", text)
-        alias = _renamed(states, pieces, kept, findings)
+    unknown, pieces = _around_jumps(states, jumps(states, step))
+    text = COUNT_PREFIX + "the position jumps: they are unknown around it"
+    findings = states.findings(unknown, "teleport", "warning", text)
+    alias = _renamed(states, pieces, kept, findings)
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
-    if beside.any():
-        text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
-        findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
-        set_unknown(states, beside)
-    return (
-        SplitTracks(findings, alias, RejectedPositions.from_rows(recorded, unknown | beside)) if findings else NO_SPLIT
-    )
+    text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+    findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
+    set_unknown(states, beside)
+    return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
 
 
 def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMNS) -> None:
@@ -112,21 +91,19 @@ def jumps(states: States, step: Steps) -> Mask:
 
     At a track's ends, and beside a hole, the only neighbour decides.
     """
-    dx, dy = np.diff(states.numbers["x_m"]), np.diff(states.numbers["y_m"])
+    way = np.diff(states.place)
     dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
     limit = JUMP_M + JUMP_MPS2 * dt**2
-    with np.errstate(invalid="ignore"):
-        far: Mask = step.continuous & (np.hypot(dx, dy) > limit)
+    far: Mask = step.continuous & (np.hypot(*way) > limit)
     rows = np.flatnonzero(far)
     if not len(rows):
         return far
     told, against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
     for side in (-1, 1):
-        beside = np.clip(rows + side, 0, len(dx) - 1)
-        known = (beside == rows + side) & step.continuous[beside] & np.isfinite(dx[beside])
+        beside = np.clip(rows + side, 0, len(dt) - 1)
+        known = (beside == rows + side) & step.continuous[beside] & np.isfinite(way[0, beside])
         scale = dt[rows] / dt[beside]
-        with np.errstate(invalid="ignore"):
-            off = np.hypot(dx[rows] - scale * dx[beside], dy[rows] - scale * dy[beside]) > limit[rows]
+        off = np.hypot(*(way[:, rows] - scale * way[:, beside])) > limit[rows]
         told += known
         against += known & off
     far[rows] = (told > 0) & (against == told)
@@ -137,8 +114,6 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
     """Return which samples jumps make unknown, and the number of each sample's piece of its track."""
     n = len(states)
     unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
-    if not jump.any():
-        return unknown, pieces
     unknown[:-1] |= jump
     unknown[1:] |= jump
     for actor in np.unique(states.actor[:-1][jump]):
@@ -163,12 +138,12 @@ def _goes_on(states: States, last: int, first: int) -> bool:
 
     Either it can have got there, or its place is put right along its lane, as maps and filters do, and it moves on as before.
     """
-    x, y, t_s = states.numbers["x_m"], states.numbers["y_m"], states.t_ns * 1e-9
+    place, t_s = states.place, states.t_ns * 1e-9
     gap = t_s[first] - t_s[last]
     if gap > 2 * OUTLIER_S:
         return False
-    before, after = (np.array([x[i] - x[i - 1], y[i] - y[i - 1]]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
-    way = np.array([x[first] - x[last], y[first] - y[last]])
+    before, after = ((place[:, i] - place[:, i - 1]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
+    way = place[:, first] - place[:, last]
     fastest = np.nan_to_num(np.hypot(*np.transpose([before, after]))).max()
     if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_MPS2 * gap**2 / 2:
         return True
@@ -216,7 +191,7 @@ def without_removed_actors(
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return states, []
     jump = np.flatnonzero(jumps(states, step))
-    place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
+    place = states.place
     # an actor's last jump, and where its track ends
     last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept}
     parked = []

@@ -32,22 +32,18 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
     n = len(states)
     for name in STATE_COLUMNS:
         states.numbers.setdefault(name, np.full(n, np.nan))
-    if n == 0:
-        return []
     starts = np.flatnonzero(np.r_[True, ~step.same])
     return _velocity(states, step, starts, most_replaced_share) + _acceleration(states, starts)
 
 
 def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share: float) -> list[QualityFinding]:
-    numbers = states.numbers
-    vx, vy = numbers["vx_mps"], numbers["vy_mps"]
-    absent = np.logical_and.reduceat(np.isnan(vx) & np.isnan(vy), starts)
-    still = ~absent & np.logical_and.reduceat((vx == 0.0) & (vy == 0.0), starts)
+    numbers, v = states.numbers, states.velocity
+    absent = np.logical_and.reduceat(np.isnan(v).all(axis=0), starts)
+    still = ~absent & np.logical_and.reduceat((v == 0.0).all(axis=0), starts)
     astray = ~absent & _astray(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any()):
         return []
-    spread = np.nan_to_num([extent(numbers[name], starts) for name in ("x_m", "y_m")]).max(axis=0)
-    false_zero = still & (spread > MOVED_M)
+    false_zero = still & (np.nan_to_num(extent(states.place, starts)).max(axis=0) > MOVED_M)
     findings = []
     for which, why in (
         (absent, "no velocity in the log"),
@@ -57,9 +53,8 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         if not which.any():
             continue
         rows = np.repeat(which, np.diff(np.r_[starts, len(states)]))
-        motion = derive_velocities(states.t_ns, states.actor, numbers["x_m"], numbers["y_m"], step)
-        numbers["vx_mps"] = np.where(rows, motion.vx, numbers["vx_mps"])
-        numbers["vy_mps"] = np.where(rows, motion.vy, numbers["vy_mps"])
+        motion = derive_velocities(states.t_ns, states.actor, states.place, step)
+        numbers["vx_mps"], numbers["vy_mps"] = np.where(rows, motion.v_mps, states.velocity)
         findings += _filtered(states, rows & motion.filtered)
         text = why + " ({ids}): velocity is derived from positions"
         findings += states.findings(rows, "velocity_derived", "warning", text)
@@ -86,11 +81,10 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
         return wrong
     went, led, whole, span = ways_over(states, step, known_motion(states, step), k)
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
-    with np.errstate(invalid="ignore"):
-        fastest = np.maximum(moved, told)
-        moving = whole & (fastest > MISMATCH_MPS * span)
-        # positions that stand still do not tell how somebody moves: see `contradiction`
-        bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
+    fastest = np.maximum(moved, told)
+    moving = whole & (fastest > MISMATCH_MPS * span)
+    # positions that stand still do not tell how somebody moves: see `contradiction`
+    bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
@@ -102,13 +96,10 @@ def _suspicious(states: States, k: int) -> bool:
     middle, last = first + k // 2, first + k
     here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])
     first, middle, last = first[here], middle[here], last[here]
-    span, numbers = (states.t_ns[last] - states.t_ns[first]) * 1e-9, states.numbers
-    off = np.zeros(len(first))
-    for place, rate_of in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
-        v = numbers[rate_of]
-        went = (numbers[place][last] - numbers[place][first]) / span
-        led = (v[first] + 4.0 * v[middle] + v[last]) / 6.0
-        off = np.hypot(off, went - led)
+    span, place, v = (states.t_ns[last] - states.t_ns[first]) * 1e-9, states.place, states.velocity
+    went = (place[:, last] - place[:, first]) / span
+    led = (v[:, first] + 4.0 * v[:, middle] + v[:, last]) / 6.0
+    off = np.hypot(*(went - led))
     actor, rows = states.actor[first], (off > MISMATCH_MPS / 2, off >= 0.0)
     bad, n = (np.bincount(actor[some], minlength=len(states.ids)) for some in rows)
     return bool((3 * bad > n).any())

@@ -52,12 +52,12 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
         name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
         for name, rows in changed_columns(states).items()
     }
-    moved = _any([differ[name] for name in STATE_COLUMNS if name in differ])
+    moved = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
     for name, values in kept.numbers.items():
         values[differ[name] | moved if name in STATE_COLUMNS else differ[name]] = np.nan
     for name, codes in kept.codes.items():
         codes[differ[name]] = UNKNOWN_CODE
-    differing = repeated & _any(list(differ.values()))[of]
+    differing = repeated & np.logical_or.reduce(list(differ.values()))[of]
     text = "an actor appears again at the same time in {n} states ({ids}), which "
     return kept, [
         *states.findings(
@@ -72,11 +72,6 @@ def repetitions(states: States) -> tuple[Mask, Indices]:
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
     return repeated, np.cumsum(~repeated) - 1
-
-
-def _any(rows: list[Mask]) -> Mask:
-    found: Mask = np.any(rows, axis=0)
-    return found
 
 
 def changed_columns(states: States) -> dict[str, Mask]:
@@ -119,32 +114,27 @@ def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Step
 
 
 def time_derivative(values: Floats, step: Steps) -> Floats:
-    """Return the time derivative: central where both neighbours are continuous, else one-sided, else NaN."""
-    n = len(values)
-    rise, span = np.zeros(n), np.zeros(n)
+    """Return the time derivative, (n) or (2, n): central where both neighbours are continuous, else one-sided, else NaN."""
+    rise, span, result = np.zeros_like(values), np.zeros_like(values), np.full_like(values, np.nan)
     with np.errstate(invalid="ignore"):
         difference = np.diff(values)
     usable = step.continuous & np.isfinite(difference)
-    for side in (slice(0, n - 1), slice(1, n)):
-        rise[side] += np.where(usable, difference, 0.0)
-        span[side] += np.where(usable, step.dt_s, 0.0)
-    result = np.full(n, np.nan)
+    for side in (slice(None, -1), slice(1, None)):
+        rise[..., side] += np.where(usable, difference, 0.0)
+        span[..., side] += np.where(usable, step.dt_s, 0.0)
     np.divide(rise, span, out=result, where=span > 0)
     return result
 
 
 def known_motion(states: States, step: Steps) -> Mask:
     """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
-    known = step.continuous.copy()
-    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        finite = np.isfinite(states.numbers[name])
-        known &= finite[1:] & finite[:-1]
-    return known
+    known: Mask = np.logical_and.reduce(np.isfinite([*states.place, *states.velocity]))
+    return step.continuous & known[1:] & known[:-1]
 
 
 def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
-    """Return how far a rate (n) leads within each step (n - 1), by the mean of its ends; 0 where that is not `known`."""
-    return np.where(known, 0.5 * (rate[1:] + rate[:-1]) * step.dt_s, 0.0)
+    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not `known`."""
+    return np.where(known, 0.5 * (rate[..., 1:] + rate[..., :-1]) * step.dt_s, 0.0)
 
 
 def ways_over(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
@@ -152,18 +142,24 @@ def ways_over(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats,
 
     Returns by first row (n - k): both ways (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
     """
-    numbers = states.numbers
-    went = np.stack([numbers[name][k:] - numbers[name][:-k] for name in ("x_m", "y_m")])
-    led = np.stack([sums_over(integral_per_step(numbers[name], step, known), k) for name in ("vx_mps", "vy_mps")])
+    place = states.place
+    went = place[:, k:] - place[:, :-k]
+    led = sums_over(integral_per_step(states.velocity, step, known), k)
     whole: Mask = sums_over(~known, k) == 0
     return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
 
 
 def sums_over(values: Floats | Mask, k: int) -> Floats:
-    """Return the sum of every k neighbouring values (m - k + 1 of m)."""
-    total = np.r_[0.0, np.cumsum(values)]
-    sums: Floats = total[k:] - total[:-k]
-    return sums
+    """Return the sum of every k neighbouring values along the last axis (m - k + 1 of m)."""
+    total = sums_until(values)
+    return total[..., k:] - total[..., :-k]
+
+
+def sums_until(values: Floats | Mask) -> Floats:
+    """Return the sums of the first 0, 1, ... m values along the last axis (m + 1)."""
+    total = np.zeros((*values.shape[:-1], values.shape[-1] + 1))
+    np.cumsum(values, axis=-1, out=total[..., 1:])
+    return total
 
 
 def track_starts(actor: NDArray[np.int32]) -> Indices:

@@ -44,7 +44,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     nothing = np.zeros(n, np.bool_)
     if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
         return nothing
-    place = np.stack([states.numbers["x_m"], states.numbers["y_m"]])
+    place = states.place
     told = _told(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
     moves = np.diff(place, axis=1) / dt_s, dt_s
@@ -54,8 +54,8 @@ def outlier_samples(states: States, step: Steps) -> Mask:
         _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
     ):
         return nothing
-    runs = Tracklets.from_samples(states.t_ns, place[0], place[1], step)
-    sigma = sample_noise(place[0], place[1], runs, states.actor)
+    runs = Tracklets.from_samples(states.t_ns, place, step)
+    sigma = sample_noise(place, runs, states.actor)
     beside = _beside(place, moves, told, sigma, sigma)
     return beside | _stepped(moves, told, sigma, sigma, beside)
 
@@ -74,26 +74,23 @@ def _beside(place: Floats, moves: _Moves, told: Mask, sigma: Floats, error: Floa
     """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
     n = place.shape[1]
     found = np.zeros(n, np.bool_)
-    if n < 5:
-        return found
     v, dt = moves
     before, to, away, after = (v[:, i : n - 4 + i] for i in range(4))
     dt_before, dt_to, dt_away, dt_after = (dt[i : n - 4 + i] for i in range(4))
     across = dt_to + dt_away
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        without = (to * dt_to + away * dt_away) / across
-        off = (to - without) * dt_to
-        size = np.hypot(*off)
-        s, e = sigma[2:-2], error[2:-2]
-        least = np.where(told[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
-        limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
-        # there and back: both neighbours bend the other way
-        there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
-        back = np.sum((after - away) * off, axis=0) * dt_away > size**2 / 2
-        goes_on = _can(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can(
-            without, after, (dt_after + across) / 2, 1.9 * e / dt_away
-        )
-        found[2:-2] = (size > limit) & there & back & goes_on
+    without = (to * dt_to + away * dt_away) / across
+    off = (to - without) * dt_to
+    size = np.hypot(*off)
+    s, e = sigma[2:-2], error[2:-2]
+    least = np.where(told[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
+    limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
+    # there and back: both neighbours bend the other way
+    there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
+    back = np.sum((after - away) * off, axis=0) * dt_away > size**2 / 2
+    goes_on = _can(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can(
+        without, after, (dt_after + across) / 2, 1.9 * e / dt_away
+    )
+    found[2:-2] = (size > limit) & there & back & goes_on
     return found
 
 
@@ -101,25 +98,20 @@ def _stepped(moves: _Moves, told: Mask, sigma: Floats, error: Floats, beside: Ma
     """Return the ends of steps that both neighbours contradict by the same way, where no velocity is recorded."""
     n = len(told)
     found = np.zeros(n, np.bool_)
-    if n < 4:
-        return found
     v, dt = moves
     before, here, after = (v[:, i : n - 3 + i] for i in range(3))
     dt_before, dt_here, dt_after = (dt[i : n - 3 + i] for i in range(3))
     whole = ~np.any([told[i : n - 3 + i] | beside[i : n - 3 + i] for i in range(4)], axis=0)
-    with np.errstate(invalid="ignore", over="ignore"):
-        s, e = sigma[1:-2], error[1:-2]
-        from_before, from_after = (here - before) * dt_here, (here - after) * dt_here
-        near, far = np.hypot(*from_before), np.hypot(*from_after)
-        limit = np.maximum(_least_m(dt_here), np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
-        same = np.sum(from_before * from_after, axis=0) > near * far / 2
-        error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
-        goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
-        # who is struck has another speed afterwards
-        goes_on &= (
-            np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
-        )
-        rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
+    s, e = sigma[1:-2], error[1:-2]
+    from_before, from_after = (here - before) * dt_here, (here - after) * dt_here
+    near, far = np.hypot(*from_before), np.hypot(*from_after)
+    limit = np.maximum(_least_m(dt_here), np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
+    same = np.sum(from_before * from_after, axis=0) > near * far / 2
+    error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
+    goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
+    # who is struck has another speed afterwards
+    goes_on &= np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
+    rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     found[rows] = found[rows + 1] = True
     return found
 

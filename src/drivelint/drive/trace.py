@@ -190,6 +190,16 @@ class States:
     def __len__(self) -> int:
         return len(self.t_ns)
 
+    @property
+    def place(self) -> Floats:
+        """The places x and y (2, n) in metres."""
+        return np.stack([self.numbers["x_m"], self.numbers["y_m"]])
+
+    @property
+    def velocity(self) -> Floats:
+        """The velocities along x and y (2, n) in m/s."""
+        return np.stack([self.numbers["vx_mps"], self.numbers["vy_mps"]])
+
     def take(self, rows: Indices | Mask) -> States:
         """Return the chosen rows (indices or a mask), ids unchanged."""
         return States(

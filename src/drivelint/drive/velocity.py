@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.order import steps_between, time_derivative
+from drivelint.drive.order import steps_between, sums_until, time_derivative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,49 +34,41 @@ LEAST_NOISE_SAMPLES: Final = 8
 
 
 class DerivedVelocity(NamedTuple):
-    """Velocity components (n) in m/s, NaN where not known; `filtered` (n): the filter was used, or noise left the velocity unknown."""
+    """Velocities (2, n) in m/s, NaN where not known; `filtered` (n): the filter was used, or noise left the velocity unknown."""
 
-    vx: Floats
-    vy: Floats
+    v_mps: Floats
     filtered: Mask
 
 
-def derive_velocities(t_ns: Times, actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps) -> DerivedVelocity:
-    """Derive velocities from positions (n, in order, metres; `actor`: which one, 0..)."""
-    vx, vy = time_derivative(x, step), time_derivative(y, step)
-    filtered = np.zeros(len(x), np.bool_)
-    placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps) -> DerivedVelocity:
+    """Derive velocities from positions (2, n), in order, metres; `actor`: which one, 0.."""
+    v = time_derivative(place, step)
+    filtered = np.zeros(len(t_ns), np.bool_)
+    placed = np.flatnonzero(np.isfinite(place).all(axis=0))
     if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
-        return DerivedVelocity(vx, vy, filtered)
+        return DerivedVelocity(v, filtered)
     # a filter needs no sample at every step: over a hole of one it goes on
     of = steps_between(t_ns[placed], actor[placed], step.period_ns)
-    found = _filtered(t_ns[placed], actor[placed], x[placed], y[placed], of, (vx[placed], vy[placed]))
-    vx[placed], vy[placed], filtered[placed] = found
-    return DerivedVelocity(vx, vy, filtered)
+    v[:, placed], filtered[placed] = _filtered(t_ns[placed], actor[placed], place[:, placed], of, v[:, placed])
+    return DerivedVelocity(v, filtered)
 
 
-def _filtered(  # noqa: PLR0917
-    t_ns: Times, actor: NDArray[np.int32], x: Floats, y: Floats, step: Steps, central: tuple[Floats, Floats]
-) -> DerivedVelocity:
-    """Return the velocities (n) of samples that all have a place; `central`: those by central differences."""
-    vx, vy = central
-    filtered = np.zeros(len(x), np.bool_)
-    runs = Tracklets.from_samples(t_ns, x, y, step)
-    sigma = sample_noise(x, y, runs, actor, unknown=0.0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
-        vx, vy = np.where(known, vx, np.nan), np.where(known, vy, np.nan)
-        for width in HALF_WIDTHS_S:
-            if known.all():
-                break
-            wx, wy, error = runs.slopes(x, y, width, sigma)
-            now = ~known & (error <= LARGEST_ERROR_MPS)
-            vx, vy, known, filtered = np.where(now, wx, vx), np.where(now, wy, vy), known | now, filtered | now
-        # the widest tells who stands, at the ends of a track by one side alone
-        wx, wy, error = runs.slopes(x, y, HALF_WIDTHS_S[-1], sigma, both_sides=False)
-        stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wx) <= error) & (np.abs(wy) <= error)
-    filtered |= ~known & ~stands
-    return DerivedVelocity(np.where(stands, 0.0, vx), np.where(stands, 0.0, vy), filtered)
+def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central: Floats) -> DerivedVelocity:
+    """Return the velocities (2, n) of samples that all have a place; `central`: those by central differences."""
+    runs = Tracklets.from_samples(t_ns, place, step)
+    sigma = sample_noise(place, runs, actor, unknown=0.0)
+    known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
+    v, filtered = np.where(known, central, np.nan), np.zeros(len(t_ns), np.bool_)
+    for width in HALF_WIDTHS_S:
+        if known.all():
+            break
+        wide, error = runs.slopes(place, width, sigma)
+        now = ~known & (error <= LARGEST_ERROR_MPS)
+        v, known, filtered = np.where(now, wide, v), known | now, filtered | now
+    # the widest tells who stands, at the ends of a track by one side alone
+    wide, error = runs.slopes(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
+    stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
+    return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~known & ~stands))
 
 
 class Tracklets(NamedTuple):
@@ -88,9 +80,9 @@ class Tracklets(NamedTuple):
     t_s: Floats
 
     @classmethod
-    def from_samples(cls, t_ns: Times, x: Floats, y: Floats, step: Steps) -> Tracklets:
-        """Part the states (n, in order) where there is a hole, or no place."""
-        usable = np.isfinite(x) & np.isfinite(y)
+    def from_samples(cls, t_ns: Times, place: Floats, step: Steps) -> Tracklets:
+        """Part the states (n, in order) where there is a hole, or no place (2, n)."""
+        usable: Mask = np.logical_and.reduce(np.isfinite(place))
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
         of = np.repeat(np.arange(len(starts)), np.diff(np.r_[starts, len(t_ns)]))
         first = starts[of]
@@ -99,10 +91,8 @@ class Tracklets(NamedTuple):
         key = since + of.astype(np.int64) * (2 * int(since.max(initial=0)) + 4_000_000_000)
         return cls(first, last, key, since.astype(np.float64) * 1e-9)
 
-    def slopes(
-        self, x: Floats, y: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True
-    ) -> tuple[Floats, Floats, Floats]:
-        """Return slopes over the samples within `width_s` (`both_sides`: as far to one as to the other), and three standard errors."""
+    def slopes(self, place: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True) -> tuple[Floats, Floats]:
+        """Return slopes (2, n) over samples within `width_s` (`both_sides`: as far to one as to the other), and three standard errors."""
         to_edge = np.minimum(self.t_s - self.t_s[self.first], self.t_s[self.last] - self.t_s)
         half = np.round(np.minimum(width_s, to_edge if both_sides else width_s) * 1e9).astype(np.int64) + 1_000_000
         low = np.maximum(np.searchsorted(self.key, self.key - half, side="left"), self.first)
@@ -110,22 +100,21 @@ class Tracklets(NamedTuple):
         n = (end - low).astype(np.float64)
 
         def over(values: Floats) -> Floats:
-            sums = np.r_[0.0, np.cumsum(values)]
-            found: Floats = sums[end] - sums[low]
-            return found
+            sums = sums_until(values)
+            return sums.take(end, axis=-1) - sums.take(low, axis=-1)
 
         # from the run's own begin, so that the sums keep their digits
-        t, px, py = self.t_s, np.nan_to_num(x - x[self.first]), np.nan_to_num(y - y[self.first])
+        t, moved = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
         mean_t = over(t) / n
         spread = over(t * t) - n * mean_t * mean_t
         spread = np.where(spread > 1e-9, spread, np.nan)
-        wx, wy = ((over(t * p) - mean_t * over(p)) / spread for p in (px, py))
-        return wx, wy, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
+        slopes = (over(t * moved) - mean_t * over(moved)) / spread
+        return slopes, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
 
 
-def sample_noise(x: Floats, y: Floats, runs: Tracklets, actor: NDArray[np.int32], *, unknown: float = np.inf) -> Floats:
+def sample_noise(place: Floats, runs: Tracklets, actor: NDArray[np.int32], *, unknown: float = np.inf) -> Floats:
     """Return the standard deviation of the noise of each sample's place (m); `unknown` where its actor has too few samples."""
-    sigma = np.maximum(position_noise(x, runs, actor), position_noise(y, runs, actor))
+    sigma = np.maximum(*(position_noise(values, runs, actor) for values in place))
     sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = unknown
     return sigma[actor]
 
@@ -138,14 +127,11 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     """
     n_actors = int(actor.max(initial=-1)) + 1
     found = np.zeros(n_actors)
-    if len(values) < LEAST_NOISE_SAMPLES:
-        return found
     t = runs.t_s
     inner = np.arange(1, len(values) - 1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
-        beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
-        twice = np.abs(np.diff(beside))  # of two tracks where these meet: not finite, and not used
+    share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
+    beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
+    twice = np.abs(np.diff(beside))  # of two tracks where these meet: not finite, and not used
     whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
+from drivelint.arrays import floats
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.order import wrapped
 from drivelint.drive.trace import QualityFinding
@@ -17,8 +18,7 @@ from drivelint.errors import MapError
 from drivelint.road import geo_reference
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.drive.trace import Trace
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
@@ -42,19 +42,20 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     if not own or not theirs or _is_said_by_the_user(environment):
         return trace
     states = trace.tables["actor_state"]
-    columns = {name: _floats(states, name) for name in states.column_names if pa.types.is_floating(states[name].type)}
+    columns = {c: floats(states[c]).copy() for c in states.column_names if pa.types.is_floating(states[c].type)}
     xy = np.stack([columns["x_m"], columns["y_m"]], axis=1)
     placed = np.isfinite(xy).all(axis=1)
     if not placed.any():
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
     turn, stretch = _similarity(own, theirs, low, high)
-    there, turns = _moved(own, theirs, xy[placed])
+    # what lies a metre beside a place tells by how much a heading turns there
+    there, beside = np.split(_through(own, theirs, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2)
     now = replace(trace, geo_reference=theirs.reference, geo_offset=(theirs.x_m, theirs.y_m, theirs.yaw_rad))
     if np.abs(there - xy[placed]).max() < SAME_M:
         return now
     angle = np.full(len(xy), turn)
-    angle[placed] = turns
+    angle[placed] = np.arctan2(*(beside - there).T[::-1])
     columns["x_m"][placed], columns["y_m"][placed] = there.T
     columns["yaw_rad"] = wrapped(columns["yaw_rad"] + angle)
     for x, y in (("vx_mps", "vy_mps"), ("ax_mps2", "ay_mps2")):
@@ -76,9 +77,7 @@ def _is_said_by_the_user(environment: MapTables) -> bool:
     return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_tangent_plane(row["geo_reference"]))
 
 
-def _similarity(
-    own: GeoFrame, theirs: GeoFrame, low: NDArray[np.float64], high: NDArray[np.float64]
-) -> tuple[float, float]:
+def _similarity(own: GeoFrame, theirs: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
     """Return turn (radians) and stretch in the middle of an area. Errors: `MapError` where lengths or shapes in it are not kept."""
     at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
     ends = np.concatenate([at, at + np.array([STEP_M, 0.0]), at + np.array([0.0, STEP_M])])
@@ -94,22 +93,10 @@ def _similarity(
     return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / STEP_M)
 
 
-def _moved(own: GeoFrame, theirs: GeoFrame, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return places in the other frame, and by how much a heading turns there (radians)."""
-    there, beside = np.split(_through(own, theirs, np.concatenate([xy, xy + np.array([1.0, 0.0])])), 2)
-    return there, np.arctan2(*(beside - there).T[::-1])
-
-
-def _through(own: GeoFrame, theirs: GeoFrame, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+def _through(own: GeoFrame, theirs: GeoFrame, xy: Floats) -> Floats:
     return theirs.unproject(geo_reference.transform(own.project(xy), own.reference, theirs.reference))
 
 
-def _turned(
-    x: NDArray[np.float64], y: NDArray[np.float64], angle: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
     cos, sin = np.cos(angle), np.sin(angle)
     return x * cos - y * sin, x * sin + y * cos
-
-
-def _floats(table: pa.Table, column: str) -> NDArray[np.float64]:
-    return np.array(table[column].to_numpy(zero_copy_only=False), np.float64)

@@ -51,16 +51,9 @@ def frame_of_map(environment: MapTables) -> GeoFrame | None:
     return own.after_shift(row["offset_x_m"], row["offset_y_m"])
 
 
-def place_drives(con: duckdb.DuckDBPyConnection, ids: Sequence[str]) -> None:
-    """Set longitude and latitude of these drives in `data_log`, which has their projection."""
-    _place(con, ids, table="data_log", key="drive_id", places=statement("earth/places_of_drives"))
-
-
-def place_findings(con: duckdb.DuckDBPyConnection, ids: Sequence[str]) -> None:
-    """Set longitude and latitude of the findings of these drives that have none yet."""
-    _place(con, ids, table="finding", key="rowid", places=statement("earth/places_of_findings"))
-
-
-def _place(con: duckdb.DuckDBPyConnection, ids: Sequence[str], **rows: str) -> None:
+def place_rows(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:
+    """Set longitude and latitude of these drives: in `data_log`, which has their projection, or of each `finding` without any."""
+    key, places = ("drive_id", "places_of_drives") if table == "data_log" else ("rowid", "places_of_findings")
     if ids:
-        con.execute(statement("earth/position", **rows), {"ids": list(ids)})
+        position = statement("earth/position", table=table, key=key, places=statement(f"earth/{places}"))
+        con.execute(position, {"ids": list(ids)})

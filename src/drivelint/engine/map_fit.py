@@ -8,10 +8,13 @@ import numpy as np
 import pyarrow.compute as pc
 import shapely
 
+from drivelint.road.driving_side import opposite_side
+
 if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Indices, Mask
     from drivelint.road.map_reader import MapTables
 
 SIDE_CHECK_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
@@ -37,8 +40,8 @@ class OneWayLanes(NamedTuple):
 class LaneHeadings(NamedTuple):
     """For moving states on exactly one one-way lane: whether each heads along the lane, and the lane."""
 
-    agree: NDArray[np.bool_]
-    lane: NDArray[np.intp]
+    agree: Mask
+    lane: Indices
 
 
 def one_way_lanes(environment: MapTables) -> OneWayLanes:
@@ -56,9 +59,7 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
     )
 
 
-def compare_headings(
-    lanes: OneWayLanes, x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], most: int
-) -> LaneHeadings:
+def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, most: int) -> LaneHeadings:
     """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
 
     Of them `most` are looked at, evenly spread.
@@ -71,9 +72,7 @@ def compare_headings(
     state, lane = lanes.areas.query(points, predicate="intersects")
     single = np.bincount(state, minlength=len(chosen))[state] == 1
     state, lane = state[single], lane[single]
-    line = lanes.lines[lane]
-    direction = _direction(line, shapely.line_locate_point(line, points[state]))
-    return LaneHeadings(np.cos(yaw_rad[chosen][state] - direction) > 0, lane)
+    return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading(lanes.lines[lane], points[state])) > 0, lane)
 
 
 def vote_handedness(handedness: str, seen: LaneHeadings) -> str | None:
@@ -84,7 +83,7 @@ def vote_handedness(handedness: str, seen: LaneHeadings) -> str | None:
     if agree >= AGREEMENT_SHARE:
         return handedness
     if agree <= 1 - AGREEMENT_SHARE:
-        return "lht" if handedness == "rht" else "rht"
+        return opposite_side(handedness)
     return None
 
 
@@ -104,21 +103,18 @@ def reversed_road(lanes: OneWayLanes, seen: LaneHeadings) -> str | None:
     often = lane[counts >= LEAST_REVERSED_EACH_WAY]
     one, other = (often[k] for k in np.triu_indices(len(often), 1))
     near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
-    facing = np.cos(_heading(lanes.lines[one], near, 0) - _heading(lanes.lines[other], near, -1)) < -FACING_COSINE
+    heading, back = (_heading(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((one, 0), (other, -1)))
+    facing = np.cos(heading - back) < -FACING_COSINE
     found = facing & (shapely.length(near) < BESIDE_M)
     return min((str(lanes.road[k]) for k in one[found]), default=None)
 
 
-def _heading(line: NDArray[np.object_], joins: NDArray[np.object_], end: int) -> NDArray[np.float64]:
-    """Return the heading (rad) of each line where the first (0) or last (-1) point of a join lies on it."""
-    at = shapely.line_locate_point(line, shapely.get_point(joins, end))
-    return _direction(line, at)
-
-
-def _direction(line: NDArray[np.object_], at: NDArray[np.float64]) -> NDArray[np.float64]:
+def _heading(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
+    """Return the heading (rad) of each line beside a point."""
+    at = shapely.line_locate_point(line, points)
     ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
     behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
-    found: NDArray[np.float64] = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
+    found: Floats = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
     return found
 
 
@@ -129,7 +125,7 @@ def lane_areas(environment: MapTables) -> shapely.STRtree:
     return shapely.STRtree(areas)
 
 
-def count_on_map(lanes: shapely.STRtree, x_m: NDArray[np.float64], y_m: NDArray[np.float64]) -> tuple[int, int]:
+def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int, int]:
     """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
 
     A few do where one is found; before it is said that there is none, `MOST_POSITIONS` are looked at.
@@ -162,5 +158,5 @@ def _shapes(environment: MapTables, wanted: pa.ChunkedArray) -> tuple[NDArray[np
     return np.array([shapely.Polygon(ring) for ring in rings], dtype=object), line
 
 
-def _xy(points: object, x: str, y: str) -> NDArray[np.float64]:
-    return np.column_stack([points[x].to_numpy(), points[y].to_numpy()])  # type: ignore[index]
+def _xy(points: pa.Table, x: str, y: str) -> Floats:
+    return np.column_stack([points[x].to_numpy(), points[y].to_numpy()])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
@@ -35,7 +36,7 @@ class MapFolder:
         if not self._files:
             raise MapError(f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad or Lanelet2)")
         self._manifest = self._read_manifest()
-        self._sources: dict[str, MapSource] = {}
+        self._source = cache(lambda name: read_source(self._files[name]))
 
     def for_log(self, log: Path) -> MapSource | None:
         """Return the map that the manifest gives the log, else one of its name or its folder's name; None: neither."""
@@ -60,11 +61,6 @@ class MapFolder:
     def sources(self) -> Sequence[MapSource]:
         """Return every map, in order of name."""
         return [self._source(name) for name in self._files]
-
-    def _source(self, name: str) -> MapSource:
-        if name not in self._sources:
-            self._sources[name] = read_source(self._files[name])
-        return self._sources[name]
 
     def _read_manifest(self) -> list[tuple[str, str]]:
         file = self.folder / MANIFEST

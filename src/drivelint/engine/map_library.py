@@ -7,6 +7,7 @@ drive lies. A drive in the coordinates of another geo reference is moved into th
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     import shapely
 
     from drivelint.drive.trace import DriveInput, Trace
-    from drivelint.engine.map_fit import LaneHeadings, OneWayLanes
+    from drivelint.engine.map_fit import LaneHeadings
     from drivelint.road.map_reader import MapTables
 
 MOVING_MPS = 1.0
@@ -68,8 +69,8 @@ class MapLibrary:
         self._offset = offset
         self._handedness = handedness
         self._origin = origin
-        self._grounds: dict[str, shapely.STRtree] = {}
-        self._ways: dict[str, OneWayLanes] = {}
+        self._ground = cache(lane_areas)
+        self._lanes = cache(one_way_lanes)
         self._loaded: dict[tuple[str, tuple[float, float], str | None], MapTables] = {}
         self._unread: dict[Path, str] = {}
 
@@ -187,11 +188,6 @@ class MapLibrary:
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
         return compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
 
-    def _lanes(self, environment: MapTables) -> OneWayLanes:
-        if environment.environment_id not in self._ways:
-            self._ways[environment.environment_id] = one_way_lanes(environment)
-        return self._ways[environment.environment_id]
-
     def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource:
         """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
         fitting = []
@@ -216,11 +212,6 @@ class MapLibrary:
         raise MapError(
             f"{maps.folder}: {what} the place of {trace.path.name}{besides}: name its map in {maps.folder / MANIFEST}"
         )
-
-    def _ground(self, environment: MapTables) -> shapely.STRtree:
-        if environment.environment_id not in self._grounds:
-            self._grounds[environment.environment_id] = lane_areas(environment)
-        return self._grounds[environment.environment_id]
 
     def _load(self, source: MapSource, trace: Trace, voted_handedness: str | None) -> MapTables:
         offset = self._offset or trace.map_offset or (0.0, 0.0)

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.engine.batch import skipped_egos_by_part
 from drivelint.engine.derive import derive
-from drivelint.engine.earth import place_drives, place_findings
+from drivelint.engine.earth import place_rows
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
 from drivelint.errors import RuleError
@@ -106,7 +106,7 @@ class JudgingSession:
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)
-            place_drives(self._con, on_earth)
+            place_rows(self._con, on_earth, "data_log")
             todo = skipped_egos_by_part(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
@@ -118,7 +118,7 @@ class JudgingSession:
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
-                    place_findings(self._con, on_earth)
+                    place_rows(self._con, on_earth, "finding")
                     for observer in self._observers:
                         observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
                 except duckdb.OutOfMemoryException:

@@ -80,7 +80,7 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
         if place is not None:
             road = {
                 name: _rows(con, name, "environment_id", place)
-                for name in store.arrow_schemas("map")
+                for name in store.column_comments("map")
                 if name not in _OTHER
             }
             hand = road["environment"].to_pylist()[0]

@@ -8,8 +8,9 @@ import pyarrow as pa
 
 from drivelint.drive.trace import LOSS_CHECKS
 from drivelint.reasons.reason_table import make_reason_table
-from drivelint.result.schemas import arrow_schema, conform
+from drivelint.result.schemas import conform
 from drivelint.sql.statements import statement
+from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,7 +48,7 @@ def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.
 
 def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
     """Return the row of the table `drive` for a log that could not be judged at all, and why."""
-    schema = arrow_schema("drive")
+    schema = arrow_schemas()["drive"]
     row = dict.fromkeys(schema.names)
     row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged")}
     row |= dict.fromkeys(("n_states", "n_steps", "n_egos"), 0)
@@ -59,7 +60,7 @@ def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | Non
 def rule_table(rules: Sequence[Rule], params: Mapping[str, Mapping[str, object]], profiles: Sequence[str]) -> pa.Table:
     """Return one row of the table `rule` per rule, with the parameters that were used, sorted by id."""
     rows = [_rule_row(rule, params.get(rule.id, {}), profiles) for rule in sorted(rules, key=lambda r: r.id)]
-    return pa.Table.from_pylist(rows, schema=arrow_schema("rule"))
+    return pa.Table.from_pylist(rows, schema=arrow_schemas()["rule"])
 
 
 def _rule_row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -> dict[str, object]:

@@ -5,7 +5,7 @@ Scenes of findings and near misses with lanes and danger spaces; tracks; overtak
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -95,18 +95,10 @@ def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
 def _rings(edges: pa.Table) -> pa.Table:
     """Return a danger space per ring: its edges' left points forth and right points back, without those that add nothing."""
     _, first, ring = np.unique(edges["ring"].to_numpy(), return_index=True, return_inverse=True)
-    sides: list[NDArray[np.object_]] = []
-    for side in ("l", "r"):
-        points = np.column_stack([edges[f"{side}x_m"], edges[f"{side}y_m"]])
-        lines = np.asarray(shapely.simplify(shapely.linestrings(points, indices=ring), SIMPLIFY_TOLERANCE_M))
-        sides.append(lines if side == "l" else np.asarray(shapely.reverse(lines)))
-    points, index = shapely.get_coordinates(np.column_stack(sides).ravel(), return_index=True)
-    x, y = np.round(points, 2).T
-    offsets = pa.array(np.searchsorted(index // 2, np.arange(len(first) + 1)), pa.int32())
+    left, right = (_simplified(edges[f"{side}x_m"], edges[f"{side}y_m"], ring) for side in "lr")
+    x, y = _coordinates(np.column_stack([left, shapely.reverse(right)]), len(first))
     rows = edges.select(["drive_id", "ego_id", "t_ns", "actor_id", "length_m"]).take(pa.array(first))
-    for name, values in (("x_m", x), ("y_m", y)):
-        rows = rows.append_column(name, pa.ListArray.from_arrays(offsets, pa.array(values)))
-    return rows
+    return rows.append_column("x_m", x).append_column("y_m", y)
 
 
 def _lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
@@ -116,16 +108,21 @@ def _lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
     if lanes.num_rows:
         points = con.execute(statement("evidence/lane_point")).fetchnumpy()
         for side in ("left", "right"):
-            for axis, values in zip("xy", _simplified(points, side, lanes.num_rows), strict=True):
+            bounds = _simplified(points[f"{side}_x_m"], points[f"{side}_y_m"], points["lane"].astype(np.intp))
+            for axis, values in zip("xy", _coordinates(bounds[:, None], lanes.num_rows), strict=True):
                 lanes = lanes.append_column(f"{side}_{axis}_m", values)
         store.insert(con, "lane_shape", lanes)
 
 
-def _simplified(points: dict[str, NDArray[np.float64]], side: str, n: int) -> tuple[pa.ListArray, pa.ListArray]:
-    """Return the x and y of `n` bounds as lists in centimetres, with only the points that keep them true."""
-    xy = np.column_stack([points[f"{side}_x_m"], points[f"{side}_y_m"]])
-    lines = shapely.linestrings(xy, indices=points["lane"].astype(np.intp))
-    kept, index = shapely.get_coordinates(shapely.simplify(lines, SIMPLIFY_TOLERANCE_M), return_index=True)
-    offsets = pa.array(np.searchsorted(index, np.arange(n + 1)), pa.int32())
-    x, y = np.round(kept, 2).T
+def _simplified(x_m: Any, y_m: Any, line: NDArray[np.intp]) -> NDArray[np.object_]:
+    """Return lines, given as their points and which line each is of, with only the points that keep them true."""
+    lines = shapely.linestrings(np.column_stack([x_m, y_m]), indices=line)
+    return np.asarray(shapely.simplify(lines, SIMPLIFY_TOLERANCE_M))
+
+
+def _coordinates(lines: NDArray[np.object_], n: int) -> tuple[pa.ListArray, pa.ListArray]:
+    """Return the x and y, in centimetres, of `n` shapes of one or more lines each (m, k), as a list per shape."""
+    points, index = shapely.get_coordinates(lines.ravel(), return_index=True)
+    offsets = pa.array(np.searchsorted(index // lines.shape[1], np.arange(n + 1)), pa.int32())
+    x, y = np.round(points, 2).T
     return pa.ListArray.from_arrays(offsets, pa.array(x)), pa.ListArray.from_arrays(offsets, pa.array(y))

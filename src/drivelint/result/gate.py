@@ -129,11 +129,8 @@ class Gate:
     @cached_property
     def _standing(self) -> dict[str, ComparedFinding]:
         entries = self.baseline.entries if self.baseline else ()
-        found: dict[str, ComparedFinding] = {}
-        for entry in entries:
-            if entry.standing in {"new", "changed", "unchanged"}:
-                found.setdefault(entry.finding_id, entry)
-        return found
+        # of those with one id the first counts
+        return {e.finding_id: e for e in reversed(entries) if e.standing in {"new", "changed", "unchanged"}}
 
     def compared(self, finding_id: str) -> ComparedFinding | None:
         """Return the finding as compared with the baseline; None without one."""

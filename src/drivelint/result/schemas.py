@@ -1,14 +1,11 @@
-"""Gives the output tables' columns as Arrow schemas, read from `verdict.sql`, `output.sql` and `evidence.sql`."""
+"""The output tables: the files in which they stand, and their columns, which are those of `schemas/`."""
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, Final
 
-import duckdb
-
 from drivelint.errors import DriveLintError
-from drivelint.resources import folder
+from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -32,21 +29,12 @@ TABLE_OF_FILE: Final = {
 """Stem of the Parquet file -> table of the schema."""
 
 
-@cache
-def arrow_schema(table: str) -> pa.Schema:
-    """Return the columns of a schema table in order, as DuckDB hands them over to Arrow."""
-    with duckdb.connect() as con:
-        for name in ("verdict", "output", "evidence"):
-            con.execute((folder("schemas") / f"{name}.sql").read_text(encoding="utf-8"))
-        return con.table(table).limit(0).to_arrow_table().schema
-
-
 def conform(rows: pa.Table, table: str) -> pa.Table:
     """Return `rows` with exactly the columns and types of a schema table, in its order and in one chunk.
 
     Errors: `DriveLintError` naming the columns that are missing or in excess.
     """
-    schema = arrow_schema(table)
+    schema = arrow_schemas()[table]
     missing = sorted(set(schema.names) - set(rows.column_names))
     excess = sorted(set(rows.column_names) - set(schema.names))
     if missing or excess:
@@ -58,4 +46,4 @@ def conform(rows: pa.Table, table: str) -> pa.Table:
 
 def empty_table(table: str) -> pa.Table:
     """Return a schema table without rows."""
-    return arrow_schema(table).empty_table()
+    return arrow_schemas()[table].empty_table()

@@ -89,11 +89,9 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, si
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
     probe, other = tree.query(shapely.linestrings(*across), predicate="intersects")
-    elsewhere = pieces.lane[other] != pieces.lane[chosen[probe]]
-    probe, other = probe[elsewhere], other[elsewhere]
     along = ux[probe] * pieces.ux[other] + uy[probe] * pieces.uy[other]
-    parallel = np.abs(along) > _ALONG
-    probe, other, along = probe[parallel], other[parallel], along[parallel]
+    beside = (pieces.lane[other] != pieces.lane[chosen[probe]]) & (np.abs(along) > _ALONG)
+    probe, other, along = probe[beside], other[beside], along[beside]
     # where the line across meets the other's middle
     other_x, other_y, other_z, other_half = pieces.begin[other].T
     dx, dy = other_x - x[probe], other_y - y[probe]

@@ -38,7 +38,7 @@ class MapOptions:
     origin: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MapTables:
     """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered.
 

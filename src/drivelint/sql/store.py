@@ -13,6 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
+from drivelint.sql.statements import texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -30,7 +31,6 @@ _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
-_TYPE = re.compile(r"^    (\w+) ([A-Z]+)(\[\])?", re.MULTILINE)
 
 
 def quoted(text: object) -> str:
@@ -146,36 +146,25 @@ def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
 
 
 @cache
-def arrow_schemas(file: str) -> dict[str, pa.Schema]:
-    """Return table -> Arrow schema for every table of `schemas/<file>.sql`, in file order.
+def arrow_schemas() -> dict[str, pa.Schema]:
+    """Return table -> Arrow schema for every table of `schemas/`, as DuckDB hands its rows over.
 
     Geometries are left out: the database makes them of the other columns.
     """
-    import pyarrow as pa
-
-    types = {
-        "VARCHAR": pa.string(), "DOUBLE": pa.float64(), "BOOLEAN": pa.bool_(), "INTEGER": pa.int32(), "BIGINT": pa.int64(),
-    }  # fmt: skip
-    return {
-        name: pa.schema(
-            [
-                (c, pa.list_(types[kind]) if many else types[kind])
-                for c, kind, many in _TYPE.findall(body)
-                if kind != "GEOMETRY"
-            ]
-        )
-        for name, body in _TABLE.findall(_declarations(file))
-    }
+    with duckdb.connect() as con:
+        create_tables(con)
+        empty = {name: f"SELECT COLUMNS(lambda c: c <> 'geom') FROM {name} LIMIT 0" for name in column_comments()}
+        return {name: con.execute(sql).to_arrow_table().schema for name, sql in empty.items()}
 
 
-def owned_table(file: str, name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
-    """Return a table of `schemas/<file>.sql` from rows, or from columns, that lack its first column: whose drive or map it is.
+def owned_table(name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
+    """Return a table of `schemas/` from rows, or from columns, that lack its first column: whose drive or map it is.
 
     Errors: `KeyError` for any other column that is missing.
     """
     import pyarrow as pa
 
-    first, *others = arrow_schemas(file)[name]
+    first, *others = arrow_schemas()[name]
     columns = {
         f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in others
     }
@@ -243,11 +232,9 @@ def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
     return [int(no) for (no,) in con.execute(_CODES).fetchall()]
 
 
-@cache
 def macro_definitions() -> str:
     """Return the text of `queries/macros`."""
-    files = sorted((folder("queries") / "macros").glob("*.sql"))
-    return "\n".join(file.read_text(encoding="utf-8") for file in files)
+    return "\n".join(texts("macros").values())
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:

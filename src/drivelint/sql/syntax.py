@@ -45,9 +45,8 @@ def parse_select(sql: str, where: str) -> Node:
 
 def tables_read(tree: Node) -> Names:
     """Return the tables that a SELECT reads; the name of a CTE in scope is not a table."""
-    found: set[str] = set()
-    _read(tree, _NONE, found)
-    return frozenset(found)
+    sources = ((node, ctes) for node, ctes in walk(tree) if node.get("type") == "BASE_TABLE")
+    return frozenset(_folded(node["table_name"]) for node, ctes in sources if not _is_cte(node, ctes))
 
 
 def tables_needing_rows(tree: Node) -> Names:
@@ -55,22 +54,22 @@ def tables_needing_rows(tree: Node) -> Names:
     return _query(tree, {}, beside=False)
 
 
-def _read(part: Any, ctes: Names, found: set[str]) -> None:
-    """`ctes`: the names of the CTEs in sight."""
-    if isinstance(part, list):
-        for each in part:
-            _read(each, ctes, found)
-    elif isinstance(part, dict):
-        for entry in _ctes(part):
-            _read(entry["value"]["query"], ctes, found)
-            ctes |= {_folded(entry["key"])}
-        if part.get("type") == "RECURSIVE_CTE_NODE":
-            ctes |= {_folded(part["cte_name"])}
-        if part.get("type") == "BASE_TABLE" and not _is_cte(part, ctes):
-            found.add(_folded(part["table_name"]))
-        for key, value in part.items():
-            if key != "cte_map" and isinstance(value, (dict, list)):
-                _read(value, ctes, found)
+def walk(root: Any) -> Iterator[tuple[Node, Names]]:
+    """Yield every node of a tree with the names of the CTEs in sight of it, without recursion: an expression may be deep."""
+    todo = [(root, _NONE)]
+    while todo:
+        part, ctes = todo.pop()
+        if isinstance(part, list):
+            todo.extend((item, ctes) for item in reversed(part))
+        elif isinstance(part, dict):
+            yield part, ctes
+            # a CTE sees those before it; only its own SELECT, and what is inside, sees it
+            for entry in _ctes(part):
+                todo.append((entry["value"], ctes))
+                ctes |= {_folded(entry["key"])}
+            if part.get("type") == "RECURSIVE_CTE_NODE":
+                ctes |= {_folded(part["cte_name"])}
+            todo.extend((part[key], ctes) for key in reversed(part) if key != "cte_map")
 
 
 def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
@@ -115,10 +114,15 @@ def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
         return beside or named.issuperset(columns)
     calls = {
         _folded(each["function_name"])
-        for each in _nodes([items, node["qualify"], node["modifiers"]])
+        for each, _ in walk([items, node["qualify"], node["modifiers"]])
         if each.get("class") == "FUNCTION"
     }
     return node["having"] is not None or any(name in _aggregates() or name.endswith("_agg") for name in calls)
+
+
+def column_name(item: Node) -> str:
+    """Return the name of a column of a SELECT, in lower case; '' where it has none."""
+    return _folded(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
 def _is_cte(table: Node, ctes: Container[str]) -> bool:
@@ -133,13 +137,6 @@ def _ctes(node: Node) -> list[Node]:
 def _folded(name: str) -> str:
     """Return a name as DuckDB compares it."""
     return name.lower()
-
-
-def _nodes(tree: Any) -> Iterator[Node]:
-    if isinstance(tree, dict):
-        yield tree
-    for child in tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ():
-        yield from _nodes(child)
 
 
 @cache

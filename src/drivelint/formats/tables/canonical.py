@@ -184,7 +184,7 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()
     table = parquet.table(path)
     _need(path, table, required)
     found = {}
-    for field in (arrow_schemas("model")[path.stem].field(name) for name in (*required, *optional)):
+    for field in (arrow_schemas()[path.stem].field(name) for name in (*required, *optional)):
         if field.name in table.schema.names:
             column = _column(path, table, field.name, field.type)
             words = _WORDS.get(field.name)
