@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
     from drivelint.formats.film.mapping import VideoMapping
     from drivelint.formats.protobuf.descriptors import FieldTree
 
@@ -36,7 +37,7 @@ class Sightings(NamedTuple):
     """Frames that exist (numbers, rising), and per actor its distance ahead in each, NaN where it was not detected."""
 
     frames: NDArray[np.int64]
-    ahead_m: list[NDArray[np.float64]]
+    ahead_m: list[Floats]
 
 
 def read(path: Path, film: VideoMapping) -> Sightings:
@@ -47,8 +48,8 @@ def read(path: Path, film: VideoMapping) -> Sightings:
         )
     if unsaid := [actor.id for actor in film.actor if actor.box is None]:
         raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of his detections")
-    times: list[NDArray[np.int64]] = []
-    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]] = []
+    times: list[Times] = []
+    boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
         for _, packets in message_batches(container, _kind):
@@ -75,8 +76,8 @@ def _sightings(
     path: Path,
     film: VideoMapping,
     focal_px: float,
-    t_ns: NDArray[np.int64],
-    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]],
+    t_ns: Times,
+    boxes: list[tuple[Times, list[str], Floats]],
 ) -> Sightings:
     """Bring times to frame numbers and widths to distances; of several boxes of one actor in a frame the nearest counts."""
     start = int(t_ns.min())
@@ -95,5 +96,5 @@ def _sightings(
     return Sightings(whole, ahead)
 
 
-def _frames(t_ns: NDArray[np.int64], start: int, film: VideoMapping) -> NDArray[np.int64]:
+def _frames(t_ns: Times, start: int, film: VideoMapping) -> NDArray[np.int64]:
     return np.rint((t_ns - start) / 1e9 * film.frames.rate_hz).astype(np.int64)

@@ -16,11 +16,8 @@ from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, Mark, Unbuild
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
-
-    Floats = NDArray[np.float64]
 
 _SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
 MAX_LINK_GAP_M = 5.0  # a lane that begins further away from where another ends does not follow it

@@ -19,11 +19,8 @@ from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, UnbuildableEr
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
-
-    Floats = NDArray[np.float64]
 
 _DRIVING, _NONDRIVING = 2, 3
 _CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from mcap.records import Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
     from drivelint.formats.osi.decode import FrameBatch
     from drivelint.formats.probe import Probe
 
@@ -253,7 +254,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
     )
 
 
-def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
+def _zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
     """Return the numbers of each batch, with 0 for coordinates that the log leaves out if it never writes a zero.
 
     Some writers leave zeros out, as proto3 does. One that writes zeros means by a coordinate without a value that it is not known.
@@ -266,7 +267,7 @@ def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
     ]
 
 
-def _clock(batches: list[FrameBatch], log_ns: NDArray[np.int64], findings: list[QualityFinding]) -> NDArray[np.int64]:
+def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFinding]) -> Times:
     """Return each frame's time: the messages' own where they all have one that runs, else the log's."""
     stamps = np.concatenate([batch.t_ns for batch in batches])
     timed = np.concatenate([batch.timed for batch in batches])
@@ -284,7 +285,7 @@ def _clock(batches: list[FrameBatch], log_ns: NDArray[np.int64], findings: list[
     return stamps
 
 
-def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[QualityFinding]) -> list[str]:
+def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
     """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
     said = Counter(host for host in hosts if host is not None)
     if not said:

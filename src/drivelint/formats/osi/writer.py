@@ -20,8 +20,7 @@ from drivelint.formats.protobuf.wire import nested
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes
     from drivelint.drive.trace import Trace
     from drivelint.road.map_reader import MapSource
 
@@ -112,7 +111,7 @@ def _objects(trace: Trace, numbers: dict[str, int]) -> pa.StructArray:
     return moving_objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
 
 
-def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> NDArray[np.int8]:
+def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
     found = pc.index_in(column, value_set=pa.array(words, pa.string()))
     return np.asarray(pc.fill_null(found, -1).to_numpy(), np.int8)
 

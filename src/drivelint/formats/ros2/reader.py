@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Times
     from drivelint.drive.trace import IngestOptions
     from drivelint.formats.ros2.cdr import Decoder, Table
 
@@ -83,7 +84,7 @@ class _Log:
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
-    def _part(self, kind: str, table: Table, log_ns: NDArray[np.int64]) -> Any:
+    def _part(self, kind: str, table: Table, log_ns: Times) -> Any:
         if kind == ros_ego.ODOMETRY:
             return ros_ego.odometry(table, log_ns, self._forward_m)
         if kind not in OBJECT_ROWS:
@@ -213,7 +214,7 @@ def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> R
     return rows.take(~nameless)
 
 
-def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[NDArray[np.int64], NDArray[Any]]]:
+def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
         source = log.one([kind], kind.split("/")[1], asked)
