@@ -21,7 +21,7 @@ from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, messag
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
-from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, reader_descriptor_set
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import listed
 
@@ -203,7 +203,7 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
     """Return the decoder of the kind of message in which objects with positions are found, and its name."""
     for name in (GROUND_TRUTH, SENSOR_VIEW):
-        decoder = Decoder(path, 1, name, reader_descriptor_set())
+        decoder = Decoder(path, 1, name, descriptor_set("read"))
         try:
             frames = decoder.frames(packets)
         except TraceError:

@@ -57,19 +57,9 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 
 @cache
-def descriptor_set() -> bytes:
-    """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
-    return _serialised("written")
-
-
-@cache
-def reader_descriptor_set() -> bytes:
-    """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
-    return _serialised("written", "read")
-
-
-def _serialised(*parts: str) -> bytes:
-    return descriptor_pb2.FileDescriptorSet(file=[_file(*parts)]).SerializeToString(deterministic=True)
+def descriptor_set(*more: str) -> bytes:
+    """Return the serialised `FileDescriptorSet` of what is written, for an MCAP schema record; with "read" of what is read, too."""
+    return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
 
 
 @cache
