@@ -13,8 +13,8 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
-from drivelint.formats.ros2 import types as ros_types
 from drivelint.formats.ros2.objects import HEADER, stamps
+from drivelint.formats.ros2.types import short_type_name
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,9 +53,7 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     for file in bag.mcap_files(path):
         container = Container(file)
         for _, packets in message_batches(container, _kind):
-            schema = container.schemas[packets[0].channel.schema_id]
-            types = ros_types.parse(file, schema.name, schema.data)
-            table = cdr.Decoder(file, schema.name, types, MESSAGE, _TREE).table(packets)
+            table = cdr.Decoder(file, container.schemas[packets[0].channel.schema_id], _TREE).table(packets)
             t_ns, _ = stamps(table, "header.stamp")
             items = table.children["detections"]
             ids = items.columns.get("id", items.columns.get("tracking_id"))
@@ -68,7 +66,7 @@ def read(path: Path, film: VideoMapping) -> Sightings:
 
 
 def _kind(channel: Channel, schema: Schema) -> str | None:
-    is_read = channel.message_encoding == "cdr" and ros_types.short_type_name(schema.name) == MESSAGE
+    is_read = channel.message_encoding == "cdr" and short_type_name(schema.name) == MESSAGE
     return MESSAGE if is_read else None
 
 

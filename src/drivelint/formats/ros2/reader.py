@@ -17,7 +17,6 @@ from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
-from drivelint.formats.ros2 import types as ros_types
 from drivelint.formats.ros2.merge import merge_ego
 from drivelint.formats.ros2.objects import OBJECT_ROWS, stamps
 from drivelint.formats.ros2.recorded_poses import (
@@ -28,6 +27,7 @@ from drivelint.formats.ros2.recorded_poses import (
     message_times,
     states_in_fixed_frame,
 )
+from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Sc
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
     if channel.message_encoding != "cdr":
         return None
-    kind = ros_types.message_kind(schema.name)
+    kind = message_kind(schema.name)
     if kind not in _FIELD_TREES:
         return None
     if channel.schema_id not in decoders:
@@ -127,9 +127,7 @@ def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
             f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
             "with message definitions"
         )
-    name = ros_types.short_type_name(schema.name)
-    types = ros_types.parse(path, schema.name, schema.data)
-    return cdr.Decoder(path, schema.name, types, name, _FIELD_TREES[kind])
+    return cdr.Decoder(path, schema, _FIELD_TREES[kind])
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
