@@ -71,11 +71,7 @@ def _kind(channel: Channel, schema: Schema) -> str | None:
 
 
 def _sightings(
-    path: Path,
-    film: VideoMapping,
-    focal_px: float,
-    t_ns: Times,
-    boxes: list[tuple[Times, list[str], Floats]],
+    path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
 ) -> Sightings:
     """Bring times to frame numbers and widths to distances; of several boxes of one actor in a frame the nearest counts."""
     start = int(t_ns.min())

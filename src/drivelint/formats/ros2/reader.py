@@ -14,9 +14,9 @@ from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
+from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.merge import merge_ego
 from drivelint.formats.ros2.objects import OBJECT_ROWS, stamps
 from drivelint.formats.ros2.recorded_poses import (
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Times
     from drivelint.drive.trace import IngestOptions
-    from drivelint.formats.ros2.cdr import Decoder, Table
+    from drivelint.formats.ros2.cdr import Table
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
@@ -111,23 +111,17 @@ class _Log:
 
 def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-    if channel.message_encoding != "cdr":
-        return None
     kind = message_kind(schema.name)
-    if kind not in _FIELD_TREES:
+    if channel.message_encoding != "cdr" or kind not in _FIELD_TREES:
         return None
     if channel.schema_id not in decoders:
-        decoders[channel.schema_id] = _decoder(path, schema, kind)
+        if schema.encoding != "ros2msg":
+            raise TraceError(
+                f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert "
+                "it with message definitions"
+            )
+        decoders[channel.schema_id] = Decoder(path, schema, _FIELD_TREES[kind])
     return kind
-
-
-def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
-    if schema.encoding != "ros2msg":
-        raise TraceError(
-            f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
-            "with message definitions"
-        )
-    return cdr.Decoder(path, schema, _FIELD_TREES[kind])
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
