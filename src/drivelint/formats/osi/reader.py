@@ -81,10 +81,11 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
             log_ns += [packet.log_time_ns for packet in packets]
         elif kind == OPEN_DRIVE:
             for packet in packets:
-                text, trouble = _map_text(container, packet)
-                lost += trouble
-                if text is not None:
+                text = _map_text(container, packet)
+                if isinstance(text, bytes):
                     maps.setdefault(text, packet.channel.topic)
+                else:
+                    lost.append(text)
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
@@ -111,8 +112,8 @@ def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema
     return schema.name if schema.name == OPEN_DRIVE else None
 
 
-def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
-    """Return the OpenDRIVE of a message, and why there is none."""
+def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
+    """Return the OpenDRIVE of a message, or why there is none."""
     types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
@@ -122,11 +123,9 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
     else:
         text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
-        message = (
-            f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
-        )
-        return None, (QualityFinding.unusable_map(message),)
-    return text if isinstance(text, bytes) else str(text).encode(), ()
+        where = f"topic {packet.channel.topic!r}, byte {packet.offset}"
+        return QualityFinding.unusable_map(f"the log's own map is not used: the one on {where}, {why}")
+    return text if isinstance(text, bytes) else str(text).encode()
 
 
 def _check_topics(container: Container, truths: list[str], topic: str | None) -> None:
