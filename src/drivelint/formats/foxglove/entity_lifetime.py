@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Indices, Mask, Times
     from drivelint.drive.trace import Severity
-    from drivelint.formats.coordinate_frames import Vectors
 
 MAX_PERSISTED: Final = 20_000_000
 """More states than this are not made up: nobody records so many road users that stand still."""
@@ -73,7 +72,9 @@ def _persisted(
     sorted_updates = updates.take(order)
     actor, t_ns, lifetime = actor[order], sorted_updates.t_ns, np.asarray(sorted_updates.lifetime_ns)
     box = np.concatenate([sorted_updates.place, sorted_updates.turn, sorted_updates.size], axis=1)
-    same, alike = actor[1:] == actor[:-1], _alike(box)
+    before, after = box[:-1], box[1:]
+    alike = ((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1)
+    same = actor[1:] == actor[:-1]
     follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
     # a lifetime of centuries would overflow
     gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
@@ -90,13 +91,6 @@ def _persisted(
     row = np.repeat(np.arange(n), count)
     step = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
     return order[row], grid_ns[first[row] + step], still[row]
-
-
-def _alike(box: Vectors) -> Mask:
-    """Say of each pair of neighbouring rows whether their boxes are the same."""
-    before, after = box[:-1], box[1:]
-    result: Mask = np.asarray(((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1))
-    return result
 
 
 def _deleted(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from mcap.records import Channel, Schema
+    from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
 
@@ -110,16 +111,14 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
     cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
     entities = entities.filter(pa.array(boxed))
     message = message[boxed]
-    names, which = distinct_texts(entities, "id")
-    frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
     scene.rows.append(
         recorded_poses(
             times(struct_field(entities, "timestamp")),
             (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
             log_ns=log_ns[message],
-            ids=np.array([name.encode() for name in names] or [b""])[which],
-            frames=np.array([name.encode() for name in frames] or [b""])[frame],
+            ids=_bytes(entities, "id"),
+            frames=_bytes(entities, "frame_id"),
             size=vectors(cubes, "size"),
             classes=_classes(entities),
             lifetime_ns=times(struct_field(entities, "lifetime"))[0],
@@ -135,6 +134,11 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
         every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
         whom = [None if all_ else names[i] for i, all_ in zip(which, every, strict=True)]
         scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
+
+
+def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
+    texts, which = distinct_texts(entities, name)
+    return np.array([text.encode() for text in texts] or [b""])[which]
 
 
 def _classes(entities: pa.Array) -> Codes:
@@ -153,11 +157,7 @@ def _classes(entities: pa.Array) -> Codes:
 
 
 def _recording(
-    path: Path,
-    topic: str,
-    scene: _Scene,
-    transforms: list[tuple[pa.Array, Times]],
-    findings: list[QualityFinding],
+    path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, Times]], findings: list[QualityFinding]
 ) -> Recording:
     rows = join_batches(scene.rows)
     named = rows.ids != b""
