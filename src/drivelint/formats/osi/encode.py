@@ -32,6 +32,13 @@ _TYPES: Final = {
 }  # fmt: skip
 _CLASSIFICATION: Final = "MovingObject.VehicleClassification"
 _LIGHTS: Final = f"{_CLASSIFICATION}.LightState"
+_LIGHT_FIELDS: Final = {
+    "indicator_state": ("indicator", INDICATORS, "IndicatorState", {w: name for name, w in INDICATOR_NAMES.items()}),
+    "brake_light_state": (
+        "brake_light", BRAKE_LIGHTS, "BrakeLightState", {w: name for name, w in BRAKE_LIGHT_NAMES.items()},
+    ),
+}  # fmt: skip
+"""Field -> its code, the words that the code indexes, their enumeration, and the name that each word has in it."""
 _BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
     "red": (("RED", "CONSTANT"),),
     "red_amber": (("RED", "CONSTANT"), ("YELLOW", "CONSTANT")),
@@ -77,17 +84,12 @@ def moving_objects(
         must = [rows for column, rows in known.items() if column not in _OPTIONAL]
         numbers = {name: pa.array(values[column], mask=~known[column]) for column, name in columns.items()}
         base[vector] = _struct(numbers, np.logical_and.reduce([np.logical_or.reduce([*known.values()]), *must]))
-    kinds, indicator, brake = (codes[name] for name in ("actor_class", "indicator", "brake_light"))
-    sides = _numbers(
-        indicator, INDICATORS, f"{_LIGHTS}.IndicatorState", {w: name for name, w in INDICATOR_NAMES.items()}
-    )
-    brakes = _numbers(
-        brake, BRAKE_LIGHTS, f"{_LIGHTS}.BrakeLightState", {w: name for name, w in BRAKE_LIGHT_NAMES.items()}
-    )
     lights = {
-        "indicator_state": pa.array(sides, mask=indicator < 0), "brake_light_state": pa.array(brakes, mask=brake < 0),
-    }  # fmt: skip
-    lit = (indicator >= 0) | (brake >= 0)
+        field: pa.array(_numbers(codes[code], words, f"{_LIGHTS}.{enum}", names), mask=codes[code] < 0)
+        for field, (code, words, enum, names) in _LIGHT_FIELDS.items()
+    }
+    lit = (codes["indicator"] >= 0) | (codes["brake_light"] >= 0)
+    kinds = codes["actor_class"]
     vehicle = {
         "type": _numbers(kinds, ACTOR_CLASSES, f"{_CLASSIFICATION}.Type", _VEHICLES),
         "light_state": _struct(lights, lit),
