@@ -9,7 +9,7 @@ import numpy as np
 from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS, States
-from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects
+from drivelint.formats.osi.encode import ground_truths, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
 from tests.demo.opendrive import GENERATOR
 
@@ -62,17 +62,14 @@ def _frames(scene: Scene) -> Iterator[tuple[int, bytes]]:
     actors, n = len(said.ids), len(said) // len(said.ids)
     by_frame = (np.arange(n)[:, None] + n * np.arange(actors)).ravel()
     unknown = np.full(len(said), np.nan)
-    objects = Objects(
+    objects = moving_objects(
         said.actor[by_frame].astype(np.uint64) + np.uint64(HOST_ID),
         {name: said.numbers.get(name, unknown)[by_frame] for name in (*STATE_COLUMNS, *SIZE_COLUMNS)},
         {name: codes[by_frame] for name, codes in said.codes.items()},
         heights=True,
     )
-    data, starts = moving_objects(objects)
-    content = data.tobytes()
-    for k in range(n):
-        t_ns = int(said.t_ns[k])
-        yield t_ns, ground_truth_head(t_ns, HOST_ID) + content[starts[k * actors] : starts[(k + 1) * actors]]
+    messages = ground_truths(said.t_ns[:n], HOST_ID, objects, np.arange(n + 1) * actors)
+    yield from zip(said.t_ns[:n].tolist(), messages.to_pylist(), strict=True)
 
 
 def states(scene: Scene) -> States:

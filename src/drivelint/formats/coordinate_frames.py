@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     Vectors = NDArray[np.float64]
 
+    from drivelint.arrays import Times
+
 FIXED_FRAMES: Final = ("map", "world", "odom")
 """What the frame that everything is brought into may be called, best first (REP 105: of these only `map` and the earth's
 do not drift)."""
@@ -49,7 +51,7 @@ class _Edge:
 
     parent: str
     static: bool
-    t_ns: NDArray[np.int64]
+    t_ns: Times
     poses: Poses
 
 
@@ -60,7 +62,7 @@ class TransformTree:
     edges: dict[str, _Edge] = field(default_factory=dict)
     ambiguous: set[str] = field(default_factory=set)
 
-    def add(self, child: str, parent: str, t_ns: NDArray[np.int64], poses: Poses, *, static: bool) -> None:
+    def add(self, child: str, parent: str, t_ns: Times, poses: Poses, *, static: bool) -> None:
         """Add all transforms of a frame. A second parent makes it ambiguous; static ones count from the last."""
         known = self.edges.get(child)
         if known is not None and known.parent != parent:
@@ -93,7 +95,7 @@ class TransformTree:
             frame = self.edges[frame].parent
         return frame
 
-    def frame_poses(self, fixed: str, frame: str, t_ns: NDArray[np.int64]) -> Poses:
+    def frame_poses(self, fixed: str, frame: str, t_ns: Times) -> Poses:
         """Return the poses of `frame` in the fixed frame at given times, NaN where they are not known."""
         n = len(t_ns)
         chain = self.chain(frame, fixed)
@@ -150,7 +152,7 @@ def _product(a: Vectors, b: Vectors) -> Vectors:
     return np.concatenate([aw * bv + bw * av + _cross(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1)
 
 
-def _at(edge: _Edge, t_ns: NDArray[np.int64]) -> Poses:
+def _at(edge: _Edge, t_ns: Times) -> Poses:
     """Interpolate a transform: places linearly, turns along the shorter way; NaN outside its times and in holes."""
     if edge.static:
         return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in edge.poses))

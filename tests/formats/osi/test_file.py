@@ -8,7 +8,7 @@ import pytest
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 from drivelint.errors import TraceError
-from drivelint.formats.osi.schema import reader_descriptor_set
+from drivelint.formats.osi.schema import descriptor_set
 from tests.formats.logs import actors, at, log, quality, read, states
 from tests.shared_data import shared
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _POOL = descriptor_pool.DescriptorPool()
-for _file in descriptor_pb2.FileDescriptorSet.FromString(reader_descriptor_set()).file:
+for _file in descriptor_pb2.FileDescriptorSet.FromString(descriptor_set("read")).file:
     _POOL.Add(_file)
 
 

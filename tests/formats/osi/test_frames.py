@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
-from drivelint.formats.osi import encode
-from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
+from drivelint.formats.osi.encode import ground_truths, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
 
 VECTORS = {
@@ -42,24 +43,29 @@ def parsed(data: bytes) -> Any:
     return message_factory.GetMessageClass(pool.FindMessageTypeByName(GROUND_TRUTH)).FromString(data)
 
 
-def objects(rows: list[dict[str, Any]], *, heights: bool) -> Objects:
-    return Objects(
+def objects(rows: list[dict[str, Any]], *, heights: bool) -> pa.StructArray:
+    return moving_objects(
         np.array([row["number"] for row in rows], np.uint64),
         {name: np.array([row[name] for row in rows], np.float64) for name in COLUMNS},
         {name: np.array([row[name] for row in rows], np.int8) for name in ("actor_class", "indicator", "brake_light")},
-        heights,
+        heights=heights,
     )
+
+
+def messages(t_ns: list[int], host: int | None, items: pa.StructArray, starts: NDArray[np.int64]) -> list[bytes]:
+    found: list[bytes] = ground_truths(np.array(t_ns, np.int64), host, items, starts).to_pylist()
+    return found
 
 
 @given(st.lists(actor, max_size=6), st.booleans())
 def test_objects(rows: list[dict[str, Any]], heights: bool) -> None:
-    data, starts = moving_objects(objects(rows, heights=heights))
-    content = data.tobytes()
-    assert (starts[0], starts[-1], len(starts)) == (0, len(content), len(rows) + 1)
-    truth = parsed(content)
-    assert len(truth.moving_object) == len(rows)
-    for k, (row, item) in enumerate(zip(rows, truth.moving_object, strict=True)):
-        (alone,) = parsed(content[starts[k] : starts[k + 1]]).moving_object
+    cut = len(rows) // 2
+    starts = np.array([0, cut, cut, len(rows)])
+    first, none, rest = map(parsed, messages([1, 2, 3], None, objects(rows, heights=heights), starts))
+    assert (len(first.moving_object), len(none.moving_object)) == (cut, 0)
+    for k, (row, item) in enumerate(zip(rows, [*first.moving_object, *rest.moving_object], strict=True)):
+        (data,) = messages([0], None, objects(rows, heights=heights), np.array([k, k + 1]))
+        (alone,) = parsed(data).moving_object
         assert item.SerializeToString() == alone.SerializeToString()
         assert item.id.value == row["number"]
         for vector, fields in VECTORS.items():
@@ -79,19 +85,18 @@ def test_objects(rows: list[dict[str, Any]], heights: bool) -> None:
 
 @given(st.integers(-(1 << 62), 1 << 62), st.one_of(st.none(), st.integers(0, (1 << 64) - 1)))
 def test_heads(t_ns: int, host: int | None) -> None:
-    truth = parsed(ground_truth_head(t_ns, host))
+    (data,) = messages([t_ns], host, objects([], heights=False), np.array([0, 0]))
+    truth = parsed(data)
     assert truth.timestamp.seconds * 1_000_000_000 + truth.timestamp.nanos == t_ns
     assert 0 <= truth.timestamp.nanos < 1_000_000_000
     assert truth.HasField("host_vehicle_id") == (host is not None)
     assert truth.host_vehicle_id.value == (host or 0)
 
 
-def test_rows_are_laid_out_in_batches(monkeypatch: Any) -> None:
+def test_ids_of_one_byte_and_of_two() -> None:
     row = dict.fromkeys(COLUMNS, 1.0) | {"actor_class": 0, "indicator": 0, "brake_light": -1}
-    many = objects([row | {"number": k} for k in range(300)], heights=True)  # ids of one byte and of two
-    whole = moving_objects(many)[0].tobytes()
-    monkeypatch.setattr(encode, "BLOCK_ROWS", 7)
-    assert moving_objects(many)[0].tobytes() == whole
+    many = objects([row | {"number": k} for k in range(300)], heights=True)
+    (whole,) = messages([0], 1, many, np.array([0, 300]))
     assert [item.id.value for item in parsed(whole).moving_object] == list(range(300))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mcap.records import Channel
+from mcap.records import Channel, Schema
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Packet
@@ -27,8 +27,8 @@ def packets(messages: list[bytes]) -> list[Packet]:
 
 
 def decoder(types: dict[str, str], name: str, tree: dict[str, Any]) -> cdr.Decoder:
-    parsed = ros_types.parse(LOG, name, ros.definition(name, types).encode())
-    return cdr.Decoder(LOG, name, parsed, name, tree)
+    schema = Schema(id=1, name=name, encoding="ros2msg", data=ros.definition(name, types).encode())
+    return cdr.Decoder(LOG, schema, tree)
 
 
 def numbers(kind: str) -> st.SearchStrategy[Any]:

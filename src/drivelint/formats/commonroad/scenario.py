@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
-    from drivelint.arrays import Codes, Floats
+    from drivelint.arrays import Floats
     from drivelint.formats.probe import Probe
 
 
@@ -77,6 +77,9 @@ def read(probe: Probe) -> Recording:
     counts = [len(part["step"]) for part in parts]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
+    words = [_CLASSES.get((o.findtext("type") or "").strip()) for o in obstacles]
+    classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
+    unknown = np.full(sum(counts), -1, np.int8)
     states = States(
         ids,
         np.repeat(np.arange(len(ids), dtype=np.int32), counts),
@@ -87,7 +90,7 @@ def read(probe: Probe) -> Recording:
             "ax_mps2": columns["a"] * np.cos(heading), "ay_mps2": columns["a"] * np.sin(heading),
             "length_m": columns["length_m"], "width_m": columns["width_m"],
         },
-        _codes(obstacles, counts),
+        {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown},
         np.zeros(sum(counts), np.bool_),
     )  # fmt: skip
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
@@ -139,13 +142,6 @@ def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -
             ("length", "width"), 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
         )
     return columns | {f"{name}_m": np.full(len(columns["step"]), value) for name, value in size.items()}
-
-
-def _codes(obstacles: list[etree._Element], counts: list[int]) -> dict[str, Codes]:
-    words = [_CLASSES.get((obstacle.findtext("type") or "").strip()) for obstacle in obstacles]
-    classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
-    unknown = np.full(sum(counts), -1, np.int8)
-    return {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown}
 
 
 def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]] | None:

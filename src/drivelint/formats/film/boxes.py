@@ -13,8 +13,8 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
-from drivelint.formats.ros2 import types as ros_types
 from drivelint.formats.ros2.objects import HEADER, stamps
+from drivelint.formats.ros2.types import short_type_name
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
     from drivelint.formats.film.mapping import VideoMapping
     from drivelint.formats.protobuf.descriptors import FieldTree
 
@@ -36,7 +37,7 @@ class Sightings(NamedTuple):
     """Frames that exist (numbers, rising), and per actor its distance ahead in each, NaN where it was not detected."""
 
     frames: NDArray[np.int64]
-    ahead_m: list[NDArray[np.float64]]
+    ahead_m: list[Floats]
 
 
 def read(path: Path, film: VideoMapping) -> Sightings:
@@ -47,14 +48,12 @@ def read(path: Path, film: VideoMapping) -> Sightings:
         )
     if unsaid := [actor.id for actor in film.actor if actor.box is None]:
         raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of his detections")
-    times: list[NDArray[np.int64]] = []
-    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]] = []
+    times: list[Times] = []
+    boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
         for _, packets in message_batches(container, _kind):
-            schema = container.schemas[packets[0].channel.schema_id]
-            types = ros_types.parse(file, schema.name, schema.data)
-            table = cdr.Decoder(file, schema.name, types, MESSAGE, _TREE).table(packets)
+            table = cdr.Decoder(file, container.schemas[packets[0].channel.schema_id], _TREE).table(packets)
             t_ns, _ = stamps(table, "header.stamp")
             items = table.children["detections"]
             ids = items.columns.get("id", items.columns.get("tracking_id"))
@@ -67,16 +66,12 @@ def read(path: Path, film: VideoMapping) -> Sightings:
 
 
 def _kind(channel: Channel, schema: Schema) -> str | None:
-    is_read = channel.message_encoding == "cdr" and ros_types.short_type_name(schema.name) == MESSAGE
+    is_read = channel.message_encoding == "cdr" and short_type_name(schema.name) == MESSAGE
     return MESSAGE if is_read else None
 
 
 def _sightings(
-    path: Path,
-    film: VideoMapping,
-    focal_px: float,
-    t_ns: NDArray[np.int64],
-    boxes: list[tuple[NDArray[np.int64], list[str], NDArray[np.float64]]],
+    path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
 ) -> Sightings:
     """Bring times to frame numbers and widths to distances; of several boxes of one actor in a frame the nearest counts."""
     start = int(t_ns.min())
@@ -95,5 +90,5 @@ def _sightings(
     return Sightings(whole, ahead)
 
 
-def _frames(t_ns: NDArray[np.int64], start: int, film: VideoMapping) -> NDArray[np.int64]:
+def _frames(t_ns: Times, start: int, film: VideoMapping) -> NDArray[np.int64]:
     return np.rint((t_ns - start) / 1e9 * film.frames.rate_hz).astype(np.int64)

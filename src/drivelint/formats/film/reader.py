@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
     from drivelint.formats.film.mapping import DetectedActor, EgoCar, OvertakeStages, VideoMapping
     from drivelint.formats.probe import Probe
 
@@ -130,7 +131,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
 
 
 def _states(
-    film: VideoMapping, frames: NDArray[np.int64], t_ns: NDArray[np.int64], ahead: list[NDArray[np.float64]]
+    film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
     """Return everybody's states, and where the ego's way begins and ends along the road (x)."""
     own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
@@ -168,7 +169,7 @@ def _states(
     return states, (float(ego_x[0]), float(ego_x[-1]))
 
 
-def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> NDArray[np.float64]:
+def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> Floats:
     """Return how far beyond the centre line the ego's middle is in each frame: such that the stages begin where they are said to.
 
     Straight from touching the line to just short of passing, level, and from the first frame of the abort back to the

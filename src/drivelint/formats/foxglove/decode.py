@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mcap.records import Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Mask, Times
     from drivelint.formats.coordinate_frames import Vectors
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
@@ -94,7 +95,7 @@ def _json_type(tree: FieldTree) -> list[pa.Field]:
     return fields
 
 
-def times(stamp: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def times(stamp: pa.Array) -> tuple[Times, Mask]:
     """Return times or durations in nanoseconds (0 where there is none), and where there is one."""
     whole, rest = (_first(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
     seconds = np.floor(whole)
@@ -102,7 +103,7 @@ def times(stamp: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     return t_ns, stamp.is_valid().to_numpy(zero_copy_only=False)
 
 
-def _first(parent: pa.Array, names: tuple[str, ...]) -> NDArray[np.float64]:
+def _first(parent: pa.Array, names: tuple[str, ...]) -> Floats:
     """Return the first of several members that is there; 0 where none is (protobuf does not write zeros)."""
     result = np.zeros(len(parent))
     for name in reversed(names):
@@ -111,9 +112,9 @@ def _first(parent: pa.Array, names: tuple[str, ...]) -> NDArray[np.float64]:
     return result
 
 
-def numbers(parent: pa.Array, name: str) -> NDArray[np.float64]:
+def numbers(parent: pa.Array, name: str) -> Floats:
     """Return a member as doubles, NaN where it is not there."""
-    values: NDArray[np.float64] = struct_field(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
+    values: Floats = struct_field(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
     return values
 
 

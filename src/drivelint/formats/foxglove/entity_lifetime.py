@@ -18,10 +18,8 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Indices, Mask, Times
     from drivelint.drive.trace import Severity
-    from drivelint.formats.coordinate_frames import Vectors
-
-    Instants = NDArray[np.int64]
 
 MAX_PERSISTED: Final = 20_000_000
 """More states than this are not made up: nobody records so many road users that stand still."""
@@ -31,7 +29,7 @@ _NEVER: Final = np.iinfo(np.int64).max
 
 
 def with_persisted(
-    rows: RecordedPoses, gone: tuple[Instants, list[str | None]], findings: list[QualityFinding], topic: str
+    rows: RecordedPoses, gone: tuple[Times, list[str | None]], findings: list[QualityFinding], topic: str
 ) -> RecordedPoses:
     """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
@@ -50,7 +48,7 @@ def with_persisted(
     extra.at_ns = np.where(np.asarray(extra.locked), t_ns, rows.t_ns[row])
     extra.place = np.where(stood_still[:, None], extra.place, np.nan)
     rows.at_ns = rows.t_ns
-    kinds: tuple[tuple[NDArray[np.bool_], str, Severity, str], ...] = (
+    kinds: tuple[tuple[Mask, str, Severity, str], ...] = (
         (stood_still, "entity_held", "info", "stood still and are where they were"),
         (~stood_still, "entity_stale", "warning", "moved before and are there but not placed"),
     )
@@ -63,8 +61,8 @@ def with_persisted(
 
 
 def _persisted(
-    updates: RecordedPoses, actor: NDArray[np.int32], deletions: tuple[Instants, NDArray[np.int32]], grid_ns: Instants
-) -> tuple[NDArray[np.intp], Instants, NDArray[np.bool_]]:
+    updates: RecordedPoses, actor: NDArray[np.int32], deletions: tuple[Times, NDArray[np.int32]], grid_ns: Times
+) -> tuple[Indices, Times, Mask]:
     """Return the states between updates: which update each goes back to, its time, and whether the entity stood still.
 
     `actor`: the index of each update's entity; `deletions`: times, and indices of whom they delete, -1: of all.
@@ -74,7 +72,9 @@ def _persisted(
     sorted_updates = updates.take(order)
     actor, t_ns, lifetime = actor[order], sorted_updates.t_ns, np.asarray(sorted_updates.lifetime_ns)
     box = np.concatenate([sorted_updates.place, sorted_updates.turn, sorted_updates.size], axis=1)
-    same, alike = actor[1:] == actor[:-1], _alike(box)
+    before, after = box[:-1], box[1:]
+    alike = ((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1)
+    same = actor[1:] == actor[:-1]
     follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
     # a lifetime of centuries would overflow
     gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
@@ -93,14 +93,7 @@ def _persisted(
     return order[row], grid_ns[first[row] + step], still[row]
 
 
-def _alike(box: Vectors) -> NDArray[np.bool_]:
-    """Say of each pair of neighbouring rows whether their boxes are the same."""
-    before, after = box[:-1], box[1:]
-    result: NDArray[np.bool_] = np.asarray(((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1))
-    return result
-
-
-def _deleted(actor: NDArray[np.int32], t_ns: Instants, deletions: tuple[Instants, NDArray[np.int32]]) -> Instants:
+def _deleted(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:
     """Return when each update is deleted: by the first deletion of its actor, or of all, with a later time."""
     when, whom = deletions
     result = np.full(len(t_ns), _NEVER)

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Mask, Times
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
@@ -56,16 +57,14 @@ class _Scene:
     """What was read of one topic."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
-    deletions: list[tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.int64], list[str | None]]] = field(
-        default_factory=list
-    )
+    deletions: list[tuple[Times, Mask, Times, list[str | None]]] = field(default_factory=list)
     without_box: int = 0
 
 
 def read(path: Path, topic: str | None) -> Recording:
     """Read the scene of one topic. Errors: `TraceError` for damage, no scene, several topics, or nothing that can be placed."""
     scenes: dict[str, _Scene] = {}
-    transforms: list[tuple[pa.Array, NDArray[np.int64]]] = []
+    transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
     for file in bag.mcap_files(path):
         container = Container(file)
@@ -101,7 +100,7 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
     return names[0]
 
 
-def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> None:
+def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
     entities, message = list_items(decoded, "entities")
     lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
@@ -112,16 +111,14 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
     cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
     entities = entities.filter(pa.array(boxed))
     message = message[boxed]
-    names, which = distinct_texts(entities, "id")
-    frames, frame = distinct_texts(entities, "frame_id")
     pose = struct_field(cubes, "pose")
     scene.rows.append(
         recorded_poses(
             times(struct_field(entities, "timestamp")),
             (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
             log_ns=log_ns[message],
-            ids=np.array([name.encode() for name in names] or [b""])[which],
-            frames=np.array([name.encode() for name in frames] or [b""])[frame],
+            ids=_bytes(entities, "id"),
+            frames=_bytes(entities, "frame_id"),
             size=vectors(cubes, "size"),
             classes=_classes(entities),
             lifetime_ns=times(struct_field(entities, "lifetime"))[0],
@@ -139,7 +136,12 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: NDArray[np.int64]) -> 
         scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
 
 
-def _classes(entities: pa.Array) -> NDArray[np.int8]:
+def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
+    texts, which = distinct_texts(entities, name)
+    return np.array([text.encode() for text in texts] or [b""])[which]
+
+
+def _classes(entities: pa.Array) -> Codes:
     """Return what the metadata say an entity is, by the first key that says it in a word that is known."""
     codes = np.full(len(entities), -1, np.int8)
     pairs, parent = list_items(entities, "metadata")
@@ -155,11 +157,7 @@ def _classes(entities: pa.Array) -> NDArray[np.int8]:
 
 
 def _recording(
-    path: Path,
-    topic: str,
-    scene: _Scene,
-    transforms: list[tuple[pa.Array, NDArray[np.int64]]],
-    findings: list[QualityFinding],
+    path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, Times]], findings: list[QualityFinding]
 ) -> Recording:
     rows = join_batches(scene.rows)
     named = rows.ids != b""
@@ -187,7 +185,7 @@ def _recording(
     return recording
 
 
-def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[NDArray[np.int64], list[str | None]]:
+def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:
     """Return times and ids (None: all are meant). One without a time has that of its message, in the entities' clock."""
     order = np.argsort(rows.log_ns, kind="stable")
     log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
@@ -200,9 +198,9 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
     return np.concatenate(times), ids
 
 
-def _frames(transforms: list[tuple[pa.Array, NDArray[np.int64]]], *, own_times: bool) -> TransformTree:
+def _frames(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> TransformTree:
     """Collect transforms. One that is always the same holds always: a scene says it once, when it begins."""
-    found: dict[tuple[str, str], list[tuple[NDArray[np.int64], Any, Any]]] = {}
+    found: dict[tuple[str, str], list[tuple[Times, Any, Any]]] = {}
     for rows, log_ns in transforms:
         t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns
         place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")

@@ -57,12 +57,8 @@ Bound = tuple[int, bool]
 """A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
 
 
-def _bound(line: Any) -> Bound:
-    return line.id, bool(line.inverted())
-
-
-def _turned(line: Any) -> Bound:
-    return line.id, not line.inverted()
+def _bound(line: Any, *, turned: bool = False) -> Bound:
+    return line.id, bool(line.inverted()) != turned
 
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
@@ -78,10 +74,14 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
         lefts[_bound(x.leftBound)].append(x)
         rights[_bound(x.rightBound)].append(x)
-    limit = _limits()
+    import lanelet2
+
+    rules = lanelet2.traffic_rules.create(
+        lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
+    )
     for x in mine:
         kind = _KINDS[attribute(x, "subtype")]
-        limit_mps = limit(x)
+        limit_mps = _limit(x, rules)
         readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
         limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
@@ -97,8 +97,8 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             limits=limits, limit_source="sign" if readable else "unread",
         )  # fmt: skip
         left, right = x.leftBound, x.rightBound
-        lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_turned(left)])
-        lane.right_id, lane.right_against = _beside(x, lefts[_bound(right)], rights[_turned(right)])
+        lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_bound(left, turned=True)])
+        lane.right_id, lane.right_against = _beside(x, lefts[_bound(right)], rights[_bound(right, turned=True)])
         yield lane
 
 
@@ -117,21 +117,12 @@ def _road_type(x: Any) -> str | None:
     return {"urban": "town", "nonurban": "rural"}.get(attribute(x, "location"))
 
 
-def _limits() -> Any:
-    """Return a function lanelet -> limit in m/s by its signs, not by a nation's default; None: the map does not say one."""
-    import lanelet2
-
-    rules = lanelet2.traffic_rules.create(
-        lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
-    )
-
-    def limit(x: Any) -> float | None:
-        signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
-        if not signed and "speed_limit" not in x.attributes:
-            return None
-        return float(rules.speedLimit(x).speedLimit) / 3.6
-
-    return limit
+def _limit(x: Any, rules: Any) -> float | None:
+    """Return the limit in m/s by a lanelet's signs, not by a nation's default; None: the map does not say one."""
+    signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
+    if not signed and "speed_limit" not in x.attributes:
+        return None
+    return float(rules.speedLimit(x).speedLimit) / 3.6
 
 
 def _marking(bound: Any, *, near_left: bool) -> str | None:

@@ -290,7 +290,8 @@ class _Copy:
             if record.opcode == Opcode.MESSAGE_INDEX:
                 self._take_index(record)
             else:
-                self._note(record)
+                with self._original.parsing(record):
+                    self._note(record)
                 self._keep(record)
         self._end_chunk()
         self._end_loose()
@@ -311,12 +312,9 @@ class _Copy:
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
+        """Tell the index of a record that will be copied."""
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
-        with self._original.parsing(record):
-            self._index(record, head, start, length)
-
-    def _index(self, record: Record, head: ReadDataStream, start: int, length: int) -> None:
         if record.opcode == Opcode.CHUNK:
             begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
             self._chunk = record, ChunkIndex(

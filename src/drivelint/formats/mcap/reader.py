@@ -187,30 +187,27 @@ class Container:
 
     def _unpacked(self, packed: memoryview, compression: str, size: int, at: int) -> bytes:
         """Decompress at most `size` bytes, the number the chunk declares."""
-        if compression == "":
-            records = bytes(packed)
-        elif compression == "zstd":
-            import zstandard
+        import zstandard
 
-            try:
+        try:
+            if compression == "":
+                records = bytes(packed)
+            elif compression == "zstd":
                 declared = zstandard.get_frame_parameters(packed).content_size
                 # the library believes the frame's own size rather than the limit given to it
                 if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
                     raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and then to {declared},")
                 records = zstandard.ZstdDecompressor().decompress(packed, max_output_size=max(size, 1))
-            except zstandard.ZstdError as error:
-                raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
-        elif compression == "lz4":
-            import lz4.frame  # type: ignore[import-untyped]
+            elif compression == "lz4":
+                import lz4.frame  # type: ignore[import-untyped]
 
-            try:
                 records = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
-            except RuntimeError as error:
-                raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
-        else:
-            raise TraceError(
-                f"{self.path}: a chunk at byte {at} is compressed by {compression!r}: zstd, lz4 or none is needed"
-            )
+            else:
+                raise TraceError(
+                    f"{self.path}: a chunk at byte {at} is compressed by {compression!r}: zstd, lz4 or none is needed"
+                )
+        except (zstandard.ZstdError, RuntimeError) as error:
+            raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
         if len(records) != size:
             raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
         return records

@@ -192,14 +192,8 @@ def _unbuildable(strip: LaneSection) -> dict[int, str]:
 
 def _adjoin(a: Lanelet, b: Lanelet) -> None:
     """Make `b` the neighbour of `a` on the right of the reference line."""
-    if a.along > 0:
-        a.right = b
-    else:
-        a.left = b
-    if b.along > 0:
-        b.left = a
-    else:
-        b.right = a
+    setattr(a, "right" if a.along > 0 else "left", b)
+    setattr(b, "left" if b.along > 0 else "right", a)
 
 
 def _join_sides(road: Road, lanes: BuiltLanes) -> None:

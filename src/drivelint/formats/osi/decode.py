@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Floats, Indices, Mask
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
 
@@ -86,15 +87,15 @@ class FrameBatch:
     """
 
     t_ns: NDArray[np.int64]
-    timed: NDArray[np.bool_]
+    timed: Mask
     hosts: list[int | None]
-    frame: NDArray[np.intp]
+    frame: Indices
     ids: NDArray[np.uint64]
     nameless: int
-    numbers: dict[str, NDArray[np.float64]]
-    codes: dict[str, NDArray[np.int8]]
-    not_finite: NDArray[np.bool_]
-    left_out: dict[str, NDArray[np.bool_]]
+    numbers: dict[str, Floats]
+    codes: dict[str, Codes]
+    not_finite: Mask
+    left_out: dict[str, Mask]
     says_zero: bool
     bulbs: pa.Table
 
@@ -208,7 +209,7 @@ def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
     return kind if pa.types.is_struct(kind) else None
 
 
-def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
     """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
     values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
@@ -216,7 +217,7 @@ def _coordinate(vector: pa.Array, name: str) -> tuple[NDArray[np.float64], NDArr
     return np.where(np.isfinite(numbers), numbers, np.nan), said
 
 
-def _times(message: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _times(message: pa.Array) -> tuple[NDArray[np.int64], Mask]:
     stamp = struct_field(message, "timestamp")
     seconds, nanos = (integers(stamp, name, pa.int64()) for name in ("seconds", "nanos"))
     return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes
     from drivelint.formats.protobuf.descriptors import Types
 
 OFF, ON, OTHER = 0, 1, 2
@@ -74,14 +75,14 @@ class EnumCodes:
                     table[number] = known.get(name, -1)
             self._tables[attribute] = table
 
-    def codes(self, attribute: str, numbers: pa.Array) -> NDArray[np.int8]:
+    def codes(self, attribute: str, numbers: pa.Array) -> Codes:
         """Return the codes of numbers, -1 where they are unknown."""
         table = self._tables[attribute]
         index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
         return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
-def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int8]]:
+def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, Codes]:
     """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
     vehicle = struct_field(objects, "vehicle_classification")
     lights = struct_field(vehicle, "light_state")
@@ -98,7 +99,7 @@ def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, NDArray[np.int
     }
 
 
-def _headlights(dipped: NDArray[np.int8], main: NDArray[np.int8]) -> NDArray[np.int8]:
+def _headlights(dipped: Codes, main: Codes) -> Codes:
     """Return whether the headlights are on: dipped or main beam. Off: `head_light` says so and `high_beam` nothing else.
 
     A state of another kind, flashing or OTHER, is not known.

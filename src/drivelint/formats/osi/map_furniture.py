@@ -17,12 +17,10 @@ from drivelint.road.tables import crossing_row, stop_line_row
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
     from drivelint.road.quality import MapQuality
 
-    Floats = NDArray[np.float64]
     Row = dict[str, Any]
 
 _ON_ROAD_M = 1.0  # what is painted lies no further than this above or below the lane

@@ -25,13 +25,10 @@ from drivelint.road.quality import MapQuality
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.formats.osi.map_logical import LogicalLane
     from drivelint.formats.osi.map_physical import PhysicalLane
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
-
-    Floats = NDArray[np.float64]
 
 _SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on the same road
 

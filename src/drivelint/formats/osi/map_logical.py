@@ -14,13 +14,10 @@ from drivelint.formats.osi import map_kinds as kinds
 from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, Mark, UnbuildableError, resampled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
-
-    Floats = NDArray[np.float64]
 
 _SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
 MAX_LINK_GAP_M = 5.0  # a lane that begins further away from where another ends does not follow it
@@ -208,13 +205,11 @@ def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
         said = rule.speed_limit.speed_limit_value
         unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(said.value_unit, ""))
         where = rule.traffic_rule_validity
-        if rule.traffic_rule_type or unit is None or said.value <= 0 or not _for_all(where.valid_for_type):
+        # for vehicles of any type: it names none, or vehicles as such
+        valid = where.valid_for_type
+        for_all = not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)
+        if rule.traffic_rule_type or unit is None or said.value <= 0 or not for_all:
             continue
         begin, end = sorted((lane.lane_fraction(where.start_s), lane.lane_fraction(where.end_s)))
         if end > begin:
             yield begin, end, said.value * unit
-
-
-def _for_all(valid: Sequence[Any]) -> bool:
-    """Say whether a rule holds for vehicles of any type: it names none, or vehicles as such."""
-    return not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)

@@ -19,11 +19,8 @@ from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, UnbuildableEr
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
-
-    Floats = NDArray[np.float64]
 
 _DRIVING, _NONDRIVING = 2, 3
 _CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole
@@ -263,20 +260,15 @@ def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[tu
             continue
         pairs = {(p.antecessor_lane_id.value, p.successor_lane_id.value) for p in area.classification.lane_pairing}
         for into, out in sorted(pairs):
-            way = _way(plain.get(into), plain.get(out))
-            if way is not None:
-                name = f"{area.id.value}.{into}.{out}"
-                lane = BoundedLane(name, *way, junction_id=f"j{area.id.value}", successors=(str(out),))
-                found.append((lane, np.vstack([plain[into].centre[-1], plain[out].centre[0]])))
+            a, b = plain.get(into), plain.get(out)
+            if a is None or b is None or not all(_kind(each.message.classification)[1] for each in (a, b)):
+                continue  # not two lanes for driving
+            sides = (a.left, b.left), (a.right, b.right)
+            left, right = (_curve(p[-1], p[-1] - p[-2], q[0], q[1] - q[0]) for p, q in sides)
+            name = f"{area.id.value}.{into}.{out}"
+            lane = BoundedLane(name, left, right, junction_id=f"j{area.id.value}", successors=(str(out),))
+            found.append((lane, np.vstack([a.centre[-1], b.centre[0]])))
     return found
-
-
-def _way(a: PhysicalLane | None, b: PhysicalLane | None) -> tuple[Floats, Floats] | None:
-    """Return both bounds of a smooth way from where a lane ends to where another begins; None: not two lanes for driving."""
-    if a is None or b is None or not (_kind(a.message.classification)[1] and _kind(b.message.classification)[1]):
-        return None
-    left, right = (_curve(p[-1], p[-1] - p[-2], q[0], q[1] - q[0]) for p, q in ((a.left, b.left), (a.right, b.right)))
-    return left, right
 
 
 def _curve(start: Floats, leaving: Floats, end: Floats, arriving: Floats) -> Floats:

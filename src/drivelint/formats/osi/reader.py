@@ -21,7 +21,7 @@ from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, messag
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
-from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, reader_descriptor_set
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import listed
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from mcap.records import Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats, Times
     from drivelint.formats.osi.decode import FrameBatch
     from drivelint.formats.probe import Probe
 
@@ -80,10 +81,11 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
             log_ns += [packet.log_time_ns for packet in packets]
         elif kind == OPEN_DRIVE:
             for packet in packets:
-                text, trouble = _map_text(container, packet)
-                lost += trouble
-                if text is not None:
+                text = _map_text(container, packet)
+                if isinstance(text, bytes):
                     maps.setdefault(text, packet.channel.topic)
+                else:
+                    lost.append(text)
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
@@ -110,8 +112,8 @@ def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema
     return schema.name if schema.name == OPEN_DRIVE else None
 
 
-def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
-    """Return the OpenDRIVE of a message, and why there is none."""
+def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
+    """Return the OpenDRIVE of a message, or why there is none."""
     types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
@@ -121,11 +123,9 @@ def _map_text(container: Container, packet: Packet) -> tuple[bytes | None, tuple
     else:
         text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
-        message = (
-            f"the log's own map is not used: the one on topic {packet.channel.topic!r}, byte {packet.offset}, {why}"
-        )
-        return None, (QualityFinding.unusable_map(message),)
-    return text if isinstance(text, bytes) else str(text).encode(), ()
+        where = f"topic {packet.channel.topic!r}, byte {packet.offset}"
+        return QualityFinding.unusable_map(f"the log's own map is not used: the one on {where}, {why}")
+    return text if isinstance(text, bytes) else str(text).encode()
 
 
 def _check_topics(container: Container, truths: list[str], topic: str | None) -> None:
@@ -202,7 +202,7 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
     """Return the decoder of the kind of message in which objects with positions are found, and its name."""
     for name in (GROUND_TRUTH, SENSOR_VIEW):
-        decoder = Decoder(path, 1, name, reader_descriptor_set())
+        decoder = Decoder(path, 1, name, descriptor_set("read"))
         try:
             frames = decoder.frames(packets)
         except TraceError:
@@ -253,7 +253,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
     )
 
 
-def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
+def _zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
     """Return the numbers of each batch, with 0 for coordinates that the log leaves out if it never writes a zero.
 
     Some writers leave zeros out, as proto3 does. One that writes zeros means by a coordinate without a value that it is not known.
@@ -266,7 +266,7 @@ def _zeros(batches: list[FrameBatch]) -> list[dict[str, NDArray[np.float64]]]:
     ]
 
 
-def _clock(batches: list[FrameBatch], log_ns: NDArray[np.int64], findings: list[QualityFinding]) -> NDArray[np.int64]:
+def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFinding]) -> Times:
     """Return each frame's time: the messages' own where they all have one that runs, else the log's."""
     stamps = np.concatenate([batch.t_ns for batch in batches])
     timed = np.concatenate([batch.timed for batch in batches])
@@ -284,7 +284,7 @@ def _clock(batches: list[FrameBatch], log_ns: NDArray[np.int64], findings: list[
     return stamps
 
 
-def _host(hosts: list[int | None], t_ns: NDArray[np.int64], findings: list[QualityFinding]) -> list[str]:
+def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
     """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
     said = Counter(host for host in hosts if host is not None)
     if not said:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any, Final
 
 from google.protobuf import descriptor_pb2, message_factory
 
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
+from drivelint.resources import facts
 
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
@@ -28,7 +28,7 @@ VERSION: Final = (3, 7, 0)
 
 @cache
 def _declared(*parts: str) -> Declarations:
-    return Declarations.read(Path(__file__).parent / "schema.toml", *parts)
+    return Declarations(*(facts(__file__, "schema.toml")[part] for part in parts))
 
 
 @cache
@@ -57,19 +57,9 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 
 @cache
-def descriptor_set() -> bytes:
-    """Return the serialised `FileDescriptorSet` for an MCAP schema record."""
-    return _serialised("written")
-
-
-@cache
-def reader_descriptor_set() -> bytes:
-    """Return the serialised `FileDescriptorSet` by which messages are read that come without one."""
-    return _serialised("written", "read")
-
-
-def _serialised(*parts: str) -> bytes:
-    return descriptor_pb2.FileDescriptorSet(file=[_file(*parts)]).SerializeToString(deterministic=True)
+def descriptor_set(*more: str) -> bytes:
+    """Return the serialised `FileDescriptorSet` of what is written, for an MCAP schema record; with "read" of what is read, too."""
+    return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
 
 
 @cache

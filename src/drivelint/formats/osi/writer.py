@@ -13,15 +13,14 @@ from mcap.writer import CompressionType, Writer
 from drivelint.arrays import floats
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import metadata
-from drivelint.formats.osi.encode import Objects, ground_truth_head, moving_objects, traffic_light
+from drivelint.formats.osi.encode import ground_truths, moving_objects, traffic_light
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Codes
     from drivelint.drive.trace import Trace
     from drivelint.road.map_reader import MapSource
 
@@ -83,24 +82,22 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
     lights = _lights(trace.tables["signal_state"])
     order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
     times = np.unique(np.concatenate([t_ns, np.fromiter(lights, np.int64, len(lights))]))
-    first = np.searchsorted(t_ns[order], times)
-    last = np.append(first[1:], len(order))
+    bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
     objects = _objects(trace, numbers)
     egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
     host = min(egos, key=str, default=None)
     begin = 0
     while begin < len(times):
-        end = max(int(np.searchsorted(last, first[begin] + BATCH_STATES, side="right")), begin + 1)
-        data, starts = moving_objects(objects.take(order[first[begin] : last[end - 1]]))
-        content = data.tobytes()
-        for k in range(begin, end):
-            a, b = starts[first[k] - first[begin]], starts[last[k] - first[begin]]
-            t = int(times[k])
-            yield t, b"".join((ground_truth_head(t, host), content[a:b], *lights.get(t, ())))
+        end = max(int(np.searchsorted(bounds, bounds[begin] + BATCH_STATES, side="right")) - 1, begin + 1)
+        starts = bounds[begin : end + 1]
+        some = objects.take(pa.array(order[starts[0] : starts[-1]]))
+        messages = ground_truths(times[begin:end], host, some, starts - starts[0]).to_pylist()
+        for t, message in zip(times[begin:end].tolist(), messages, strict=True):
+            yield t, b"".join((message, *lights.get(t, ())))
         begin = end
 
 
-def _objects(trace: Trace, numbers: dict[str, int]) -> Objects:
+def _objects(trace: Trace, numbers: dict[str, int]) -> pa.StructArray:
     states, actors = trace.tables["actor_state"], trace.tables["actor"]
     row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
     ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
@@ -111,10 +108,10 @@ def _objects(trace: Trace, numbers: dict[str, int]) -> Objects:
         "indicator": _codes(states["indicator"], INDICATORS),
         "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
     }
-    return Objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
+    return moving_objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
 
 
-def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> NDArray[np.int8]:
+def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
     found = pc.index_in(column, value_set=pa.array(words, pa.string()))
     return np.asarray(pc.fill_null(found, -1).to_numpy(), np.int8)
 

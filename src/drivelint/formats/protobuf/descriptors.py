@@ -7,7 +7,6 @@ messages is read that still has fields of these names.
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +20,7 @@ from google.protobuf.message import DecodeError
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable, Sequence
+    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from google.protobuf.descriptor_pb2 import DescriptorProto, EnumDescriptorProto, FileDescriptorProto
@@ -40,23 +39,17 @@ _SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIEL
 """Type of a value as it is written in a schema -> its number."""
 
 
-@dataclass
 class Declarations:
-    """Messages and enumerations as a data file declares them: name -> the words of each field or value."""
+    """Messages and enumerations as data declare them in tables of these names: name -> the words of each field or value."""
 
-    messages: dict[str, list[list[str]]] = field(default_factory=dict)
-    enums: dict[str, list[list[str]]] = field(default_factory=dict)
-
-    @classmethod
-    def read(cls, file: Path, *parts: str) -> Declarations:
-        """Read the tables `messages` and `enums` of a TOML file, or those below some parts of it, together."""
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-        declared = cls()
-        for table in [content[part] for part in parts] or [content]:
-            for known, more in ((declared.messages, table["messages"]), (declared.enums, table["enums"])):
+    def __init__(self, *tables: Mapping[str, Any]) -> None:
+        """Take several tables together."""
+        self.messages: dict[str, list[list[str]]] = {}
+        self.enums: dict[str, list[list[str]]] = {}
+        for table in tables:
+            for known, more in ((self.messages, table["messages"]), (self.enums, table["enums"])):
                 for name, items in more.items():
                     known.setdefault(name, []).extend(item.split() for item in items)
-        return declared
 
 
 def add_field(

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES
+from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES, parse, short_type_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from mcap.records import Schema
     from numpy.typing import NDArray
 
     from drivelint.errors import TraceError
@@ -165,10 +166,11 @@ class _Compiler:
 class Decoder:
     """Decodes messages of one type."""
 
-    def __init__(self, path: Path, name: str, types: Types, kind: str, tree: FieldTree) -> None:
-        """Compile the definition; of `tree` is kept what the definition has."""
-        self._path, self._name = path, name
-        self._program = _Compiler(types).program(kind, tree)
+    def __init__(self, path: Path, schema: Schema, tree: FieldTree) -> None:
+        """Compile the definition; of `tree` is kept what the definition has. Errors: `TraceError` where it is not understood."""
+        self._path, self._name = path, schema.name
+        types = parse(path, schema.name, schema.data)
+        self._program = _Compiler(types).program(short_type_name(schema.name), tree)
 
     def table(self, packets: Sequence[Packet]) -> Table:
         """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that does not fit its definition."""

@@ -15,6 +15,7 @@ from drivelint.formats.ros2.recorded_poses import RecordedPoses, recorded_poses
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Times
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 
@@ -52,7 +53,7 @@ _OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
 _INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
 
 
-def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> RecordedPoses:
+def odometry(table: Table, log_ns: Times, forward_m: float) -> RecordedPoses:
     """Return the poses of an odometry as rows of one actor without a name; `forward_m`: its box centre lies so far ahead.
 
     Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
@@ -80,9 +81,7 @@ def odometry(table: Table, log_ns: NDArray[np.int64], forward_m: float) -> Recor
     )  # fmt: skip
 
 
-def add_transforms(
-    frames: TransformTree, table: Table, log_ns: NDArray[np.int64], *, static: bool, own_times: bool
-) -> None:
+def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static: bool, own_times: bool) -> None:
     """Add the transforms of TFMessages, in the order of the log."""
     items = table.children["transforms"]
     if not items.n:
@@ -104,7 +103,7 @@ def add_transforms(
         )
 
 
-def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]]) -> NDArray[np.int8]:
+def indicators(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
     """Return the ego's indicator at given times, by the last reports no older than `STALE_NS`; -1 where not known.
 
     Hazard lights count before a side; a hazard report alone does not tell that no side is on.
@@ -119,7 +118,7 @@ def indicators(t_ns: NDArray[np.int64], reports: dict[str, tuple[NDArray[np.int6
     return result
 
 
-def _last(t_ns: NDArray[np.int64], reports: tuple[NDArray[np.int64], NDArray[Any]] | None) -> NDArray[np.int64]:
+def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
     if reports is None:
         return np.full(len(t_ns), -1, np.int64)
     order = np.argsort(reports[0], kind="stable")
@@ -129,7 +128,7 @@ def _last(t_ns: NDArray[np.int64], reports: tuple[NDArray[np.int64], NDArray[Any
     return np.where(fresh, values[np.maximum(at, 0)], -1)
 
 
-def engagement(reports: dict[str, tuple[NDArray[np.int64], NDArray[Any]]], ego: str) -> pa.Table | None:
+def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
     """Return who drives as declared events `engaged` on and off, where it changes; None where nobody says.
 
     What the vehicle reports counts before what it was told to do. Only full automation is engaged.

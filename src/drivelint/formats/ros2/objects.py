@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Mask, Times
     from drivelint.formats.coordinate_frames import Vectors
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
@@ -32,7 +33,7 @@ _NO_ORIENTATION, _EITHER_WAY = 0, 1
 _UNKNOWN = -1
 
 
-def _class_codes(*words: str | None) -> NDArray[np.int8]:
+def _class_codes(*words: str | None) -> Codes:
     return np.array([_UNKNOWN if word is None else ACTOR_CLASSES.index(word) for word in words], np.int8)
 
 
@@ -54,7 +55,7 @@ def class_code(word: str) -> int:
     return _UNKNOWN if known is None else ACTOR_CLASSES.index(known)
 
 
-def stamps(table: Table, path: str) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def stamps(table: Table, path: str) -> tuple[Times, Mask]:
     """Return a time in nanoseconds, from seconds and nanoseconds or one number of seconds, and whether there is one."""
     columns = table.columns
     whole = columns.get(f"{path}.sec", columns.get(path))
@@ -142,9 +143,9 @@ def _likeliest(items: Table, path: str, label: str, score: str, none: Any) -> ND
     return result
 
 
-def _looked_up(known: NDArray[np.int8], numbers: NDArray[Any]) -> NDArray[np.int8]:
+def _looked_up(known: Codes, numbers: NDArray[Any]) -> Codes:
     inside = (numbers >= 0) & (numbers < len(known))
-    result: NDArray[np.int8] = np.where(inside, known[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
+    result: Codes = np.where(inside, known[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
     return result
 
 

@@ -14,10 +14,9 @@ from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
-from drivelint.formats.ros2 import types as ros_types
+from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.merge import merge_ego
 from drivelint.formats.ros2.objects import OBJECT_ROWS, stamps
 from drivelint.formats.ros2.recorded_poses import (
@@ -28,6 +27,7 @@ from drivelint.formats.ros2.recorded_poses import (
     message_times,
     states_in_fixed_frame,
 )
+from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -37,8 +37,9 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Times
     from drivelint.drive.trace import IngestOptions
-    from drivelint.formats.ros2.cdr import Decoder, Table
+    from drivelint.formats.ros2.cdr import Table
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
@@ -83,7 +84,7 @@ class _Log:
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
-    def _part(self, kind: str, table: Table, log_ns: NDArray[np.int64]) -> Any:
+    def _part(self, kind: str, table: Table, log_ns: Times) -> Any:
         if kind == ros_ego.ODOMETRY:
             return ros_ego.odometry(table, log_ns, self._forward_m)
         if kind not in OBJECT_ROWS:
@@ -110,25 +111,17 @@ class _Log:
 
 def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
     """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-    if channel.message_encoding != "cdr":
-        return None
-    kind = ros_types.message_kind(schema.name)
-    if kind not in _FIELD_TREES:
+    kind = message_kind(schema.name)
+    if channel.message_encoding != "cdr" or kind not in _FIELD_TREES:
         return None
     if channel.schema_id not in decoders:
-        decoders[channel.schema_id] = _decoder(path, schema, kind)
+        if schema.encoding != "ros2msg":
+            raise TraceError(
+                f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert "
+                "it with message definitions"
+            )
+        decoders[channel.schema_id] = Decoder(path, schema, _FIELD_TREES[kind])
     return kind
-
-
-def _decoder(path: Path, schema: Schema, kind: str) -> Decoder:
-    if schema.encoding != "ros2msg":
-        raise TraceError(
-            f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert it "
-            "with message definitions"
-        )
-    name = ros_types.short_type_name(schema.name)
-    types = ros_types.parse(path, schema.name, schema.data)
-    return cdr.Decoder(path, schema.name, types, name, _FIELD_TREES[kind])
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
@@ -213,7 +206,7 @@ def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> R
     return rows.take(~nameless)
 
 
-def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[NDArray[np.int64], NDArray[Any]]]:
+def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
         source = log.one([kind], kind.split("/")[1], asked)

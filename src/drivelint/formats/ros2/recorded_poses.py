@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Codes, Indices, Mask, Times
     from drivelint.formats.coordinate_frames import TransformTree, Vectors
 
 MOVING_MPS = 2.0
@@ -41,28 +42,28 @@ class RecordedPoses:
     the entity goes with its frame.
     """
 
-    stamp_ns: NDArray[np.int64]
-    stamped: NDArray[np.bool_]
-    log_ns: NDArray[np.int64]
+    stamp_ns: Times
+    stamped: Mask
+    log_ns: Times
     ids: NDArray[Any]
     frames: NDArray[Any]
     place: Vectors
     turn: Vectors
     size: Vectors
-    classes: NDArray[np.int8]
-    along: NDArray[np.bool_]
-    faces: NDArray[np.bool_]
+    classes: Codes
+    along: Mask
+    faces: Mask
     velocity: Vectors
     acceleration: Vectors
-    t_ns: NDArray[np.int64]
-    at_ns: NDArray[np.int64] | None = None
-    lifetime_ns: NDArray[np.int64] | None = None
-    locked: NDArray[np.bool_] | None = None
+    t_ns: Times
+    at_ns: Times | None = None
+    lifetime_ns: Times | None = None
+    locked: Mask | None = None
 
     def __len__(self) -> int:
         return len(self.stamp_ns)
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> RecordedPoses:
+    def take(self, rows: Indices | Mask) -> RecordedPoses:
         """Return the chosen rows."""
         chosen: dict[str, Any] = {name: None if v is None else v[rows] for name, v in vars(self).items()}
         return RecordedPoses(**chosen)
@@ -75,9 +76,7 @@ def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
     return RecordedPoses(**joined)
 
 
-def recorded_poses(
-    stamps: tuple[NDArray[np.int64], NDArray[np.bool_]], poses: tuple[Vectors, Vectors], **columns: Any
-) -> RecordedPoses:
+def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], **columns: Any) -> RecordedPoses:
     """Return poses, place and turn, with their own times, all of whose other columns that are not given are not known."""
     n = len(poses[0])
     unknown: dict[str, Any] = {
@@ -159,7 +158,7 @@ def states_in_fixed_frame(
     return states, findings
 
 
-def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: NDArray[np.int64]) -> QualityFinding:
+def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
     if frame in frames.ambiguous:
         why = f"several frames say that they hold {frame!r}"
     elif frames.chain(frame, fixed) is None:
@@ -171,7 +170,7 @@ def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: NDArra
     return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 
-def _other_frame(states: States, swapped: Vectors, along: NDArray[np.bool_], what: str) -> list[QualityFinding]:
+def _other_frame(states: States, swapped: Vectors, along: Mask, what: str) -> list[QualityFinding]:
     """Read velocities in the other frame where they then are what the positions do, and are not as they should be given."""
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))

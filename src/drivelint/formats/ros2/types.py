@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+
+    Wrong = Callable[[str], TraceError]
 
 NUMPY_CODES: Final = {
     "bool": "u1", "byte": "u1", "char": "u1", "uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4",
@@ -24,6 +26,7 @@ TEXT_TYPES: Final = ("string", "wstring")
 SEQUENCE: Final = -1
 _STAMPS: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 """Times that a definition may use without describing them."""
+_NOT_UNDERSTOOD: Final = "has a line that is not understood: {!r}"
 _RULE = re.compile(r"^={10,}\s*$", re.MULTILINE)
 _FIELD = re.compile(
     r"^(?P<type>[A-Za-z][\w/]*)(?P<bound><=\d+)?(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>[A-Za-z]\w*)(?P<rest>.*)$"
@@ -53,47 +56,41 @@ def short_type_name(name: str) -> str:
     return name.replace("/msg/", "/")
 
 
-class _DefinitionError(ValueError):
-    """A definition is wrong; the caller catches this and names the definition."""
-
-
 def parse(path: Path, name: str, text: bytes) -> Types:
     """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
-    try:
-        return _parsed(short_type_name(name), text)
-    except _DefinitionError as error:
-        raise TraceError(f"{path}: the definition of {name} in the log {error}") from error
 
+    def wrong(what: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {what}")
 
-def _parsed(name: str, text: bytes) -> Types:
     try:
         first, *others = _RULE.split(text.decode())
     except UnicodeDecodeError as error:
-        raise _DefinitionError(f"is not text ({error}): record it again") from error
-    sections = [(name, first)]
+        raise wrong(f"is not text ({error}): record it again") from error
+    sections = [(short_type_name(name), first)]
     for section in others:
         title, _, body = section.lstrip().partition("\n")
         if not title.startswith("MSG:"):
-            raise _not_understood(title)
+            raise wrong(_NOT_UNDERSTOOD.format(title[:80]))
         sections.append((short_type_name(title.removeprefix("MSG:").strip()), body))
     defined = {title for title, _ in sections}
     types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
     for title, body in sections:
         types[title] = [
-            Field(field.name, _resolved(field.kind, title, defined), field.count) for field in _fields(body)
+            Field(field.name, _resolved(field.kind, title, defined, wrong), field.count)
+            for field in _fields(body, wrong)
         ]
-    _refuse_loops(name, types)
+    _refuse_loops(short_type_name(name), types, wrong)
     return types
 
 
-def _fields(body: str) -> Iterator[Field]:
+def _fields(body: str, wrong: Wrong) -> Iterator[Field]:
     for raw in body.splitlines():
         line = raw.split("#")[0].strip()
         if not line:
             continue
         match = _FIELD.match(line)
         if match is None:
-            raise _not_understood(line)
+            raise wrong(_NOT_UNDERSTOOD.format(line[:80]))
         if match["rest"].lstrip().startswith("="):
             continue  # a constant
         count = None
@@ -103,7 +100,7 @@ def _fields(body: str) -> Iterator[Field]:
         yield Field(match["name"], match["type"], count)
 
 
-def _resolved(kind: str, container: str, defined: set[str]) -> str:
+def _resolved(kind: str, container: str, defined: set[str], wrong: Wrong) -> str:
     """Return the full name of a member's type: another package's, the same package's, or a primitive."""
     if kind in NUMPY_CODES or kind in TEXT_TYPES:
         return kind
@@ -113,16 +110,16 @@ def _resolved(kind: str, container: str, defined: set[str]) -> str:
     if "/" not in full and full not in _STAMPS:
         full = f"{container.split('/', maxsplit=1)[0]}/{full}"
     if full not in defined and full not in _STAMPS:
-        raise _DefinitionError(f"uses {kind}, which it does not describe: record it with its definitions")
+        raise wrong(f"uses {kind}, which it does not describe: record it with its definitions")
     return full
 
 
-def _refuse_loops(name: str, types: Types) -> None:
+def _refuse_loops(name: str, types: Types, wrong: Wrong) -> None:
     done: set[str] = set()
 
     def visit(kind: str, inside: tuple[str, ...]) -> None:
         if kind in inside:
-            raise _DefinitionError(f"contains itself ({kind}): record it again")
+            raise wrong(f"contains itself ({kind}): record it again")
         if kind in done:
             return
         for field in types.get(kind, []):
@@ -130,7 +127,3 @@ def _refuse_loops(name: str, types: Types) -> None:
         done.add(kind)
 
     visit(name, ())
-
-
-def _not_understood(line: str) -> _DefinitionError:
-    return _DefinitionError(f"has a line that is not understood: {line[:80]!r}")

@@ -89,7 +89,7 @@ def read(probe: Probe) -> Recording:
     """
     path = probe.path
     table = _typed(path, _rows(path))
-    nameless = pc.equal(_text(table, "id"), "").to_numpy()
+    nameless = pc.equal(table["id"], "").to_numpy()
     # a step at which nobody is there is a row with its time alone
     filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
@@ -134,8 +134,7 @@ def _is_csv(head: bytes) -> bool:
 
 
 def _recording(table: pa.Table, types: dict[str, VehicleType]) -> Recording:
-    ids = pc.dictionary_encode(_text(table, "id")).combine_chunks()
-    kinds = pc.dictionary_encode(_text(table, "type")).combine_chunks()
+    ids, kinds = (pc.dictionary_encode(table[name]).combine_chunks() for name in ("id", "type"))
     said = [types.get(name) or _DEFAULTS.get(name, VehicleType()) for name in kinds.dictionary.to_pylist()]
     code = kinds.indices.to_numpy()
     length, width = (np.array([getattr(t, side) for t in said], np.float64)[code] for side in ("length_m", "width_m"))
@@ -224,31 +223,19 @@ def _positive(text: str | None, default: float) -> float:
     return value if value > 0 else float("nan")
 
 
-def _text(table: pa.Table, name: str) -> pa.ChunkedArray:
-    column = _column(table, name)
-    return pa.chunked_array([pa.repeat("", len(table))]) if column is None else column
-
-
-def _column(table: pa.Table, name: str) -> pa.ChunkedArray | None:
-    wanted = "timestep_time" if name == "time" else f"vehicle_{name}"
-    return table.column(wanted) if wanted in table.schema.names else None
-
-
 def _floats(table: pa.Table, name: str) -> Floats:
     """Return a column of `_typed` as numbers, NaN where it is absent, empty or infinite."""
-    column = _column(table, name)
-    values = np.full(len(table), np.nan) if column is None else np.asarray(column.to_numpy(), np.float64)
+    values = np.asarray(table[name].to_numpy(), np.float64)
     return np.where(np.isinf(values), np.nan, values)
 
 
 def _typed(path: Path, table: pa.Table) -> pa.Table:
-    """Return the columns that are read as texts and numbers, "" and NaN where one is empty. Errors: `TraceError`."""
+    """Return the columns that are read as texts and numbers, "" and NaN where one is empty or not there. Errors: `TraceError`."""
     made = {}
     for name in ("time", *_FIELDS):
+        source = "timestep_time" if name == "time" else f"vehicle_{name}"
         try:
-            column = _column(table, name)
-            if column is None:
-                continue
+            column = table[source] if source in table.schema.names else pa.nulls(len(table))
             if name in {"id", "type"}:
                 column = pc.fill_null(column.cast(pa.string()), "")
             else:
@@ -260,7 +247,7 @@ def _typed(path: Path, table: pa.Table) -> pa.Table:
             raise TraceError(
                 f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log anew"
             ) from error
-        made["timestep_time" if name == "time" else f"vehicle_{name}"] = column
+        made[name] = column
     return pa.table(made)
 
 
@@ -316,11 +303,11 @@ def _lines(content: bytes) -> pa.Table | None:
     if times is None or more or not all(pc.all(column).as_py() for column in alike):
         return None
     values = {f"vehicle_{name}": table.column(f"{2 * i + 1}") for i, name in enumerate(names) if name in _FIELDS}
-    table = pa.table({"timestep_time": times, **values})
     # the parser makes blanks of tabs, and refuses other control characters
-    if any(pc.any(pc.match_substring_regex(_text(table, name), "[[:cntrl:]]")).as_py() for name in ("id", "type")):
+    texts = [values[name] for name in ("vehicle_id", "vehicle_type") if name in values]
+    if any(pc.any(pc.match_substring_regex(column, "[[:cntrl:]]")).as_py() for column in texts):
         return None
-    return table
+    return pa.table({"timestep_time": times, **values})
 
 
 def _is_plain(head: bytes) -> bool:

@@ -135,11 +135,12 @@ class _Body:
 
     def read(self) -> Recording:
         columns = mappings.needed_columns(self.mapping)
-        n = self.sheet.load(
-            dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
-        )
+        names = dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
+        n = self.sheet.load(names)
         t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit)
-        blank = self._blank(columns, n)
+        blank = np.ones(n, np.bool_)  # the rows that hold nothing in any mapped column
+        for name in names:
+            blank &= ~self.sheet.filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
         parts, texts = [], []
@@ -242,14 +243,6 @@ class _Body:
         message = f"no actor is called {names}: the first vehicle of the file, {first}, is taken as the ego"
         self.findings.append(QualityFinding("ego_assumed", "info", message, actor_id=first))
         return [first]
-
-    def _blank(self, columns: list[str], n: int) -> Mask:
-        """Say which rows hold nothing in any mapped column."""
-        blank = np.ones(n, np.bool_)
-        for column in columns:
-            for k in self.groups:
-                blank &= ~self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
-        return blank
 
     def _report_rows(self, rows: Mask, why: str, check: str) -> None:
         n = int(rows.sum())
