@@ -34,13 +34,6 @@ def seconds_since_start(t_ns: int, drive: Row) -> float:
     return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
 
 
-def timed_finding(row: Row, drive: Row) -> TimedFinding:
-    """Return a finding of a drive with its times."""
-    return TimedFinding(
-        row, *(seconds_since_start(row[name], drive) for name in ("t_start_ns", "t_end_ns", "t_worst_ns"))
-    )
-
-
 def finding_key(row: Row) -> FindingKey:
     """Return what identifies a finding within a drive: ego, rule, profile and object."""
     return row["ego_id"], row["rule_id"], row["profile"], row["object_id"]
