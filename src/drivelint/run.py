@@ -71,7 +71,9 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         store.insert(con, "profile", profiles)
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         # the report and the annotated logs read each batch before its tables are cleared
-        observers: list[BatchObserver] = [_gather] if settings.out else []
+        observers: list[BatchObserver] = []
+        if settings.out:
+            observers.append(lambda con, _drives, **_part: evidence.gather(con))
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"
             observers.append(Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict))
@@ -116,10 +118,6 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             strict=settings.strict,
             asked=RunRequest.from_options(settings, places),
         )
-
-
-def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:
-    evidence.gather(con)
 
 
 def _judge(
