@@ -104,7 +104,9 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         finally:
             session.close()
         if len(refused) == len(paths):
-            raise _none_judged(refused)
+            first = refused[0].error
+            many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
+            raise first if len(refused) == 1 else many
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         return Result(
@@ -167,10 +169,3 @@ def _failed(drive: Drive, error: Exception) -> RefusedLog:
     if isinstance(error, duckdb.OutOfMemoryException):
         return RefusedLog(drive.trace.path, MemoryShortError(str(drive.trace.path)))
     return RefusedLog(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
-
-
-def _none_judged(refused: list[RefusedLog]) -> DriveLintError:
-    first = refused[0].error
-    if len(refused) == 1:
-        return first
-    return TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")

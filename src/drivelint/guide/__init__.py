@@ -47,15 +47,15 @@ def text(name: str, table: str | None = None) -> str:
         raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
     if table is not None and name != "dictionary":
         raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
-    from drivelint.guide import dictionary
-
-    if table is not None:
-        return dictionary.table_text(table)
     if name in REFERENCE_TOPICS:
-        return dictionary.REFERENCE[name]()
+        from drivelint.guide import dictionary
+
+        return dictionary.REFERENCE[name]() if table is None else dictionary.table_text(table)
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
-        source = source.replace(OUTPUT_TABLES_MARK, dictionary.output_tables())
+        from drivelint.guide.dictionary import output_tables
+
+        source = source.replace(OUTPUT_TABLES_MARK, output_tables())
     return _MARK.sub("", source)
 
 
