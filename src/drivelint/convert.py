@@ -112,7 +112,7 @@ def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
         if target.exists() and not _is_our_mcap(target):
             raise UsageError(f"{target} exists and was not written by convert: choose another --out")
     elif next(out.iterdir(), None) is not None and not (
-        is_canonical_folder(out) and _is_our_parquet(out / "actor_state.parquet")
+        is_canonical_folder(out) and _MARK.encode() in (parquet.schema(out / "actor_state.parquet").metadata or {})
     ):
         raise UsageError(f"--out {out} holds other files: a converted log is a folder of its own: choose another")
 
@@ -120,10 +120,6 @@ def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
 def _is_our_mcap(path: Path) -> bool:
     with path.open("rb") as file:
         return osi_log.LIBRARY.encode() in file.read(_HEAD_BYTES)
-
-
-def _is_our_parquet(path: Path) -> bool:
-    return _MARK.encode() in (parquet.schema(path).metadata or {})
 
 
 def _of_a_check(request: ConvertRequest) -> list[str]:

@@ -71,7 +71,9 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         store.insert(con, "profile", profiles)
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         # the report and the annotated logs read each batch before its tables are cleared
-        observers: list[BatchObserver] = [_gather] if settings.out else []
+        observers: list[BatchObserver] = []
+        if settings.out:
+            observers.append(lambda con, _drives, **_part: evidence.gather(con))
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"
             observers.append(Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict))
@@ -102,7 +104,9 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         finally:
             session.close()
         if len(refused) == len(paths):
-            raise _none_judged(refused)
+            first = refused[0].error
+            many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
+            raise first if len(refused) == 1 else many
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         return Result(
@@ -116,10 +120,6 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             strict=settings.strict,
             asked=RunRequest.from_options(settings, places),
         )
-
-
-def _gather(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], **_part: bool) -> None:
-    evidence.gather(con)
 
 
 def _judge(
@@ -169,10 +169,3 @@ def _failed(drive: Drive, error: Exception) -> RefusedLog:
     if isinstance(error, duckdb.OutOfMemoryException):
         return RefusedLog(drive.trace.path, MemoryShortError(str(drive.trace.path)))
     return RefusedLog(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))
-
-
-def _none_judged(refused: list[RefusedLog]) -> DriveLintError:
-    first = refused[0].error
-    if len(refused) == 1:
-        return first
-    return TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")

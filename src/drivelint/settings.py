@@ -50,7 +50,8 @@ def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SET
             raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(options))}")
         name, repeatable = options[key]
         value = _assignments(said, file) if key == "env" and isinstance(said, dict) else said
-        if not _fits(value, repeatable):
+        texts = isinstance(value, list) and all(isinstance(item, str) for item in value)
+        if not (texts if repeatable else isinstance(value, str | bool | int | float)):
             raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
         values[name] = value if repeatable or isinstance(value, bool) else str(value)
     return values
@@ -63,9 +64,3 @@ def _assignments(table: Mapping[str, Any], file: Path) -> list[str]:
         if not isinstance(value, str | bool):
             raise UsageError(f"{file}: [env] {key} = {value!r}: must be a text")
     return [f"{key}={words[value] if isinstance(value, bool) else value}" for key, value in table.items()]
-
-
-def _fits(value: Any, repeatable: bool) -> bool:
-    if repeatable:
-        return isinstance(value, list) and all(isinstance(item, str) for item in value)
-    return isinstance(value, str | bool | int | float)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.annotate.clock import LogClock
     from drivelint.annotate.tracks import Tracks
+    from drivelint.arrays import Floats, Times
 
 MAX_BOXES: Final = 1_000_000
 """A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
@@ -34,39 +34,25 @@ _HEIGHT: Final = 1.5
 RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
-@dataclass(frozen=True)
-class Boxes:
-    """The boxes that are shown: rows in the order of time, then actor."""
-
-    tracks: Tracks
-    rows: NDArray[np.intp]
-    every: int
-
-    @property
-    def t_ns(self) -> NDArray[np.int64]:
-        """Time of each row."""
-        return self.tracks.t_ns[self.rows]
-
-
-def select_boxes(tracks: Tracks) -> Boxes:
-    """Choose the boxes to show: all that have a place and a heading, at every n-th step if they are too many."""
+def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
+    """Return the rows to show, by time, then actor, and n: all that have a place and a heading, at every n-th step if too many."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
         steps, step = np.unique(tracks.t_ns[placed], return_inverse=True)
         placed = placed[step % every == 0] if len(steps) > every else placed
     order = np.argsort(tracks.t_ns[placed], kind="stable")
-    return Boxes(tracks, placed[order], every)
+    return placed[order], every
 
 
-def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChunk]:
+def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
     """Yield chunks of `foxglove.SceneUpdate` message records, one per step, each with its index (log time, offset)."""
-    tracks, rows = boxes.tracks, boxes.rows
     if not len(rows):
         return
-    first = np.flatnonzero(np.diff(boxes.t_ns, prepend=boxes.t_ns[0] - 1))
+    t_ns = tracks.t_ns[rows]
+    first = np.flatnonzero(np.diff(t_ns, prepend=t_ns[0] - 1))
     count = np.diff(first, append=len(rows))
-    t_ns = boxes.t_ns[first]
+    t_ns = t_ns[first]
     log_time = clock.log_time(t_ns)
     heads = _heads(tracks, _lifetime(t_ns))
     width = np.array([len(head) for head in heads])[tracks.actor[rows]] + _tail_width()
@@ -83,13 +69,11 @@ def messages(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChun
         yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
-def ego_transforms(boxes: Boxes, clock: LogClock, channel: int) -> Iterator[RecordChunk]:
+def ego_transforms(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
     """Yield chunks of `foxglove.FrameTransform` records: where the first ego is, so that a viewer can follow it."""
-    tracks = boxes.tracks
-    egos = [name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego]
-    if not egos:
+    if not tracks.egos:
         return
-    rows = boxes.rows[tracks.actor[boxes.rows] == tracks.names.index(min(egos))]
+    rows = rows[tracks.actor[rows] == tracks.names.index(tracks.egos[0])]
     log_time = clock.log_time(tracks.t_ns[rows])
     z, half = np.nan_to_num(tracks.z[rows]), tracks.yaw[rows] / 2
     body = wire.join_columns(
@@ -145,7 +129,7 @@ def _behind(
     return out.tobytes(), place[is_start]
 
 
-def _lifetime(t_ns: NDArray[np.int64]) -> int:
+def _lifetime(t_ns: Times) -> int:
     return int(MAX_GAP_PERIODS * float(np.median(np.diff(t_ns)))) if len(t_ns) > 1 else 0
 
 
@@ -181,16 +165,14 @@ def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64])
     return np.concatenate([pose, wire.timestamps(1, log_time)], axis=1)
 
 
-def _pose_fields(
-    x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], half_yaw: NDArray[np.float64]
-) -> wire.Bytes:
+def _pose_fields(x: Floats, y: Floats, z: Floats, half_yaw: Floats) -> wire.Bytes:
     """Return one encoded pose field per row."""
     where, turned = _doubles(1, x, y, z), _doubles(2, np.sin(half_yaw), np.cos(half_yaw), first=3)
     head = wire.varint(1 << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1])
     return wire.join_columns(len(x), head, where, turned)
 
 
-def _doubles(number: int, *columns: NDArray[np.float64], first: int = 1) -> wire.Bytes:
+def _doubles(number: int, *columns: Floats, first: int = 1) -> wire.Bytes:
     """Return a field that holds a message of doubles, numbered from `first`, a row each."""
     keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first)]
     head = wire.varint(number << 3 | 2) + wire.varint(9 * len(columns))

@@ -7,26 +7,29 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from drivelint.annotate.evidence import danger_spaces, gather_evidence
+import pyarrow as pa
+import pyarrow.compute as pc
+
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
-from drivelint.report import summary
+from drivelint.result import collect
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     import duckdb
-    import pyarrow as pa
 
-    from drivelint.annotate.evidence import Evidence
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
+_OVERTAKES = ("evidence/overtake_space", "evidence/chain_point")
+"""What the database only has while it has that part: the danger spaces in overtakes, and the chains that they lie on."""
 
 
 class Annotator:
@@ -38,13 +41,10 @@ class Annotator:
     def __init__(self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool) -> None:
         self._folder = folder
         self._rules = rules
-        names = rules["rule_id"].to_pylist()
-        self._versions = dict(zip(names, rules["rule_version"].to_pylist(), strict=True))
-        self._sense_by_rule = dict(zip(names, rules["sense"].to_pylist(), strict=True))
         self._fail_on = fail_on
         self._strict = strict
         self._roads: dict[str, Road] = {}
-        self._rooms: list[tuple[pa.Table, pa.Table]] = []
+        self._parts: list[list[pa.Table]] = []
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate a batch that was just judged in `con`, once the last of its parts was.
@@ -53,18 +53,20 @@ class Annotator:
         """
         ids = [drive.trace.drive_id for drive in drives]
         if first:
-            self._rooms.clear()
-        self._rooms.append(danger_spaces(con, ids))
+            self._parts.clear()
+        self._parts.append([con.execute(sql, {"ids": ids}).to_arrow_table() for sql in map(statement, _OVERTAKES)])
         if not last:
             return
-        found = gather_evidence(con, ids, self._rooms)
-        self._rooms.clear()
+        tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
+        tables += [pa.concat_tables(parts) for parts in zip(*self._parts, strict=True)]
+        self._parts.clear()
         for drive in drives:
             name, road = drive.trace.drive_id, self._road(drive.environment)
-            told = self._summary(found[name])
-            said = Annotation(drive.trace, found[name], road, drive.geo, self._versions, self._sense_by_rule, told)
+            mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
+            verdicts, findings, row, spaces, chains = mine
+            alone = Result(verdicts, findings, row, self._rules, fail_on=self._fail_on, strict=self._strict)
             with _whole(self._folder / f"{name}.mcap") as file:
-                write(file, said)
+                write(file, Annotation(drive.trace, alone, spaces, chains, road, drive.geo))
         with _whole(self._folder / LAYOUT_FILE) as file:
             file.write((Path(__file__).parent / "layout.json").read_bytes())
 
@@ -75,11 +77,6 @@ class Annotator:
         if environment.environment_id not in self._roads:
             self._roads = {environment.environment_id: Road(environment)}
         return self._roads[environment.environment_id]
-
-    def _summary(self, evidence: Evidence) -> bytes:
-        """Return the summary of one drive, as if it had been checked alone."""
-        tables = (evidence.verdicts, evidence.findings, evidence.drive, self._rules)
-        return summary.render(Result(*tables, fail_on=self._fail_on, strict=self._strict))
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,118 +12,105 @@ import pyarrow.compute as pc
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
 from drivelint.annotate.result_messages import Message
-from drivelint.annotate.tracks import floats
+from drivelint.arrays import floats
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.result.counts import grouped
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Callable, Mapping
+
+    import pyarrow as pa
 
     from drivelint.annotate.clock import LogClock
-    from drivelint.annotate.evidence import Evidence
-    from drivelint.annotate.tracks import Tracks
+    from drivelint.annotate.tracks import ActorPoses, Tracks
+    from drivelint.arrays import Floats, Times
 
 FREE_COLOUR = Colour(0.20, 0.70, 0.35)
 ENTERED_COLOUR = Colour(0.90, 0.16, 0.16)
 OVERLAP_COLOUR = Colour(1.00, 0.62, 0.05)
 ROLE_COLOUR = Colour(0.95, 0.95, 0.95)
 MAX_STEPS: Final = 5_000
-Strip = tuple["NDArray[np.float64]", "NDArray[np.float64]"]
 _SAMPLES: Final = 24
 _UP_M: Final = 0.1  # above the lanes
 _ABOVE_M: Final = 1.5
 _LEAST_M: Final = 0.1
 
 
-def messages(evidence: Evidence, tracks: Tracks, clock: LogClock) -> list[Message]:
-    """Return a SceneUpdate for every step of an overtake, and an empty one behind each."""
-    rows = evidence.spaces.to_pylist()
+def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock) -> list[Message]:
+    """Return a SceneUpdate for every step of an overtake, and an empty one behind each.
+
+    `spaces` and `chains` are the danger spaces and the centre lines, by station, of the chains that they were judged on.
+    """
+    rows = spaces.to_pylist()
     every = max(1, -(-len(rows) // MAX_STEPS))
     by_time = grouped(rows[::every], lambda row: int(row["t_ns"]))
     for ego in sorted({row["ego_id"] for row in rows}):
         for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
             by_time.setdefault(t, [])
-    lines, roles = _Lines(evidence), _Roles(rows, tracks)
+    line_of = cache(partial(_line, chains))
+    times = np.unique(np.array([row["t_ns"] for row in rows], np.int64))
+    step = {t: k for k, t in enumerate(times.tolist())}
+    names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
+    poses = {name: tracks.poses_at(name, times) for name in names}
     out = []
     for t, shown in sorted(by_time.items()):
         time = clock.at(t)
         entities = [
-            draw.entity(f"overtake of {row['ego_id']}", time, _spaces(row, lines) + roles.labels(row)) for row in shown
+            draw.entity(f"overtake of {row['ego_id']}", time, _spaces(row, line_of) + _roles(row, poses, step[t]))
+            for row in shown
         ]
         out.append(Message(time, draw.deletion(time) + b"".join(entities)))
     return out
 
 
-def _behind(times: NDArray[np.int64], drawn: NDArray[np.int64]) -> list[int]:
+def _behind(times: Times, drawn: Times) -> list[int]:
     """Return the steps of the ego that follow a drawn one and are not drawn themselves."""
     after = np.searchsorted(times, drawn, side="right")
     return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn)]
 
 
-class _Lines:
-    """The centre lines of the chains that overtakes were judged on, by station."""
-
-    def __init__(self, evidence: Evidence) -> None:
-        self._chains = evidence.chains
-        self._found: dict[tuple[str, int], NDArray[np.float64]] = {}
-
-    def strip(self, row: dict[str, Any], start: float, end: float, d: float, half: float) -> Strip | None:
-        """Return left and right edge of a strip around the offset `d`; None where the chain has no such stations."""
-        if row["chain_id"] is None:
-            return None
-        line = self._line(row["ego_id"], row["chain_id"])
-        if not line.shape[1]:
-            return None
-        start, end = max(start, line[0, 0]), min(end, line[0, -1])
-        if end - start < _LEAST_M:
-            return None
-        s = np.linspace(start, end, _SAMPLES)
-        x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
-        left, right = (np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half))
-        return left, right
-
-    def _line(self, ego: str, chain: int) -> NDArray[np.float64]:
-        if (ego, chain) not in self._found:
-            mine = pc.and_(pc.equal(self._chains["ego_id"], ego), pc.equal(self._chains["chain_id"], chain))
-            rows = self._chains.filter(mine)
-            columns = [floats(rows[name]) for name in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
-            self._found[ego, chain] = np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
-        return self._found[ego, chain]
+def _line(chains: pa.Table, ego: str, chain: int) -> Floats:
+    """Return a chain's centre line by station: station, x, y, z, and its direction as x and y."""
+    rows = chains.filter(pc.and_(pc.equal(chains["ego_id"], ego), pc.equal(chains["chain_id"], chain)))
+    columns = [floats(rows[name]) for name in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
+    return np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
 
 
-class _Roles:
-    """Who is who in the overtakes, and where, found for all their steps at once."""
-
-    def __init__(self, rows: list[dict[str, Any]], tracks: Tracks) -> None:
-        times = np.unique(np.array([row["t_ns"] for row in rows], np.int64))
-        names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
-        self._step = {t: k for k, t in enumerate(times.tolist())}
-        self._places = {name: tracks.poses_at(name, times) for name in sorted(names)}
-
-    def labels(self, row: dict[str, Any]) -> bytes:
-        """Return the roles of one step as texts above the boxes that are placed."""
-        roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
-        if row["ov_id"] is not None:
-            roles.append((row["ov_id"], "OV"))
-        k = self._step[row["t_ns"]]
-        parts = []
-        for name, role in roles:
-            p = self._places[name]
-            x, y, z = float(p.x[k]), float(p.y[k]), float(p.z[k])
-            if math.isfinite(x) and math.isfinite(y):
-                parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE_COLOUR))
-        return b"".join(parts)
+def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tuple[Floats, Floats] | None:
+    """Return left and right edge of a strip around the offset `d`; None where the chain has no such stations."""
+    if not line.shape[1]:
+        return None
+    start, end = max(start, line[0, 0]), min(end, line[0, -1])
+    if end - start < _LEAST_M:
+        return None
+    s = np.linspace(start, end, _SAMPLES)
+    x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
+    left, right = (np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half))
+    return left, right
 
 
-def _spaces(row: dict[str, Any], lines: _Lines) -> bytes:
+def _roles(row: dict[str, Any], poses: Mapping[str, ActorPoses], k: int) -> bytes:
+    """Return who is who at one step, the k-th of `poses`, as texts above the boxes that are placed."""
+    roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
+    if row["ov_id"] is not None:
+        roles.append((row["ov_id"], "OV"))
+    parts = []
+    for name, role in roles:
+        x, y, z = (float(column[k]) for column in poses[name][:3])
+        if math.isfinite(x) and math.isfinite(y):
+            parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE_COLOUR))
+    return b"".join(parts)
+
+
+def _spaces(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes:
     """Return the danger spaces of ego and OV at one step."""
     own = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
     theirs = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
     parts = []
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
-        if None not in (s, d, half, sd):
+        if None not in (row["chain_id"], s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
-            if strip := lines.strip(row, start, end, d, half):
+            if strip := _strip(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
                 left, right = strip
                 colour = ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR
                 around = np.concatenate([left, right[::-1]])

@@ -5,7 +5,7 @@ Each message is complete: it takes away what was drawn before, so that a viewer 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -16,13 +16,13 @@ from drivelint.formats.foxglove import messages as foxglove
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from numpy.typing import NDArray
+    import pyarrow as pa
 
     from drivelint.annotate.clock import LogClock
-    from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.tracks import Tracks
+    from drivelint.arrays import Floats, Times
 
 FAIL_COLOUR = Colour(0.90, 0.16, 0.16)
 NEAR_MISS_COLOUR = Colour(1.00, 0.62, 0.05)
@@ -65,25 +65,25 @@ class MarkerFrame(NamedTuple):
     object: Box | None
 
 
-def markers(evidence: Evidence, sense_by_rule: Mapping[str, str]) -> list[Marker]:
+def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, str]) -> list[Marker]:
     """Return findings over their failing stretch, near misses around their worst step; fails first, by severity."""
-    fails = [
-        _window(
-            row, sense_by_rule, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS)
-        )
-        for row in sorted(evidence.findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
+    drawn = [
+        (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
+        for row in sorted(findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
-    near = [
-        _window(row, sense_by_rule, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
-        for row in evidence.verdicts.filter(evidence.verdicts["near_miss"]).to_pylist()
+    drawn += [
+        (row, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
+        for row in verdicts.filter(verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
-    return fails + near
+    return [
+        Marker(row["ego_id"], row["object_id"], start, end, colour, headline(row, sense_by_rule))
+        for row, colour, start, end in drawn
+    ]
 
 
-def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, sense_by_rule: Mapping[str, str]) -> list[Message]:
+def messages(found: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return the SceneUpdates of all windows: one for every step in any of them, and an empty one behind each."""
-    found = markers(evidence, sense_by_rule)
     steps = [_steps(tracks, window) for window in found]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
     drawn: dict[int, list[MarkerFrame]] = {}
@@ -102,20 +102,14 @@ def messages(evidence: Evidence, tracks: Tracks, clock: LogClock, sense_by_rule:
     return out
 
 
-def _window(
-    row: dict[str, Any], sense_by_rule: Mapping[str, str], colour: Colour, start_ns: int, end_ns: int
-) -> Marker:
-    return Marker(row["ego_id"], row["object_id"], start_ns, end_ns, colour, headline(row, sense_by_rule))
-
-
-def _steps(tracks: Tracks, window: Marker) -> tuple[NDArray[np.int64], int | None]:
+def _steps(tracks: Tracks, window: Marker) -> tuple[Times, int | None]:
     """Return the ego's steps in a window, and the one behind it."""
     times = tracks.times(window.ego_id)
     first, end = (int(i) for i in np.searchsorted(times, [window.start_ns, window.end_ns + 1]))
     return times[first:end], int(times[end]) if end < len(times) else None
 
 
-def _boxes(tracks: Tracks, name: str | None, times: NDArray[np.int64]) -> list[Box | None]:
+def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
     """Return an actor's box at each time; None where its place or heading is not known."""
     if name is None:
         return [None] * len(times)
@@ -153,7 +147,7 @@ def _pair(one: MarkerFrame) -> bytes:
     return b"".join(parts)
 
 
-def box_corners(box: Box) -> NDArray[np.float64]:
+def box_corners(box: Box) -> Floats:
     """Return the four corners of a box at its middle height."""
     length, width = (v if np.isfinite(v) else _UNKNOWN_SIZE for v in (box.length, box.width))
     along, across = np.array([1, 1, -1, -1]) * length / 2, np.array([1, -1, -1, 1]) * width / 2

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.clock import LogClock
     from drivelint.annotate.road import Road
     from drivelint.annotate.tracks import Tracks
+    from drivelint.arrays import Floats
     from drivelint.road.geo_reference import GeoFrame
 
 STEP_NS: Final = 200_000_000
@@ -40,8 +41,7 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
 
     A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
     """
-    egos = [name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego]
-    rows = _thinned(tracks, min(egos)) if egos else np.zeros(0, np.intp)
+    rows = _thinned(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
     degrees = geo.degrees(_places(tracks, rows))
     known = np.isfinite(degrees).all(axis=1)
     times = clock.log_time(tracks.t_ns[rows])
@@ -78,7 +78,7 @@ def _feature(kind: str, geometry: dict[str, Any], facts: dict[str, Any]) -> dict
     return {"type": "Feature", "geometry": geometry, "properties": {"kind": kind, **facts, "style": _STYLES[kind]}}
 
 
-def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
     known = np.isfinite(tracks.x) & np.isfinite(tracks.y)
     if road is None or not known.any():
         return
@@ -86,9 +86,9 @@ def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, NDArra
         yield "lane", name, shapely.get_coordinates(shapely.simplify(shapely.linearrings(outline), _SMOOTHED_M))
 
 
-def _ways(tracks: Tracks) -> Iterator[tuple[str, str, NDArray[np.float64]]]:
+def _ways(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
     """Yield each ego's way, in pieces where it is not known for a while."""
-    for name in sorted(name for name, is_ego in zip(tracks.names, tracks.is_ego, strict=True) if is_ego):
+    for name in tracks.egos:
         rows, steps = _thinned(tracks, name), np.diff(tracks.times(name))
         gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * STEP_NS) if len(steps) else 0.0
         for piece in np.split(rows, np.flatnonzero(np.diff(tracks.t_ns[rows]) > gap) + 1):
@@ -105,9 +105,9 @@ def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
     return rows[first]
 
 
-def _places(tracks: Tracks, rows: NDArray[np.intp]) -> NDArray[np.float64]:
+def _places(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
     return np.stack([tracks.x[rows], tracks.y[rows]], axis=1)
 
 
-def _rounded(degrees: NDArray[np.float64]) -> Any:
+def _rounded(degrees: Floats) -> Any:
     return np.round(degrees, _DECIMALS).tolist()

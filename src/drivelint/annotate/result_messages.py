@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -12,6 +11,7 @@ from mcap.records import Schema
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
+from drivelint.result.text import finite
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,11 +84,8 @@ def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
 
 def _json(row: dict[str, Any], log_time: int) -> Message:
     # what is not known is left out: viewers refuse a schema that allows null
-    return Message(log_time, msgspec.json.encode({key: value for key, value in row.items() if _is_known(value)}))
-
-
-def _is_known(value: object) -> bool:
-    return value is not None and not (isinstance(value, float) and not math.isfinite(value))
+    known = {key: value for key, value in row.items() if finite(value) is not None}
+    return Message(log_time, msgspec.json.encode(known))
 
 
 def _in_order(messages: list[Message]) -> list[Message]:

@@ -11,7 +11,7 @@ import shapely
 
 from drivelint.annotate import draw
 from drivelint.annotate.draw import Colour
-from drivelint.annotate.tracks import floats
+from drivelint.arrays import floats
 from drivelint.formats.foxglove import messages as foxglove
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from drivelint.arrays import Floats
     from drivelint.road.map_reader import MapTables
 
 NEAR_M: Final = 40.0
@@ -47,13 +48,11 @@ class Road:
         self._about = {row["lanelet_id"]: row for row in lanelets.to_pylist()}
         self._encoded: dict[int, bytes] = {}
 
-    def lanes_near(self, x: NDArray[np.float64], y: NDArray[np.float64], log_time: int) -> bytes:
+    def lanes_near(self, x: Floats, y: Floats, log_time: int) -> bytes:
         """Return the SceneUpdate with the lanes near some positions."""
         return b"".join(self._entity(int(i), log_time) for i in self._near(x, y))
 
-    def drivable_outlines(
-        self, x: NDArray[np.float64], y: NDArray[np.float64]
-    ) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    def drivable_outlines(self, x: Floats, y: Floats) -> Iterator[tuple[str, Floats]]:
         """Yield the drivable lanes near some positions: lanelet, closed outline (n, 2), counter-clockwise."""
         for i in self._near(x, y):
             name, rows = str(self._names[i]), self._rows[i]
@@ -64,7 +63,7 @@ class Road:
                 )
                 yield name, np.concatenate([right, left[::-1], right[:1]])
 
-    def _near(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _near(self, x: Floats, y: Floats) -> NDArray[np.int64]:
         column, row = (np.floor(values / NEAR_M).astype(np.int64) for values in (x, y))
         _, first = np.unique(column * _ROWS + row, return_index=True)
         cells = np.stack([column[first], row[first]])

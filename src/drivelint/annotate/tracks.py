@@ -7,27 +7,29 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import floats
 from drivelint.drive.order import MAX_GAP_PERIODS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import pyarrow as pa
     from numpy.typing import NDArray
+
+    from drivelint.arrays import Floats, Times
 
 
 class ActorPoses(NamedTuple):
-    """One actor's box at several times, NaN where it is not known: centre, heading; its length, width and height."""
+    """One actor's box at several times, NaN where it is not known: centre, heading; its length and width."""
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    z: NDArray[np.float64]
-    yaw: NDArray[np.float64]
+    x: Floats
+    y: Floats
+    z: Floats
+    yaw: Floats
     length: float
     width: float
-    height: float
 
 
 @dataclass(frozen=True)
@@ -36,14 +38,19 @@ class Tracks:
 
     names: list[str]
     classes: list[str | None]
-    sizes: NDArray[np.float64]
+    sizes: Floats
     is_ego: list[bool]
     actor: NDArray[np.int32]
-    t_ns: NDArray[np.int64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    z: NDArray[np.float64]
-    yaw: NDArray[np.float64]
+    t_ns: Times
+    x: Floats
+    y: Floats
+    z: Floats
+    yaw: Floats
+
+    @property
+    def egos(self) -> list[str]:
+        """The names of the egos, sorted."""
+        return sorted(name for name, is_ego in zip(self.names, self.is_ego, strict=True) if is_ego)
 
     @cached_property
     def rows_by_actor(self) -> dict[str, slice]:
@@ -51,23 +58,23 @@ class Tracks:
         edges = np.searchsorted(self.actor, np.arange(len(self.names) + 1))
         return {name: slice(int(edges[i]), int(edges[i + 1])) for i, name in enumerate(self.names)}
 
-    def times(self, name: str) -> NDArray[np.int64]:
+    def times(self, name: str) -> Times:
         """Return the times of an actor's samples; none if it is not there."""
         return self.t_ns[self.rows_by_actor.get(name, slice(0, 0))]
 
-    def poses_at(self, name: str, t_ns: NDArray[np.int64]) -> ActorPoses:
+    def poses_at(self, name: str, t_ns: Times) -> ActorPoses:
         """Return where an actor is at some times, by its last sample not too long before each."""
         span, times = self.rows_by_actor.get(name, slice(0, 0)), self.times(name)
         if not len(times):
             nowhere = np.full(len(t_ns), np.nan)
-            return ActorPoses(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan, np.nan)
+            return ActorPoses(nowhere, nowhere, nowhere, nowhere, np.nan, np.nan)
         k = np.searchsorted(times, t_ns, side="right") - 1
         row = span.start + np.clip(k, 0, None)
         gap = MAX_GAP_PERIODS * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
         known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
         x, y, z, yaw = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
-        length, width, height = map(float, self.sizes[self.actor[span.start]])
-        return ActorPoses(x, y, z, yaw, length, width, height)
+        length, width, _ = map(float, self.sizes[self.actor[span.start]])
+        return ActorPoses(x, y, z, yaw, length, width)
 
 
 def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
@@ -86,8 +93,3 @@ def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
         states["t_ns"].to_numpy(),
         *(floats(states[name]) for name in ("x_m", "y_m", "z_m", "yaw_rad")),
     )
-
-
-def floats(column: pa.ChunkedArray) -> NDArray[np.float64]:
-    """Return a column as numbers, with NaN for NULL."""
-    return np.asarray(column.to_numpy(), np.float64)

@@ -11,22 +11,24 @@ import numpy as np
 
 from drivelint import __version__
 from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, places, result_messages
-from drivelint.annotate.tracks import tracks
+from drivelint.annotate.tracks import tracks as tracks_of
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
 from drivelint.formats.mcap.writer import Sink
+from drivelint.report import summary
 from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator
 
+    import pyarrow as pa
     from mcap.records import Schema
 
     from drivelint.annotate.actor_boxes import RecordChunk
-    from drivelint.annotate.evidence import Evidence
     from drivelint.annotate.result_messages import Message
     from drivelint.annotate.road import Road
     from drivelint.drive.trace import Trace
+    from drivelint.result.model import Result
     from drivelint.road.geo_reference import GeoFrame
 
 CHUNK_BYTES: Final = 1 << 20
@@ -35,19 +37,18 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """One drive's evidence and summary, which are written beside the log.
+    """What was found in one drive, which is written beside its log.
 
-    `road` is None without a map. `geo` is None if neither log nor map has a usable reference.
-    `versions` and `sense_by_rule` are rule id -> hash of its file, rule id -> relation that must hold.
+    `result` is that of the drive as if it had been checked alone. `spaces` are the danger spaces in overtakes, `chains` what they
+    lie on. `road` is None without a map. `geo` is None if neither log nor map has a usable reference.
     """
 
     trace: Trace
-    evidence: Evidence
+    result: Result
+    spaces: pa.Table
+    chains: pa.Table
     road: Road | None
     geo: GeoFrame | None
-    versions: Mapping[str, str]
-    sense_by_rule: Mapping[str, str]
-    summary: bytes
 
 
 def write(file: BinaryIO, said: Annotation) -> None:
@@ -70,7 +71,9 @@ class _Writer:
         self._sink = sink
         self._said = said
         self._start_ns = t_start_ns
-        self._tracks = tracks(said.trace.tables)
+        self._tracks = tracks_of(said.trace.tables)
+        self._rules = said.result.rules.to_pylist()
+        self._sense_by_rule = {rule["rule_id"]: rule["sense"] for rule in self._rules}
         frames = said.trace.frame_times
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
         self._prefix = _free_prefix({channel.topic for channel in sink.channels.values()})
@@ -78,37 +81,37 @@ class _Writer:
 
     def run(self) -> None:
         """Write every channel, then metadata and attachment."""
-        evidence, times, start = self._said.evidence, self._clock, self._start_ns
-        boxes = actor_boxes.select_boxes(self._tracks)
-        sense_by_rule = self._said.sense_by_rule
+        said, tracks, times, start = self._said, self._tracks, self._clock, self._start_ns
+        verdicts, findings, senses = said.result.verdicts, said.result.findings, self._sense_by_rule
+        boxes, every = actor_boxes.select_boxes(tracks)
         scene = foxglove.schema("SceneUpdate")
-        if self._said.road is not None and len(boxes.rows):
+        if said.road is not None and len(boxes):
             at = times.at(start)
-            lanes = self._said.road.lanes_near(self._tracks.x[boxes.rows], self._tracks.y[boxes.rows], at)
+            lanes = said.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
             self._few("map", scene, [result_messages.Message(at, lanes)])
-        self._many("scene", scene, lambda channel: actor_boxes.messages(boxes, times, channel))
+        self._many("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
         if not self._moves:  # the log's own frames are not ours to speak of
             transform = foxglove.schema("FrameTransform")
-            self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(boxes, times, channel))
-        self._few("danger_spaces", scene, danger_spaces.messages(evidence, self._tracks, times))
-        self._few("markers", scene, finding_markers.messages(evidence, self._tracks, times, sense_by_rule))
-        verdicts = result_messages.verdict_messages(evidence.verdicts, times, start)
-        self._few("verdicts", result_messages.schema("verdict"), verdicts)
-        findings = result_messages.finding_messages(evidence.findings, times)
-        self._few("findings", result_messages.schema("finding"), findings)
-        lines = result_messages.log_messages(evidence.verdicts, times, start, sense_by_rule)
-        self._few("log", foxglove.schema("Log"), lines)
-        if self._said.geo:
-            self._on_earth(self._said.geo)
-        self._sink.add_metadata("drivelint", self._facts(boxes.every))
-        self._sink.add_attachment("summary.json", "application/json", self._said.summary, times.at(start))
+            self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel))
+        self._few("danger_spaces", scene, danger_spaces.messages(said.spaces, said.chains, tracks, times))
+        markers = finding_markers.markers(verdicts, findings, senses)
+        self._few("markers", scene, finding_markers.messages(markers, tracks, times))
+        told = result_messages.verdict_messages(verdicts, times, start)
+        self._few("verdicts", result_messages.schema("verdict"), told)
+        told = result_messages.finding_messages(findings, times)
+        self._few("findings", result_messages.schema("finding"), told)
+        told = result_messages.log_messages(verdicts, times, start, senses)
+        self._few("log", foxglove.schema("Log"), told)
+        if said.geo:
+            self._on_earth(said.geo)
+        self._sink.add_metadata("drivelint", self._facts(every))
+        self._sink.add_attachment("summary.json", "application/json", summary.render(said.result), times.at(start))
 
     def _on_earth(self, geo: GeoFrame) -> None:
         frame = "" if self._moves else actor_boxes.EGO_FRAME
         fixes = places.location_messages(self._tracks, geo, self._clock, frame)
         self._few("location", foxglove.schema("LocationFix"), fixes)
-        said = self._said
-        layer = places.geojson(said.evidence.findings, self._tracks, geo, said.road, said.sense_by_rule)
+        layer = places.geojson(self._said.result.findings, self._tracks, geo, self._said.road, self._sense_by_rule)
         at = self._clock.at(self._start_ns)
         self._few("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
 
@@ -130,7 +133,7 @@ class _Writer:
 
     def _facts(self, every: int) -> dict[str, str]:
         """Return what the verdicts stand on: tool, log, map, rules with their versions."""
-        row = self._said.evidence.drive.to_pylist()[0]
+        row = self._said.result.drives.to_pylist()[0]
         known = (
             "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",
             "handedness_source",
@@ -142,7 +145,7 @@ class _Writer:
             "duckdb": duckdb.__version__,
             "output_schema": str(OUTPUT_VERSION),
             **{key: str(row[key]) for key in known if row[key] is not None},
-            **{f"rule {rule}": version for rule, version in self._said.versions.items()},
+            **{f"rule {rule['rule_id']}": rule["rule_version"] for rule in self._rules},
             **({"boxes": f"every {every}th step"} if every > 1 else {}),
             **({"time": f"log time = time of the trace + {shift} ns"} if shift else {}),
         }

@@ -20,7 +20,7 @@ from drivelint.explain.model import Explanation
 from drivelint.explain.sensitivity import MeasurementErrors, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.explain.verdict_context import VerdictContext, sufficient_part
+from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
 from drivelint.reasons import reason_text
 from drivelint.reasons.signals import condition_of
 from drivelint.result import request as run_request
@@ -76,14 +76,14 @@ def explain(request: ExplainRequest) -> Explanation:
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
-        missing_signal = row["reason_code"].removeprefix("missing_") if case.lacks_signal else None
+        missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         rows = evidence.rows_read(
             case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
         )
         found: list[Change] = []
         sensitivity = None
-        if not case.lacks_signal:
+        if not lacks_signal(row):
             part, span = sufficient_part(case, drive, now)
             if part is not drive:
                 sandbox = opened.enter_context(case.sandbox([part]))

@@ -24,6 +24,7 @@ SERIES_PADDING_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
 _NAMED = re.compile(r"\$(\w+)")
 _SPANS: Final = (
+    ("t_ns", "t_ns"),
     ("t_start_ns", "t_end_ns"),
     ("t_from_ns", "t_to_ns"),
     ("t0_ns", "t_end_ns"),
@@ -111,8 +112,6 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
 
 def _at_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
     """Return the term that chooses the rows of one time, with its values."""
-    if "t_ns" in columns:
-        return {"t_ns = ?": [t_ns]}
     for start, end in _SPANS:
         if start in columns and end in columns:
             return {f"{start} <= ? AND coalesce({end}, {start}) >= ?": [t_ns, t_ns]}

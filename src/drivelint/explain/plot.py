@@ -35,7 +35,8 @@ def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: st
     columns = [column for column in _columns(steps, width) for _ in range(max(1, width // len(steps)))]
     measured = any(column.margin is not None for column in columns)
     label = max(9, len(unit) + 8)
-    body = _bars(columns, height, label, unit) if measured else [" " * label + " " + _strip(columns)]
+    strip = "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.there else " " for c in columns)
+    body = _bars(columns, height, label, unit) if measured else [" " * label + " " + strip]
     first, last = (seconds(step.t_ns, start_ns) for step in (steps[0], steps[-1]))
     axis = " " * label + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
     return [*body, axis]
@@ -58,40 +59,28 @@ def _columns(steps: Sequence[Step], width: int) -> list[_Column]:
     ]
 
 
-def _strip(columns: Sequence[_Column]) -> str:
-    return "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.there else " " for c in columns)
-
-
 def _bars(columns: Sequence[_Column], height: int, label: int, unit: str) -> list[str]:
     known = [c.margin for c in columns if c.margin is not None]
     top, bottom = max(0.0, *known), min(0.0, *known)
     size = (top - bottom) / height or 1.0
     above, below = math.ceil(top / size - 1e-9), math.ceil(-bottom / size - 1e-9)
+    heads = {above: f"{top:+.3g} {unit}", -below: f"{bottom:+.3g} {unit}", 0: "limit"}
     lines = []
-    for row in range(above, 0, -1):
-        cells = "".join(_up(c.margin, (row - 1) * size, size) for c in columns)
-        lines.append(f"{_number(top, unit) if row == above else '':>{label}}┤{cells}")
-    line = "".join(_UNKNOWN if c.unknown and not c.failed else "─" if c.there else " " for c in columns)
-    lines.append(f"{'limit':>{label}}┼{line}")
-    for row in range(1, below + 1):
-        cells = "".join(_down(c.margin, (row - 1) * size, size) for c in columns)
-        lines.append(f"{_number(bottom, unit) if row == below else '':>{label}}┤{cells}")
+    for row in range(above, -below - 1, -1):
+        if row:
+            cells = "┤" + "".join(_cell(c.margin, row, size) for c in columns)
+        else:
+            cells = "┼" + "".join(_UNKNOWN if c.unknown and not c.failed else "─" if c.there else " " for c in columns)
+        lines.append(f"{heads.get(row, ''):>{label}}{cells}")
     return lines
 
 
-def _up(margin: float | None, base: float, size: float) -> str:
-    if margin is None or margin <= base:
+def _cell(margin: float | None, row: int, size: float) -> str:
+    """Return a column's part in a row above (1, 2, ...) or below (-1, -2, ...) the line."""
+    part = 0.0 if margin is None else ((margin if row > 0 else -margin) - (abs(row) - 1) * size) / size
+    if part <= 0:
         return " "
-    return _EIGHTHS[min(8, max(1, round((margin - base) / size * 8)))]
-
-
-def _down(margin: float | None, base: float, size: float) -> str:
-    """Return a cell hanging from the line: there are no eighths from above, so half or whole."""
-    if margin is None or -margin <= base:
-        return " "
-    part = (-margin - base) / size
+    if row > 0:
+        return _EIGHTHS[min(8, max(1, round(part * 8)))]
+    # there are no eighths from above, so half or whole
     return "█" if part >= 0.75 else "▀" if part >= 0.25 else "▔"
-
-
-def _number(value: float, unit: str) -> str:
-    return f"{value:+.3g} {unit}"

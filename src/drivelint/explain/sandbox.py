@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -18,7 +17,7 @@ from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import Trace
@@ -37,7 +36,11 @@ class Judgement(NamedTuple):
 
 
 class Sandbox:
-    """One rule over some copies of a drive, derived once."""
+    """One rule over some copies of a drive, which share one map, derived once in `con`.
+
+    The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the database in bytes
+    (None: 80 % of the machine's), which is lifted where it does not do.
+    """
 
     def __init__(
         self,
@@ -109,17 +112,6 @@ class Sandbox:
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
-
-
-@contextmanager
-def open_sandbox(rule: Rule, drives: Sequence[Drive], profiles: pa.Table, memory: int | None) -> Iterator[Sandbox]:
-    """Open a database with these drives, which share one map, derived for the rule.
-
-    The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the database in bytes
-    (None: 80 % of the machine's), which is lifted where it does not do.
-    """
-    with store.workspace(memory) as con:
-        yield Sandbox(rule, drives, profiles, con, memory)
 
 
 def with_column(rows: pa.Table, name: str, values: pa.Array) -> pa.Table:

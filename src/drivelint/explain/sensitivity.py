@@ -22,8 +22,7 @@ from drivelint.explain.sandbox import renamed, with_column
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
+    from drivelint.arrays import Floats
     from drivelint.explain.verdict_context import VerdictContext
 
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
@@ -57,28 +56,20 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[D
     at_once = max(1, BATCH_STATES // max(1, states.num_rows))
     for start in range(0, samples, at_once):
         yield [
-            _copy(drive, sample, _moved(states, numbers, drawn[sample][actor], of_map[sample], errors))
+            _copy(drive, sample, numbers, drawn[sample][actor], of_map[sample], errors=errors)
             for sample in range(start, min(start + at_once, samples))
         ]
 
 
-def _moved(
-    states: pa.Table,
-    numbers: dict[str, NDArray[np.float64]],
-    drawn: NDArray[np.float64],
-    of_map: NDArray[np.float64],
-    errors: MeasurementErrors,
-) -> pa.Table:
-    """Return the states with their errors: `drawn` has x, y and clock for each state, `of_map` x and y for all."""
-    clock = drawn[:, 2] * errors.time_s
+def _copy(
+    drive: Drive, sample: int, numbers: dict[str, Floats], drawn: Floats, of_map: Floats, *, errors: MeasurementErrors
+) -> Drive:
+    """Return a copy whose states have their errors: `drawn` has x, y and clock for each state, `of_map` x and y for all."""
+    states, clock = drive.trace.tables["actor_state"], drawn[:, 2] * errors.time_s
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         along = np.nan_to_num(numbers[speed]) * clock
         values = numbers[place] + drawn[:, axis] * errors.position_m + of_map[axis] * errors.map_m + along
         states = with_column(states, place, pa.array(values, from_pandas=True))
-    return states
-
-
-def _copy(drive: Drive, sample: int, states: pa.Table) -> Drive:
     moved = replace(drive.trace, tables={**drive.trace.tables, "actor_state": states})
     return Drive(renamed(moved, f"{drive.trace.drive_id}~{sample:05}"), drive.environment)
 

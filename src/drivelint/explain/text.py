@@ -103,7 +103,7 @@ def _prose(found: Explanation) -> dict[str, list[str]]:
             "found": found,
             "row": row,
             "rule": found.rule,
-            "not_run": lacks_signal(row["verdict"], row["reason_code"]),
+            "not_run": lacks_signal(row),
             "remedy": remedy(row["reason_code"], row["object_id"], found.drive["format"], found.asks),
             "unknown": [step.t_ns for step in found.series if step.holds is None],
             "events": EVENTS,
@@ -115,7 +115,7 @@ def _prose(found: Explanation) -> dict[str, list[str]]:
 
 
 def _sql(found: Explanation) -> list[str]:
-    if lacks_signal(found.verdict["verdict"], found.verdict["reason_code"]):
+    if lacks_signal(found.verdict):
         return []
     return [f"|{line}" for name, sql in found.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
 

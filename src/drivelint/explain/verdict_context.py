@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.explain import evidence
-from drivelint.explain.sandbox import crop, open_sandbox
+from drivelint.explain.sandbox import Sandbox, crop
 from drivelint.result.counts import grouped
+from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from contextlib import AbstractContextManager
+    from collections.abc import Iterator, Mapping, Sequence
 
     import pyarrow as pa
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Row, Step
-    from drivelint.explain.sandbox import Judgement, Sandbox
+    from drivelint.explain.sandbox import Judgement
     from drivelint.explain.target import Target
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
@@ -38,9 +39,11 @@ class VerdictContext:
     profiles: pa.Table
     memory: int | None
 
-    def sandbox(self, drives: Sequence[Drive]) -> AbstractContextManager[Sandbox]:
+    @contextmanager
+    def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a database with these drives, derived for the rule."""
-        return open_sandbox(self.rule, drives, self.profiles, self.memory)
+        with store.workspace(self.memory) as con:
+            yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
         """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
@@ -48,22 +51,22 @@ class VerdictContext:
 
     def verdicts_on(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in their order."""
+        wanted, about = self.target.verdict_row, ["ego_id", "profile"]
+        if self.target.span is not None and self.rule.combine == "each":  # else the object is only the one that decided
+            about.append("object_id")
         verdicts, steps = (
-            grouped((row for row in rows if _same(self.rule, self.target, row)), lambda row: row["drive_id"])
+            grouped(
+                (row for row in rows if all(row[name] == wanted[name] for name in about)), lambda row: row["drive_id"]
+            )
             for rows in (judged.verdicts, judged.steps)
         )
         return [_outcome(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, [])) for drive in drives]
 
-    @property
-    def lacks_signal(self) -> bool:
-        """Whether the rule was not run because the log or map lacks something: no number alters that."""
-        code = "" if self.target.finding else self.target.verdict["reason_code"]
-        return lacks_signal(self.target.verdict["verdict"], code)
 
-
-def lacks_signal(verdict: str, reason_code: str) -> bool:
-    """Whether a verdict is unknown for want of a signal that the rule requires."""
-    return verdict == "unknown" and reason_code.startswith("missing_") and reason_code != "missing_step"
+def lacks_signal(row: Row) -> bool:
+    """Whether a verdict is unknown, its rule not run, for want of a signal that the rule requires: no number alters that."""
+    code: str = row["reason_code"]
+    return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 
 
 def sufficient_part(case: VerdictContext, drive: Drive, verdict: str) -> tuple[Drive, tuple[int, int] | None]:
@@ -95,13 +98,6 @@ def _same_numbers(case: VerdictContext, series: list[Step]) -> bool:
     return any(abs(margin - row["margin"]) < 1e-6 for margin in here)
 
 
-def _same(rule: Rule, target: Target, row: Row) -> bool:
-    if row["ego_id"] != target.verdict_row["ego_id"] or row["profile"] != target.verdict_row["profile"]:
-        return False
-    about_all = target.span is None or rule.combine != "each"  # then the object is only the one that decided
-    return about_all or row["object_id"] == target.verdict_row["object_id"]
-
-
 def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
     span = target.span
     if any(row["verdict"] == "error" for row in verdicts):
@@ -113,8 +109,9 @@ def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) 
     within = [row["holds"] for row in steps if span[0] <= row["t_ns"] <= span[1]]
     if any(holds is False for holds in within):
         return "fail"
-    over = [row for row in verdicts if _overlaps(row, span)]
-    if any(holds is None for holds in within) or (not within and any(row["verdict"] == "unknown" for row in over)):
+    open_ = [(row["t_start_ns"], row["t_end_ns"]) for row in verdicts if row["verdict"] == "unknown"]
+    over = any(None in times or (times[0] <= span[1] and times[1] >= span[0]) for times in open_)
+    if any(holds is None for holds in within) or (over and not within):
         return "unknown"
     return "pass" if within else "not_applicable"
 
@@ -127,12 +124,6 @@ def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
     apart = {id(row): abs(row["t_ref_ns"] - t_ref) for row in verdicts if row["t_ref_ns"] is not None}
     least = min(apart.values(), default=SAME_REFERENCE_NS + 1)
     return [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_NS else []
-
-
-def _overlaps(row: Row, span: tuple[int, int]) -> bool:
-    if row["t_start_ns"] is None or row["t_end_ns"] is None:
-        return True
-    return bool(row["t_start_ns"] <= span[1] and row["t_end_ns"] >= span[0])
 
 
 def _worst(rows: list[Row]) -> str:

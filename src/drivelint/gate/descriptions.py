@@ -163,8 +163,8 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
 
 def group_by_reason(opened: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
     """Return each reason with its rules and the number of additional unknown verdicts, most first."""
-    found: dict[str, tuple[set[str], int]] = {}
-    for each in opened:
-        rules, n = found.get(each.reason, (set(), 0))
-        found[each.reason] = (rules | {each.rule_id}, n + each.n - each.base_n)
-    return [(reason, sorted(rules), n) for reason, (rules, n) in sorted(found.items(), key=lambda i: (-i[1][1], i[0]))]
+    found = [
+        (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))
+        for reason, alike in counts.grouped(opened, lambda each: each.reason).items()
+    ]
+    return sorted(found, key=lambda item: (-item[2], item[0]))

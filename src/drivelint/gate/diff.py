@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import replace
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.gate import match
@@ -144,30 +145,23 @@ def _entry(
 
 def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
     """Return where more verdicts are unknown or in error than were."""
-    was, _ = _unknown(base)
-    now, reasons = _unknown(new)
+    was, now = _unknown(base), _unknown(new)
     found = []
-    for at, n in now.items():
-        drive_id, ego_id, rule_id, profile = at
-        before = was[same.get(drive_id, ""), ego_id, rule_id, profile]
+    for (drive_id, ego_id, rule_id, profile), (n, reason) in now.items():
+        before, _ = was.get((same.get(drive_id, ""), ego_id, rule_id, profile), (0, ""))
         if n > before:
-            found.append(
-                NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reasons[at])
-            )
+            found.append(NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reason))
     return sorted(found, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
 
 
-def _unknown(result: Result) -> tuple[Counter[Any], dict[Any, str]]:
+def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
     """Return (drive, ego, rule, profile) -> rows that are unknown or in error, and the reason given most often."""
     columns = ["drive_id", "ego_id", "rule_id", "profile"]
-    n: Counter[Any] = Counter()
-    reasons: dict[Any, tuple[int, str]] = {}
-    for row in counts.distinct_rows(counts.undecided(result.verdicts), [*columns, "reason"]):
-        at = tuple(row[name] for name in columns)
-        n[at] += row["count_all"]
-        said = (-row["count_all"], row["reason"])
-        reasons[at] = min(reasons.get(at, said), said)
-    return n, {at: reason for at, (_, reason) in reasons.items()}
+    rows = counts.distinct_rows(counts.undecided(result.verdicts), [*columns, "reason"])
+    return {
+        at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
+        for at, told in counts.grouped(rows, itemgetter(*columns)).items()
+    }
 
 
 class LookupResult(NamedTuple):
@@ -198,7 +192,9 @@ class ResultLookup:
             self._objects[row["drive_id"]].add(row["object_id"])
         self.findings: dict[str, list[TimedFinding]] = defaultdict(list)
         for row in result.findings.to_pylist():
-            self.findings[row["drive_id"]].append(match.timed_finding(row, self.drives[row["drive_id"]]))
+            drive, ends = self.drives[row["drive_id"]], ("t_start_ns", "t_end_ns", "t_worst_ns")
+            times = (match.seconds_since_start(row[name], drive) for name in ends)
+            self.findings[row["drive_id"]].append(match.TimedFinding(row, *times))
 
     def is_stable(self, rule_id: str) -> bool:
         """Return whether this result's rule of that id is stable."""

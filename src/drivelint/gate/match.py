@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from operator import itemgetter
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from drivelint.result import counts
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     Row = Mapping[str, Any]
 
@@ -17,7 +20,8 @@ NEAR_M: Final = 5.0
 """So far may the ego have been elsewhere at the worst step, if the log is another."""
 
 FindingKey = tuple[str, str, str | None, str | None]
-"""ego_id, rule_id, profile, object_id: what must agree."""
+finding_key: Final[Callable[[Row], FindingKey]] = itemgetter("ego_id", "rule_id", "profile", "object_id")
+"""What must agree: it identifies a finding within a drive."""
 
 
 class TimedFinding(NamedTuple):
@@ -34,36 +38,21 @@ def seconds_since_start(t_ns: int, drive: Row) -> float:
     return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
 
 
-def timed_finding(row: Row, drive: Row) -> TimedFinding:
-    """Return a finding of a drive with its times."""
-    return TimedFinding(
-        row, *(seconds_since_start(row[name], drive) for name in ("t_start_ns", "t_end_ns", "t_worst_ns"))
-    )
-
-
-def finding_key(row: Row) -> FindingKey:
-    """Return what identifies a finding within a drive: ego, rule, profile and object."""
-    return row["ego_id"], row["rule_id"], row["profile"], row["object_id"]
-
-
 def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
     """Return drive_id in NEW -> drive_id in BASE: the same id, else the only one on both sides with that file stem."""
     ids = {row["drive_id"] for row in base}
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
-    left = _stems(row for row in base if row["drive_id"] not in same)
-    right = _stems(row for row in new if row["drive_id"] not in same)
-    for stem, names in right.items():
+    left, right = (
+        counts.grouped(
+            (row for row in rows if row["drive_id"] not in same), lambda row: PurePath(row["file_name"]).stem
+        )
+        for rows in (base, new)
+    )
+    for stem, mine in right.items():
         others = left.get(stem, [])
-        if len(names) == len(others) == 1:
-            same[names[0]] = others[0]
+        if len(mine) == len(others) == 1:
+            same[mine[0]["drive_id"]] = others[0]["drive_id"]
     return same
-
-
-def _stems(rows: Iterable[Row]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = defaultdict(list)
-    for row in rows:
-        found[PurePath(row["file_name"]).stem].append(row["drive_id"])
-    return found
 
 
 def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:

@@ -9,7 +9,6 @@ from typing import Final, NamedTuple
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.resources import folder
 
 TOPICS: Final = (
     "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "viewer", "columns", "ci", "fleets",
@@ -48,19 +47,10 @@ def text(name: str, table: str | None = None) -> str:
         raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
     if table is not None and name != "dictionary":
         raise UsageError(f"docs {name} {table}: only the dictionary has tables: drivelint docs dictionary {table}")
-    if name == "catalogue":
-        from drivelint.catalogue import load_rules
-        from drivelint.report import catalogue_page
-
-        return catalogue_page.page(load_rules(()).values(), folder("queries") / "assertions")
-    if name == "dictionary":
+    if name in REFERENCE_TOPICS:
         from drivelint.guide import dictionary
 
-        return dictionary.text() if table is None else dictionary.table_text(table)
-    if name in {"reasons", "macros"}:
-        from drivelint.guide import dictionary
-
-        return dictionary.reasons_page() if name == "reasons" else dictionary.macros_page()
+        return dictionary.REFERENCE[name]() if table is None else dictionary.table_text(table)
     source = _source(name)
     if OUTPUT_TABLES_MARK in source:
         from drivelint.guide.dictionary import output_tables

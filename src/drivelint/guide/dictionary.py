@@ -13,6 +13,7 @@ from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 from drivelint.reasons.reason_text import shared_texts
+from drivelint.report import catalogue_page
 from drivelint.resources import folder
 from drivelint.result import geometry
 from drivelint.result.schemas import TABLE_OF_FILE
@@ -188,3 +189,12 @@ def macros_page() -> str:
             about = " ".join(line.removeprefix("--").strip() for line in comment.splitlines()) or about
             files.setdefault(file.stem.replace("_", " ").capitalize(), []).append((signature, about))
     return text_template(__file__, "macros.md.j2").render(files=files)
+
+
+REFERENCE: Final[dict[str, Callable[[], str]]] = {
+    "dictionary": text,
+    "catalogue": lambda: catalogue_page.page(load_rules(()).values(), folder("queries") / "assertions"),
+    "reasons": reasons_page,
+    "macros": macros_page,
+}
+"""What `drivelint docs` prints beside the guides, and the page of each."""

@@ -153,7 +153,12 @@ def _judgeable(
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "exposure")}
-        registrations = {row["ego_id"]: row for row in _rows(con, statement("inspect/registration"))}
+        registrations = {
+            row["ego_id"]: msgspec.convert(
+                {**row, "reason": reason_text.sentence(row["reason"])}, model.MapRegistration
+            )
+            for row in (_rows(con, statement("inspect/registration")) if environment is not None else ())
+        }
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()
@@ -173,7 +178,7 @@ def _judgeable(
                 actor=by_id[ego_id],
                 km=way["km"],
                 steps=way["n_steps"],
-                registration=None if environment is None else _registration(registrations.get(ego_id)),
+                registration=registrations.get(ego_id),
                 can=[rule.id for rule in rules if rule.id not in undecided],
                 cannot=cannot,
                 missing=advice.missing_signals(cannot, {**never, **lacking}, log_format),
@@ -194,12 +199,6 @@ class _Knowledge:
         for row in _rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")
             self.of[ego] = {c: row[c] or self.of.get(ego, {}).get(c, False) for c in row}
-
-
-def _registration(row: dict[str, Any] | None) -> model.MapRegistration | None:
-    if row is None:
-        return None
-    return msgspec.convert({**row, "reason": reason_text.sentence(row["reason"])}, model.MapRegistration)
 
 
 def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:

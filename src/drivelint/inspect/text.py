@@ -20,19 +20,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from drivelint.inspect.model import (
-        Actor,
-        Channel,
-        Column,
-        Content,
-        Drive,
-        Ego,
-        Inspection,
-        MapRegistration,
-        Quality,
-        Road,
-        Sheet,
-    )
+    from drivelint.inspect import model
 
 MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
@@ -53,7 +41,7 @@ _SOURCES: Final = {
 Line = tuple[str, Text]
 
 
-def render(found: Inspection, trace: str) -> Group:
+def render(found: model.Inspection, trace: str) -> Group:
     """Return the whole inspection; `trace` is what the user called the log."""
     lines = [*_content(found.content)]
     if found.file.drive_id:
@@ -74,7 +62,7 @@ def render(found: Inspection, trace: str) -> Group:
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
-def _title(found: Inspection) -> Text:
+def _title(found: model.Inspection) -> Text:
     file = found.file
     about = [_size(file.bytes)]
     if file.format is not None:
@@ -116,7 +104,7 @@ def _first_of(label: str, texts: Sequence[Text]) -> Iterator[Line]:
         yield label, Text(f"and {len(texts) - MAX_ROWS} more", style="dim")
 
 
-def _content(content: Content) -> Iterator[Line]:
+def _content(content: model.Content) -> Iterator[Line]:
     for channel in content.channels:
         yield "channels", _channel(channel)
     if len(content.sheets) > 1:
@@ -128,7 +116,7 @@ def _content(content: Content) -> Iterator[Line]:
             yield "note", Text(note)
 
 
-def _channel(channel: Channel) -> Text:
+def _channel(channel: model.Channel) -> Text:
     text = Text(channel.topic)
     rate = "" if channel.rate_hz is None else f", {channel.rate_hz:.3g} Hz"
     kind = f"{channel.schema or 'no schema'} in {channel.encoding or 'no encoding'}"
@@ -139,7 +127,7 @@ def _channel(channel: Channel) -> Text:
     return text
 
 
-def _sheet(sheet: Sheet) -> Text:
+def _sheet(sheet: model.Sheet) -> Text:
     rows = "" if sheet.rows is None else f"{plural(sheet.rows, 'row')}, "
     read = [c for c in sheet.columns if c.read_as]
     if not read:
@@ -154,14 +142,14 @@ def _sheet(sheet: Sheet) -> Text:
     return text
 
 
-def _cell(column: Column, *, grouped: bool) -> str:
+def _cell(column: model.Column, *, grouped: bool) -> str:
     """Return what a column is read as; its own name too, unless it is the same or one of many groups."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
     return f"{meant}{unit}" if grouped or meant == column.name else f"{column.name}{unit} as {meant}"
 
 
-def _drive(drive: Drive) -> Iterator[Line]:
+def _drive(drive: model.Drive) -> Iterator[Line]:
     clock = drive.clock
     period = "" if clock.period_s is None else f", one every {clock.period_s:.4g} s ({1 / clock.period_s:.3g} Hz)"
     time = Text(f"{clock.duration_s:.2f} s, {plural(clock.steps, 'step')}{period}, ")
@@ -182,7 +170,7 @@ def _drive(drive: Drive) -> Iterator[Line]:
     yield from _quality([q for q in drive.quality if q.check_id != "no_ego"])
 
 
-def _egos(drive: Drive) -> Iterator[Line]:
+def _egos(drive: model.Drive) -> Iterator[Line]:
     if not drive.egos:
         yield "ego", Text("none: the log does not say who it is; choose one. The longest way first:", style="yellow")
         yield from _first_of("ego", [Text(f"--ego {a.actor_id}  {_actor(a)}") for a in drive.candidates])
@@ -195,7 +183,7 @@ def _egos(drive: Drive) -> Iterator[Line]:
     yield from _first_of("egos", egos)
 
 
-def _actor(actor: Actor) -> str:
+def _actor(actor: model.Actor) -> str:
     box = "size unknown"
     if actor.length_m is not None and actor.width_m is not None:
         box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
@@ -205,7 +193,7 @@ def _actor(actor: Actor) -> str:
     return f"{actor.actor_class or 'class unknown'}, {box}, {way}{speed}, {seen}"
 
 
-def _road(drive: Drive) -> Iterator[Line]:
+def _road(drive: model.Drive) -> Iterator[Line]:
     road = drive.road
     if road is None:
         why = drive.road_problem or "none: what the road has to do with cannot be decided; give it with --map"
@@ -224,7 +212,7 @@ def _road(drive: Drive) -> Iterator[Line]:
     yield from _first_of("fit", [Text(f"ego {ego.actor.actor_id}: {fit.reason}", style="yellow") for ego, fit in bad])
 
 
-def _map(road: Road) -> Text:
+def _map(road: model.Road) -> Text:
     text = Text("the log's own" if road.source == "log" else road.name)
     text.append(f": {plural(road.lanelets, 'lanelet')}, {road.drivable} of them for driving, {road.drivable_km:.2f} km")
     if any(road.offset_m):
@@ -234,27 +222,27 @@ def _map(road: Road) -> Text:
     return text.append(f"; {side}, {source}", style="yellow" if road.handedness_source == "default" else "")
 
 
-def _fit(fit: MapRegistration) -> Text:
+def _fit(fit: model.MapRegistration) -> Text:
     if not fit.ok:
         return Text(fit.reason, style="bold yellow")
     off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"
     return Text(f"{fit.reason}{off}", style="green")
 
 
-def _quality(found: Sequence[Quality]) -> Iterator[Line]:
+def _quality(found: Sequence[model.Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in found):
         yield "data", Text("nothing that speaks against it", style="green")
     yield from _first_of("data", [_finding(finding) for finding in found])
 
 
-def _finding(found: Quality) -> Text:
+def _finding(found: model.Quality) -> Text:
     about, info = "map: " if found.about == "map" else "", found.severity == "info"
     at = "" if found.first_at_s is None or info else f" (first at {found.first_at_s:.2f} s)"
     text = Text(f"{found.severity}: ", style=_STYLE[found.severity])
     return text.append(f"{about}{found.message}{at}", style="dim" if info else "default")
 
 
-def _decidable_rules(drive: Drive, log: str) -> Group:
+def _decidable_rules(drive: model.Drive, log: str) -> Group:
     """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
     egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
     alike = grouped(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
@@ -264,7 +252,7 @@ def _decidable_rules(drive: Drive, log: str) -> Group:
     return Group(*parts)
 
 
-def _about(drive: Drive, egos: list[Ego], log: str) -> list[RenderableType]:
+def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
     selection = listed(drive.selection, _NAMED)
     who = ""
@@ -284,13 +272,13 @@ def _about(drive: Drive, egos: list[Ego], log: str) -> list[RenderableType]:
     return parts
 
 
-def _short(rule_id: str, drive: Drive) -> str:
+def _short(rule_id: str, drive: model.Drive) -> str:
     """Return a rule's id without its pack where all are of one."""
     packs = {rule.partition(".")[0] for rule in drive.rules}
     return rule_id.partition(".")[2] if len(packs) == 1 else rule_id
 
 
-def _by_signal(ego: Ego) -> Table:
+def _by_signal(ego: model.Ego) -> Table:
     grid = _grid("yellow", overflow="fold")
     for item in ego.missing:
         waiting = f"{plural(len(item.rules), 'rule')} wait{'s' if len(item.rules) == 1 else ''} for it"
@@ -303,7 +291,7 @@ def _by_signal(ego: Ego) -> Table:
     return grid
 
 
-def _by_rule(ego: Ego) -> Table:
+def _by_rule(ego: model.Ego) -> Table:
     """Return the rules that wait for the same together."""
     grid = _grid("yellow", overflow="fold")
     waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))

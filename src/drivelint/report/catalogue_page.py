@@ -147,13 +147,12 @@ def _asking(rules: Iterable[Rule], asked: Sequence[str], reads: Sequence[str]) -
         f"`{rule.id}`"
         for rule in rules
         if not {*rule.requires, *rule.applies.restricting}.isdisjoint(asked)
-        or ((not reads or not {*rule.reads}.isdisjoint(reads)) and named.search(_sql_without_comments(rule)))
+        or (
+            (not reads or not {*rule.reads}.isdisjoint(reads))
+            and named.search(_COMMENT.sub("", "\n".join(rule.sections.values())))
+        )
     ]
     return f"{len(ids)} rules" if len(ids) > _MANY else ", ".join(ids) or "no rule yet"
-
-
-def _sql_without_comments(rule: Rule) -> str:
-    return _COMMENT.sub("", "\n".join(rule.sections.values()))
 
 
 def _applies(rule: Rule) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from operator import itemgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
@@ -26,6 +27,7 @@ MAX_LINES: Final = 50
 
 CaseKey = tuple[str, str, str | None]
 """drive_id, rule_id, profile."""
+_key = itemgetter("drive_id", "rule_id", "profile")
 
 
 class Case(NamedTuple):
@@ -126,7 +128,3 @@ def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, 
             detail = add(element, case.outcome, type=case.kind, message=lines[0] if lines else case.kind)
             detail.text = replace_non_xml("\n".join(lines))
     return counted
-
-
-def _key(row: Row) -> CaseKey:
-    return row["drive_id"], row["rule_id"], row["profile"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from operator import itemgetter
 from typing import TYPE_CHECKING, Final
 
 from lxml import etree
@@ -34,14 +35,15 @@ def render(result: Result) -> bytes:
     """Return the results as UTF-8 XML; the same result gives the same bytes, so no build date is given."""
     root = etree.Element("CheckerResults", version="1.0.0")
     reasons = counts.distinct_rows(result.verdicts, ["drive_id", "rule_id", "verdict", "reason"])
-    said, found = counts.grouped(reasons, _place), counts.grouped(result.findings.to_pylist(), _place)
+    place = itemgetter("drive_id", "rule_id")
+    said, found = counts.grouped(reasons, place), counts.grouped(result.findings.to_pylist(), place)
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, held against the drive {drive['drive_id']}"
         bundle = add(root, "CheckerBundle", build_date="", name="drivelint", version=__version__, description=about)
-        _param(bundle, "InputFile", drive["file_name"])
-        _param(bundle, "Sha256", drive["sha256"] or "unknown")
-        _param(bundle, "MapFile", drive["map_name"] or "none")
+        add(bundle, "Param", name="InputFile", value=drive["file_name"])
+        add(bundle, "Param", name="Sha256", value=drive["sha256"] or "unknown")
+        add(bundle, "Param", name="MapFile", value=drive["map_name"] or "none")
         total: Counter[str] = Counter()
         for rule in rules:
             at = drive["drive_id"], rule["rule_id"]
@@ -61,10 +63,6 @@ def rule_uid(rule_id: str, pack: str) -> str:
     dotted = ".".join(part if part[:1].isalpha() else f"r{part}" for part in parts)
     release = ".".join(re.findall(r"\d+", __version__)[:3])
     return f"drivelint.rules:{re.sub('[^a-z]', '', pack.lower()) or 'custom'}:{release}:{dotted}"
-
-
-def _place(row: Row) -> tuple[str, str]:
-    return row["drive_id"], row["rule_id"]
 
 
 def _checker(
@@ -94,7 +92,7 @@ def _checker(
         status=status,
     )
     for param in rule["params"]:
-        _param(checker, param["name"], f"{param['value']} {param['unit'] or ''}".rstrip())
+        add(checker, "Param", name=param["name"], value=f"{param['value']} {param['unit'] or ''}".rstrip())
     for row in findings:
         _finding(checker, row, rule, drive["t_start_ns"], gate)
     for row in said if status != "skipped" else ():
@@ -130,10 +128,6 @@ def _finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None,
 def _issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._Element:
     uid = rule_uid(rule["rule_id"], rule["pack"])
     return add(checker, "Issue", issueId="", description=text, level=level, ruleUID=uid)
-
-
-def _param(parent: etree._Element, name: str, value: str) -> None:
-    add(parent, "Param", name=name, value=value)
 
 
 def _counted(told: Mapping[str, int]) -> str:

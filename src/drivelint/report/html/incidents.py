@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import anchor
+from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
@@ -53,10 +54,10 @@ def finding_line(
     start_ns: int,
     *,
     linked: bool,
-    series: dict[str, Any] | None,
+    steps: Row | None,
     status: BaselineStatus | None,
 ) -> FindingLine:
-    """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page."""
+    """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page; `steps`: its row of `course`."""
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
     required = number(row["required"], unit)
@@ -75,7 +76,7 @@ def finding_line(
         required=required,
         gauge=_gauge(row["observed"], row["required"]),
         told=_told(row, rule, required) if sense else row["reason"],
-        course=series,
+        course=None if steps is None else margin_series(steps, row["t_worst_ns"], unit, start_ns),
         standing=status,
     )
 

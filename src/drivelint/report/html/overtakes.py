@@ -6,6 +6,7 @@ Opportunities to overtake, taken and not taken, are shown by the distance ahead 
 from __future__ import annotations
 
 import statistics
+from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.report.html.svg import Axis, num, percent, round_step
@@ -207,13 +208,9 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
 
 def _taken(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
     """Return a profile with the numbers taken and not taken in zones A to D, and where the zone is not known."""
-    mine = [row for row in records if row["profile"] == profile]
-
-    def count(zone: str | None) -> tuple[int, int]:
-        there = [row["taken"] for row in mine if row["zone"] == zone]
-        return sum(there), len(there) - sum(there)
-
-    return profile, [count(zone) for zone in "ABCD"], count(None)
+    n = Counter((row["zone"], row["taken"]) for row in records if row["profile"] == profile)
+    *known, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))
+    return profile, known, unknown
 
 
 def _bars(known: Sequence[Row]) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:

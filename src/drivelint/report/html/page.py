@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
@@ -12,7 +13,6 @@ from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
-from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.overtakes import overtake_views, overtaking_opportunities
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
@@ -31,7 +31,7 @@ from drivelint.result.model import exit_status
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.report.html.timeline import Timeline
@@ -72,8 +72,9 @@ def content(result: Result) -> dict[str, Any]:
     shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
     lines = _lines(result, rows, rules, starts, shown=shown)
     failed = [line for line in lines if line.kind == "fail"]
-    scenes = {_at(row): row for row in result.scenes.to_pylist()}
-    spaces = grouped(result.spaces.to_pylist(), _at)
+    moment: Callable[[Row], Key] = itemgetter("drive_id", "ego_id", "t_ns")
+    scenes = {moment(row): row for row in result.scenes.to_pylist()}
+    spaces = grouped(result.spaces.to_pylist(), moment)
     road = Road(result.lanes)
     drawn = plan_views(lines, scenes, spaces, road, most=MAX_PICTURES)
     listed = grouped(lines, lambda line: line.row["drive_id"])
@@ -142,10 +143,6 @@ def content(result: Result) -> dict[str, Any]:
     }
 
 
-def _at(row: Row) -> Key:
-    return row["drive_id"], row["ego_id"], row["t_ns"]
-
-
 def _worst_rows(result: Result) -> list[tuple[str, Row]]:
     """Return the findings (`fail`), then the near misses (`near`) that the page shows, the worst first."""
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
@@ -172,21 +169,18 @@ def _lines(
 ) -> list[FindingLine]:
     """Return the rows with their words, those of drives in `shown` with links."""
     courses = {_whose(row): row for row in result.courses.to_pylist()}
-    lines: list[FindingLine] = []
-    for kind, row in rows:
-        start = starts.get(row["drive_id"], 0)
-        steps = courses.get(_whose(row)) if len(lines) < MAX_CHARTS else None
-        line = finding_line(
+    return [
+        finding_line(
             row,
             kind,
             rules[row["rule_id"]],
-            start,
+            starts.get(row["drive_id"], 0),
             linked=row["drive_id"] in shown,
-            series=None if steps is None else margin_series(steps, row["t_worst_ns"], row["unit"], start),
+            steps=courses.get(_whose(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
         )
-        lines.append(line)
-    return lines
+        for n, (kind, row) in enumerate(rows)
+    ]
 
 
 def _whose(row: Row) -> tuple[Any, ...]:
@@ -228,12 +222,7 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
 
 
 def _section(
-    row: Row,
-    tracks: Sequence[Timeline],
-    seen: Sequence[Row],
-    involved: Sequence[dict[str, Any]],
-    *,
-    unfolded: bool,
+    row: Row, tracks: Sequence[Timeline], seen: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
 ) -> dict[str, Any]:
     """Return a drive with its egos: the timeline, the moments and the parties of each."""
     weight = {"error": 0, "warning": 1, "info": 2}
@@ -302,10 +291,8 @@ def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     return {
         rule_id: (told[0]["verdict"], verdict_reason(told[0]))
         for rule_id, told in grouped(rows, lambda row: row["rule_id"]).items()
-        if all(_is_idle(row) for row in told)
+        if all(
+            row["verdict"] == "not_applicable" or (row["verdict"] == "unknown" and can_be_provided(row["reason_code"]))
+            for row in told
+        )
     }
-
-
-def _is_idle(row: Row) -> bool:
-    unprovided = row["verdict"] == "unknown" and can_be_provided(row["reason_code"])
-    return row["verdict"] == "not_applicable" or unprovided

@@ -5,6 +5,7 @@ Places along the time axis are percentages, so that the drawing fits any width w
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.report.html.anchors import anchor
@@ -14,7 +15,7 @@ from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from drivelint.result.text import Row
 
@@ -106,10 +107,6 @@ def timelines(
     ]
 
 
-def _rule_and_profile(row: Row) -> tuple[str, str | None]:
-    return row["rule_id"], row["profile"]
-
-
 def _timeline(
     verdicts: Sequence[Row],
     findings: Sequence[Row],
@@ -118,10 +115,11 @@ def _timeline(
     clock: TimeAxis,
 ) -> Timeline:
     """Return the timeline of one ego."""
-    ego, found = verdicts[0]["ego_id"], grouped(findings, _rule_and_profile)
+    of: Callable[[Row], tuple[str, str | None]] = itemgetter("rule_id", "profile")
+    ego, found = verdicts[0]["ego_id"], grouped(findings, of)
     rows: list[TimelineRow] = []
     folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
-    for key, told in grouped(verdicts, _rule_and_profile).items():
+    for key, told in grouped(verdicts, of).items():
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
