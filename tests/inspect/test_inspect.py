@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
+from rich.console import Console
 
 from drivelint.drive.conditions import CONDITION_VALUES
-from drivelint.errors import ExitCode, UsageError
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import ExitCode, TraceError, UsageError
+from drivelint.formats import read_trace
+from drivelint.formats.registry import FIXED_BEGINNINGS
 from drivelint.inspect import InspectRequest, exit_code, inspect, to_json
-from drivelint.inspect.model import Inspection, json_schema
+from drivelint.inspect.model import Content, Inspection, json_schema
+from drivelint.inspect.text import render
 from drivelint.reasons.signals import ADVICE, how_to_provide
 from drivelint.report.progress import Silent
 from drivelint.resources import folder
@@ -157,6 +163,26 @@ def test_no_ego_is_no_error_but_a_choice(tmp_path: Path) -> None:
     assert (chosen.supposed, chosen.candidates) == (None, [])
 
 
+def test_an_ego_without_states_is_told_as_check_tells_it(tmp_path: Path) -> None:
+    frames = []
+    for i in range(20):
+        truth = osi_log.frame(i * 100_000_000, host=3)
+        osi_log.moving(truth, 7, 1.0 * i)
+        frames.append(truth)
+    path = osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames))
+    with pytest.raises(TraceError) as refused:
+        read_trace(path, IngestOptions())
+    drive = looked(path)
+    assert str(refused.value) == f"{path}: {drive.ego_source}"
+    console = Console(file=io.StringIO(), width=200)
+    console.print(render(inspect(InspectRequest(str(path))), "log.mcap"))
+    assert isinstance(console.file, io.StringIO)
+    assert (
+        "none: the log's ego 3 has no states: use --ego ID or --ego all (ids: 7). The longest"
+        in console.file.getvalue()
+    )
+
+
 def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
     frames = osi_log.drive(20)
     for truth in frames:
@@ -209,6 +235,21 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert (
         {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG, *CONDITION_VALUES}
     )  # which the table does not have
+
+
+def test_a_file_that_does_not_begin_as_its_suffix_says_is_no_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A byte order mark before the fixed beginning is no fault."""
+    monkeypatch.setitem(FIXED_BEGINNINGS, ".trk", b"#TRK")
+    found = {}
+    for name, text in (("bare", "a,b\n1,2\n"), ("marked", "\ufeff#TRK,b\n1,2\n")):
+        (tmp_path / f"{name}.trk").write_text(text, encoding="utf-8")
+        found[name] = inspect(InspectRequest(str(tmp_path / f"{name}.trk")))
+    assert "not trk: it should begin b'#TRK'" in (found["bare"].problem or "")
+    assert found["bare"].content == Content()
+    assert "no shipped mapping fits" in (found["marked"].problem or "")
+    assert found["marked"].content.sheets
 
 
 @pytest.mark.parametrize(
