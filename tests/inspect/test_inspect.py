@@ -135,6 +135,20 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
 
 
+def test_an_ego_that_is_no_vehicle_is_advised_to_choose_another(tmp_path: Path) -> None:
+    """Somebody on foot crosses the road: no other map makes them drive on it."""
+    frames = []
+    for i in range(40):
+        truth = osi_log.frame(i * 100_000_000, host=7)
+        osi_log.moving(truth, 7, 20.0, -20.0 + i, v=(0.0, 10.0), kind=3, vehicle=0)
+        frames.append(truth)
+    drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)), map=ROAD)
+    (ego,) = drive.egos
+    registration = next(item for item in ego.missing if item.signal == "registration")
+    assert registration.provide == "choose the ego with --ego ID (drivelint inspect LOG --ego all lists the ids)"
+    assert registration.reason.endswith(f"so it may not be the vehicle under test: {registration.provide}")
+
+
 def test_a_map_of_another_place_is_told_and_not_used() -> None:
     found = inspect(InspectRequest(str(FIXTURE / "safe.csv"), map=ROAD, mapping=MAPPING, map_offset=(9000.0, 0.0)))
     assert found.drive is not None
