@@ -1,7 +1,4 @@
-"""The trace formats, in the order in which they are asked: each is told by what the file holds (magic bytes, columns), not by its name.
-
-Only the suffixes of `FIXED_BEGINNINGS`, and `.osi`, count: such a file must begin as its format does.
-"""
+"""The trace formats, in the order in which they are asked: by what the file holds; a suffix with a fixed beginning must have it."""
 
 from __future__ import annotations
 
@@ -64,10 +61,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
 
 
 def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
-    """Whether no other reader accepts a file than the one for tables with a mapping.
-
-    A file that no reader is asked about, such as one that does not begin as its suffix says, is no such table.
-    """
+    """Whether no other reader accepts a file than the one for tables with a mapping; false if no reader is asked about it."""
     try:
         probe = _probe(path, options)
     except TraceError:

@@ -83,8 +83,10 @@ def read(probe: Probe) -> Recording:
         if offset != (None, None):
             dx, dy = recording.map_offset = _offset(path, offset)
             recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
-        if log.get("geo_reference") is not None:
-            recording.geo_reference, recording.geo_offset = _projection(path, log)
+        if geo := _extra(path / "data_log.parquet", (), ("geo_reference", "geo_x_m", "geo_y_m", "geo_yaw_rad")):
+            (said, *_) = geo.to_pylist()
+            x, y, yaw = (said.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))
+            recording.geo_reference, recording.geo_offset = said.get("geo_reference"), (x, y, yaw)
     if (path / "map.xodr").is_file():
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
@@ -96,16 +98,6 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
         case (float(x), float(y)) if np.isfinite([x, y]).all():
             return x, y
     raise TraceError(f"{path / 'data_log.parquet'}: map_offset_x_m and map_offset_y_m are {offset}: give two numbers")
-
-
-def _projection(path: Path, log: dict[str, object]) -> tuple[str, tuple[float, float, float]]:
-    match [log["geo_reference"], *(log.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))]:
-        case [str(reference), float(x), float(y), float(yaw)] if np.isfinite([x, y, yaw]).all():
-            return reference, (x, y, yaw)
-        case said:
-            raise TraceError(
-                f"{path / 'data_log.parquet'}: geo_reference, geo_x_m, geo_y_m and geo_yaw_rad are {said}: give a text and three numbers"
-            )
 
 
 def _quality(path: Path) -> list[QualityFinding]:
