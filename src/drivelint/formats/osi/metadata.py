@@ -147,7 +147,8 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
-    recording.geo_reference, recording.geo_offset = said.geo_reference, said.geo_offset
+    if said.geo_reference is not None:
+        recording.geo_reference, recording.geo_offset = said.geo_reference, said.geo_offset
     if said.utc_start_ns is not None:
         recording.utc_start_ns = said.utc_start_ns
     recording.sensor_range_m = said.sensor_range_m
