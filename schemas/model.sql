@@ -18,7 +18,7 @@ CREATE TABLE data_log (
     has_indicator BOOLEAN NOT NULL,   -- the ego's indicator is known in at least one state
     has_brake_light BOOLEAN NOT NULL, -- the ego's brake light is known in at least one state
     has_acceleration BOOLEAN NOT NULL, -- acceleration was recorded, not derived
-    geo_reference VARCHAR,            -- projection by which the drive is put on the earth: the map's, else the log's; NULL: neither has one that gives positions on the earth
+    geo_reference VARCHAR,            -- projection by which the drive is put on the earth: the map's, else the log's; NULL: neither has one that gives positions on the earth (in data_log.parquet of a converted log: as the log says it, usable or not)
     geo_x_m DOUBLE,                   -- the drive's coordinates are turned by geo_yaw_rad and then moved by this to be those of geo_reference; NULL: as there
     geo_y_m DOUBLE,                   -- the same for y
     geo_yaw_rad DOUBLE,               -- turn about the z axis, counter-clockwise

@@ -1,5 +1,7 @@
--- The running lane as a chain of lanelets: those that the ego drove, and beyond them those straight on. Steps in a lane driven the other
--- way (an overtake) or off the lanes do not interrupt the chain. A change to another lane of the same direction begins a new chain.
+-- The running lane as a chain of lanelets: those that the ego drove, and beyond them those straight on. It goes on for at least 1000 m
+-- (corridor_ahead_m) beyond the last lanelet that the ego drove, and for at least 200 m (corridor_behind_m) before the first, unless the lane
+-- or the map ends before. Steps in a lane driven the other way (an overtake) or off the lanes do not interrupt the chain. A change to
+-- another lane of the same direction begins a new chain.
 WITH RECURSIVE lane_step AS (
     SELECT
         drive_id, ego_id, t_ns, lanelet_id,

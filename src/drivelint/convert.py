@@ -78,8 +78,12 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
     if request.map_offset is not None:
-        trace = _moved(trace, request.map_offset)
+        x, y = request.map_offset
+        trace = replace(_with_log(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
     road, trace, told = _road(request, trace)
+    if trace.geo_reference is not None:
+        x, y, yaw = trace.geo_offset
+        trace = _with_log(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
     prepare_folder(request.out)
     files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
     notes = [*trace.notes, *told, *_of_a_check(request)]
@@ -130,12 +134,12 @@ def _of_a_check(request: ConvertRequest) -> list[str]:
     return [f"{name} is not part of the converted log: give it in every check" for name in names]
 
 
-def _moved(trace: Trace, offset: tuple[float, float]) -> Trace:
-    """Return the trace with the user's map offset in place of the mapping's."""
+def _with_log(trace: Trace, **values: str | float) -> Trace:
+    """Return the trace with these values in its row of `data_log`."""
     log = trace.tables["data_log"]
-    for name, value in zip(("map_offset_x_m", "map_offset_y_m"), offset, strict=True):
-        log = log.set_column(log.schema.get_field_index(name), name, pa.array([value], pa.float64()))
-    return replace(trace, tables={**trace.tables, "data_log": log}, map_offset=offset)
+    for name, value in values.items():
+        log = log.set_column(log.schema.get_field_index(name), name, pa.array([value]))
+    return replace(trace, tables={**trace.tables, "data_log": log})
 
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:

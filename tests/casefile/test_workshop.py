@@ -103,7 +103,7 @@ def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
     [
         (
             "ego_state e LEFT JOIN pair p ON p.drive_id = e.drive_id AND (p.t_ns = e.t_ns OR p.object_id = 'a')",
-            "BLOCKWISE",
+            "a join of ego_state and pair compares every row with every other (BLOCKWISE_NL_JOIN)",
         ),
         ("ego_state e JOIN pair p USING (drive_id)", "Ambiguous reference"),
     ],

@@ -206,6 +206,23 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert "?" in text[text.index("Margin over time") :]
 
 
+def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
+    """A simulator takes the two others out of the scene and writes them on, both in one place."""
+    head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
+    at = {name: i for i, name in enumerate(head.split(","))}
+    rows = [line.split(",") for line in lines]
+    for row in rows:
+        if row[at["actor"]] != "ego" and float(row[at["time_s"]]) >= 7.0:
+            row[at["x_m"]], row[at["y_m"]], row[at["vx_mps"]] = "0", "500", "0"
+    log = tmp_path / "removed.csv"
+    log.write_text("\n".join([head, *(",".join(row) for row in rows)]) + "\n", encoding="utf-8")
+    check(tmp_path / "out", traces=(str(log),), rules=("ukhc.no-collision",), params=())
+    found = of(tmp_path / "out", "no-collision", object_id="parked")
+    assert found.verdict["reason_code"] == "lost_near_ego"
+    assert "drivelint left out the ends of tracks, which no longer recording brings back" in flat(said(found))
+    assert "(oncoming, parked): after a jump they stand in one place" in flat(said(found))
+
+
 def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
     errors = MeasurementErrors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
     order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, VerdictFilter(), errors=errors)

@@ -15,6 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 import yaml
 
@@ -27,6 +28,7 @@ from drivelint.inspect import InspectRequest, inspect
 from tests.guide.blocks import PAGES, Block, blocks
 from tests.scenes import derived, drive, moving, road, times
 from tests.shared_data import ROOT, shared
+from tests.test_junction_rules import scenes as crossroads
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 NAMES = [page.name for page in PAGES]
@@ -128,7 +130,7 @@ def test_a_block_without_a_mark_is_no_code(name: str) -> None:
 
 def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
     """On a straight road: an object ahead in the ego's way is in the danger space if its rear is nearer than the ego can stop."""
-    (block,) = (block for page in PAGES for block in blocks(page) if block.word == "condition")
+    (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition")
     way, t = road(), times(6.0)
     actors = [moving("ego", way, t, 50 + 12 * t, way.own), moving("slower", way, t, 105 + 4 * t, way.own)]
     con = derived(drive(actors, way.environment), tables=["pair", "ego_state"])
@@ -139,6 +141,19 @@ def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
     """).fetchall()
     assert {holds for holds, _ in found} == {True, False}
     assert [holds for holds, is_clear in found if holds != is_clear] == []
+
+
+def test_the_condition_about_lights_says_what_they_show() -> None:
+    (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition: lights")
+    found = {}
+    for name in ("green", "red", "unknown"):
+        made = crossroads("lht")["red" if name == "red" else "green"][0](name)
+        if name == "unknown":
+            states = made.trace.tables["signal_state"]
+            made.trace.tables["signal_state"] = states.set_column(3, "state", pa.nulls(len(states), pa.string()))
+        con = derived(made, tables=["way_mark", "mark_phase", "ego_state"])
+        found[name] = set(con.execute(f"SELECT holds FROM ({block.body})").fetchall())
+    assert found == {"green": {(True,)}, "red": {(False,)}, "unknown": {(None,)}}
 
 
 def test_files_of_the_repository_are_shown_as_they_are() -> None:

@@ -106,6 +106,13 @@ def test_an_unknown_table_is_told_with_the_nearest(docs: Docs) -> None:
         assert len(err.splitlines()) == 1
 
 
+def test_docs_prints_the_value_of_a_macro_without_arguments(docs: Docs) -> None:
+    code, told, _ = docs("macros")
+    assert code == 0
+    for signature in ("corridor_ahead_m() = 1000.0", "fork_rad() = radians(10)", "same_level(a_m, b_m)"):
+        assert f"| `{signature}` |" in told
+
+
 def test_docs_prints_the_catalogue(docs: Docs) -> None:
     assert docs("catalogue") == (0, (ROOT / "queries" / "README.md").read_text(encoding="utf-8"), "")
 

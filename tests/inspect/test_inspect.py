@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
+from rich.console import Console
 
 from drivelint.drive.conditions import CONDITION_VALUES
-from drivelint.errors import ExitCode, UsageError
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import ExitCode, TraceError, UsageError
+from drivelint.formats import read_trace
+from drivelint.formats.registry import FIXED_BEGINNINGS
 from drivelint.inspect import InspectRequest, exit_code, inspect, to_json
-from drivelint.inspect.model import Inspection, json_schema
+from drivelint.inspect.model import Content, Inspection, json_schema
+from drivelint.inspect.text import render
 from drivelint.reasons.signals import ADVICE, how_to_provide
 from drivelint.report.progress import Silent
 from drivelint.resources import folder
@@ -129,6 +135,20 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
 
 
+def test_an_ego_that_is_no_vehicle_is_advised_to_choose_another(tmp_path: Path) -> None:
+    """Somebody on foot crosses the road: no other map makes them drive on it."""
+    frames = []
+    for i in range(40):
+        truth = osi_log.frame(i * 100_000_000, host=7)
+        osi_log.moving(truth, 7, 20.0, -20.0 + i, v=(0.0, 10.0), kind=3, vehicle=0)
+        frames.append(truth)
+    drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)), map=ROAD)
+    (ego,) = drive.egos
+    registration = next(item for item in ego.missing if item.signal == "registration")
+    assert registration.provide == "choose the ego with --ego ID (drivelint inspect LOG --ego all lists the ids)"
+    assert registration.reason.endswith(f"so it may not be the vehicle under test: {registration.provide}")
+
+
 def test_a_map_of_another_place_is_told_and_not_used() -> None:
     found = inspect(InspectRequest(str(FIXTURE / "safe.csv"), map=ROAD, mapping=MAPPING, map_offset=(9000.0, 0.0)))
     assert found.drive is not None
@@ -155,6 +175,26 @@ def test_no_ego_is_no_error_but_a_choice(tmp_path: Path) -> None:
     chosen = looked(tmp_path / "log.mcap", ego="7")
     assert [ego.actor.actor_id for ego in chosen.egos] == ["7"]
     assert (chosen.supposed, chosen.candidates) == (None, [])
+
+
+def test_an_ego_without_states_is_told_as_check_tells_it(tmp_path: Path) -> None:
+    frames = []
+    for i in range(20):
+        truth = osi_log.frame(i * 100_000_000, host=3)
+        osi_log.moving(truth, 7, 1.0 * i)
+        frames.append(truth)
+    path = osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames))
+    with pytest.raises(TraceError) as refused:
+        read_trace(path, IngestOptions())
+    drive = looked(path)
+    assert str(refused.value) == f"{path}: {drive.ego_source}"
+    console = Console(file=io.StringIO(), width=200)
+    console.print(render(inspect(InspectRequest(str(path))), "log.mcap"))
+    assert isinstance(console.file, io.StringIO)
+    assert (
+        "none: the log's ego 3 has no states: use --ego ID or --ego all (ids: 7). The longest"
+        in console.file.getvalue()
+    )
 
 
 def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
@@ -209,6 +249,21 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert (
         {"map", "ego_size"} <= lacking <= {"map", *SAID_BY_THE_LOG, *CONDITION_VALUES}
     )  # which the table does not have
+
+
+def test_a_file_that_does_not_begin_as_its_suffix_says_is_no_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A byte order mark before the fixed beginning is no fault."""
+    monkeypatch.setitem(FIXED_BEGINNINGS, ".trk", b"#TRK")
+    found = {}
+    for name, text in (("bare", "a,b\n1,2\n"), ("marked", "\ufeff#TRK,b\n1,2\n")):
+        (tmp_path / f"{name}.trk").write_text(text, encoding="utf-8")
+        found[name] = inspect(InspectRequest(str(tmp_path / f"{name}.trk")))
+    assert "not trk: it should begin b'#TRK'" in (found["bare"].problem or "")
+    assert found["bare"].content == Content()
+    assert "no shipped mapping fits" in (found["marked"].problem or "")
+    assert found["marked"].content.sheets
 
 
 @pytest.mark.parametrize(

@@ -86,6 +86,16 @@ def test_long_sections_are_cut_and_say_so() -> None:
     assert text.count("58.00 m") == 20
 
 
+def test_of_many_rules_with_one_reason_the_first_ten_are_named() -> None:
+    rules = [f"rss.r{n:02}" for n in range(8)] + [f"ukhc.r{n:02}" for n in range(8)]
+    rows = [verdict("unknown", rule_id=rule_id, reason="no map", profile=None) for rule_id in rules]
+    text = shown(result([*rows, verdict("unknown", rule_id="stvo.r00", reason="no class", profile=None)]))
+    _, _, told = text.partition("Could not be judged")
+    assert [rule_id in told for rule_id in rules] == [True] * 10 + [False] * 6
+    assert "and 6 more of ukhc" in told
+    assert "stvo.r00" in told
+
+
 @pytest.mark.parametrize("width", [120, 60])
 def test_a_logs_words_are_text_not_markup(width: int) -> None:
     text = shown(

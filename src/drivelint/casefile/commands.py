@@ -7,6 +7,7 @@ are not loaded beside a folder of yours: copies of them can be worked on.
 from __future__ import annotations
 
 import os
+import re
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
@@ -132,8 +133,12 @@ def _check_plans(rule: Rule) -> None:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:
         raise RuleError(f"{rule.path}:1: {str(error).splitlines()[0]}") from error
-    if any("BLOCKWISE_NL_JOIN" in plan for plan in plans):
-        raise RuleError(
-            f"{rule.path}:1: a join compares every row with every other (BLOCKWISE_NL_JOIN): join on keys, and move "
-            "what is no comparison into a WHERE or into branches of a UNION ALL"
-        )
+    for plan in plans:
+        _, found, below = plan.partition("BLOCKWISE_NL_JOIN")
+        tables = " and ".join(name for name in rule.reads if re.search(rf"\.{name}\b", below)) or "two tables"
+        if found:
+            raise RuleError(
+                f"{rule.path}:1: a join of {tables} compares every row with every other (BLOCKWISE_NL_JOIN): join on keys, and move "
+                "what is no comparison into a WHERE or into branches of a UNION ALL; in a LEFT JOIN each inequality must have columns "
+                "of one table on each side; for a state since a time use ASOF LEFT JOIN"
+            )

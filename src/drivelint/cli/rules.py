@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
-from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.console import print_rich, progress, run_interruptible
 from drivelint.cli.options import Texts, argument, option
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
@@ -108,4 +109,12 @@ def run_tests(
     from drivelint.casefile import commands
 
     test = commands.mutation_test if mutate else commands.case_test
-    raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), typer.echo))))
+    out = None if sys.stdout.isatty() else sys.stdout  # None: above the bar, where both are on the terminal
+    with progress(quiet=not mutate) as shown:
+        shown.stage("judging mutants")
+
+        def say(text: str) -> None:
+            typer.echo(text, file=out)
+            shown.advance()
+
+        raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), say))))

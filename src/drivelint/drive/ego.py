@@ -41,9 +41,10 @@ def choose(
         absent = (
             f"the log's ego {listed(named)} has no states" if named else "the log does not say which actor is the ego"
         )
+        message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
         if not needed:
-            return [], [QualityFinding("no_ego", "warning", f"no ego: {absent}: nothing is judged without --ego ID")]
-        raise TraceError(f"{path}: no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
+            return [], [QualityFinding("no_ego", "warning", message)]
+        raise TraceError(f"{path}: {message}")
     if len(egos) > 1:
         message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"
         return egos, [QualityFinding("ego_count", "warning", message, len(egos))]

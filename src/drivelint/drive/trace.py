@@ -243,7 +243,7 @@ class Recording:
 
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
     the log's or mapping's egos, `conditions` what it says of the drive (condition -> word), `strict_units` is set where a
-    mapping the user can correct decided units and frame.
+    mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are those of `Trace`.
     """
 
     format: str

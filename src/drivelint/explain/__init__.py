@@ -114,7 +114,7 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=found,
         sensitivity=sensitivity,
         source=source,
-        notes=_notes(case, now),
+        notes=[*_notes(case, now), *_left_out(result, row)],
     )
 
 
@@ -159,6 +159,16 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if now != before:
         notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
+
+
+def _left_out(result: Result, row: Row) -> list[str]:
+    """Return a note on the tracks whose ends drivelint itself left out, if the verdict is unknown because a track ends."""
+    lost = (row["reason_code"] or "").startswith("lost_")
+    checks = [
+        q for drive in result.drives.to_pylist() if drive["drive_id"] == row["drive_id"] for q in drive["quality"]
+    ]
+    told = "drivelint left out the ends of tracks, which no longer recording brings back"
+    return [f"{told}: {check['message']}." for check in checks if lost and check["check_id"] == "removed"]
 
 
 def _drive(result: Result, drive_id: str) -> Row:

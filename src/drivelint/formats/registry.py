@@ -1,7 +1,8 @@
-"""The trace formats, in the order in which they are asked: by what the file holds (magic bytes, columns), never by topic or extension."""
+"""The trace formats, in the order in which they are asked: by what the file holds; a suffix with a fixed beginning must have it."""
 
 from __future__ import annotations
 
+import codecs
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError, UsageError
@@ -29,6 +30,8 @@ READERS: Final[tuple[Reader, ...]] = (
     mapped_table,  # last: it accepts any text without markup
 )
 """The first that accepts a file reads it."""
+FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}
+"""Suffix -> how each file with it must begin, behind a byte order mark if there is one: another one is refused as damaged."""
 FORMATS: Final = {name: told for reader in READERS for name, told in reader.formats.items()}
 """What `data_log.format` may be beside the name of a mapping -> the format's title, and how its ego is known."""
 
@@ -58,11 +61,11 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
 
 
 def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
-    """Whether no other reader accepts a file than the one for tables with a mapping."""
+    """Whether no other reader accepts a file than the one for tables with a mapping; false if no reader is asked about it."""
     try:
         probe = _probe(path, options)
     except TraceError:
-        return True
+        return False
     return not any(reader.accepts(probe) for reader in READERS if reader is not mapped_table)
 
 
@@ -88,8 +91,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"
         )
-    magic = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}.get(suffix)
-    if magic is not None and not head.startswith(magic):
+    magic = FIXED_BEGINNINGS.get(suffix)
+    if magic is not None and not head.removeprefix(codecs.BOM_UTF8).startswith(magic):
         raise TraceError(
             f"{path}: not {suffix[1:]}: it should begin {magic!r} and begins {head[:32]!r} at byte 0: copy it again"
         )

@@ -31,7 +31,7 @@ Distances are metres, speeds metres per second, angles radians, and times intege
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
 """
-_MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\([^)]*\))", re.MULTILINE)
+_MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE)
 _MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _GROUPS: Final = {
     "model": "The recorded drive",
@@ -181,7 +181,7 @@ def reasons_page() -> str:
 
 
 def macros_page() -> str:
-    """Return every macro as Markdown, by file: its parameters and the comment above it, which may be about several."""
+    """Return every macro as Markdown, by file: its parameters, else its value, and the comment above it, which may be about several."""
     files: dict[str, list[tuple[str, str]]] = {}
     for file in sorted((folder("queries") / "macros").glob("*.sql")):
         about = ""

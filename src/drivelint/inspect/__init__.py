@@ -168,6 +168,10 @@ def _judgeable(
         ego_id = way["ego_id"]
         mine = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
         lacking = {signal: reason_text.sentence(row["reason"]) for signal, row in mine.items() if not row["available"]}
+        asks = {
+            signal: reason_text.text_of(reason_text.parse_reason(row["reason"]).code).advice
+            for signal, row in mine.items()
+        }
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
         never = advice.never_known(known.of[ego_id], lacking)
@@ -181,7 +185,7 @@ def _judgeable(
                 registration=registrations.get(ego_id),
                 can=[rule.id for rule in rules if rule.id not in undecided],
                 cannot=cannot,
-                missing=advice.missing_signals(cannot, {**never, **lacking}, log_format),
+                missing=advice.missing_signals(cannot, {**never, **lacking}, log_format, asks),
             )
         )
     return egos, quality

@@ -52,8 +52,10 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     return found
 
 
-def missing_signals(cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str) -> list[Missing]:
-    """Return the missing signals with the rules that need them, the most needed first."""
+def missing_signals(
+    cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, asks: Mapping[str, str]
+) -> list[Missing]:
+    """Return the missing signals with the rules that need them, the most needed first. `asks`: signal -> advice of its reason."""
     by_signal: dict[str, list[Undecided]] = {}
     for rule in cannot:
         for signal in rule.missing:
@@ -62,7 +64,7 @@ def missing_signals(cannot: Sequence[Undecided], lacking: Mapping[str, str], log
         Missing(
             signal=signal,
             reason=lacking[signal],
-            provide=how_to_provide(signal, log_format),
+            provide=how_to_provide(signal, log_format, asks.get(signal)),
             rules=[rule.rule_id for rule in waiting],
             alone=[rule.rule_id for rule in waiting if rule.missing == [signal]],
         )

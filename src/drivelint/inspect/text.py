@@ -172,7 +172,8 @@ def _drive(drive: model.Drive) -> Iterator[Line]:
 
 def _egos(drive: model.Drive) -> Iterator[Line]:
     if not drive.egos:
-        yield "ego", Text("none: the log does not say who it is; choose one. The longest way first:", style="yellow")
+        why = drive.ego_source.removeprefix("no ego: ")
+        yield "ego", Text(f"none: {why}. The longest way first:", style="yellow")
         yield from _first_of("ego", [Text(f"--ego {a.actor_id}  {_actor(a)}") for a in drive.candidates])
         return
     egos = [Text(f"{ego.actor.actor_id}: {_actor(ego.actor)}") for ego in drive.egos]

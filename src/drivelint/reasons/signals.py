@@ -40,8 +40,10 @@ def problem(signal: str) -> str | None:
     return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
 
 
-def how_to_provide(signal: str, log_format: str) -> str:
-    """Return how to provide a signal in a log of this format."""
+def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> str:
+    """Return how to provide a signal in a log of this format. `advice`: what the reason why it is lacking asks for."""
+    if signal == "registration" and advice:
+        return advice  # the map is not at fault
     name = log_format if log_format in FORMATS else "mapped"
     # what a format has no place for goes into its tables
     tables = TEXTS["where"]["canonical-parquet"].items()
@@ -53,7 +55,7 @@ def how_to_provide(signal: str, log_format: str) -> str:
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
     """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
     if code.startswith("missing_") and code not in REMEDIES:
-        return how_to_provide(code.removeprefix("missing_"), log_format) + _AGAIN
+        return how_to_provide(code.removeprefix("missing_"), log_format, advice) + _AGAIN
     condition = code.removesuffix("_unknown")
     if condition in DRIVE_CONDITION_VALUES or condition == "limit":
         return (

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
+MAX_RULES: Final = 10
+"""Rules shown per reason."""
 MAX_ROWS: Final = 20
 """Rows shown per section; the files hold them all."""
 NARROW_WIDTH: Final = 96
@@ -180,12 +182,19 @@ def _open(result: Result) -> Table | None:
     egos = counts.grouped(of_egos, lambda row: (row["verdict"], row["reason"]))
     several = len({row["ego_id"] for row in of_egos}) > 1
     for verdict, reason in order[:MAX_ROWS]:
-        rules = (with_count(row["rule_id"], row["count_all"]) for row in why[verdict, reason])
+        rules = _few([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
         text = Text(reason)
         if several:
             text.append(f"\nego {listed([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
         table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), text)
     return table
+
+
+def _few(rules: list[tuple[str, int]]) -> list[str]:
+    """Return the first rules with their counts, and how many more there are of which packs."""
+    packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES:]})
+    more = [f"and {len(rules) - MAX_RULES} more of {', '.join(packs)}"] if packs else []
+    return [with_count(*rule) for rule in rules[:MAX_RULES]] + more
 
 
 def _quality(result: Result) -> Table | None:

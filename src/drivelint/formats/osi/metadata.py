@@ -1,9 +1,9 @@
 """What OSI has no field for, carried in a converted log beside its messages, written and read here.
 
-Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said,
-what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
-OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`,
-for declared events.
+Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said, the
+projection of its coordinates, what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of
+`actor` in JSON, since OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages,
+`drivelint.DeclaredEvent`, for declared events.
 """
 
 from __future__ import annotations
@@ -47,6 +47,8 @@ class _Said(msgspec.Struct, frozen=True, kw_only=True):
     """The record `drivelint.trace`: MCAP keeps texts, each of these is JSON. Unknown keys are of newer versions."""
 
     map_offset_m: tuple[float, float] | None = None
+    geo_reference: str | None = None
+    geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     sensor_range_m: float | None = None
     utc_start_ns: int | None = None
     unknown: tuple[str, ...] = ()
@@ -83,6 +85,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict
     optional = {
         "conditions": holds or None, "map_offset_m": trace.map_offset,
         "sensor_range_m": log["sensor_range_m"], "utc_start_ns": log["utc_start_ns"],
+        "geo_reference": trace.geo_reference, "geo_offset": trace.geo_offset if trace.geo_reference else None,
     }  # fmt: skip
     said |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
@@ -144,6 +147,8 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
+    if said.geo_reference is not None:
+        recording.geo_reference, recording.geo_offset = said.geo_reference, said.geo_offset
     if said.utc_start_ns is not None:
         recording.utc_start_ns = said.utc_start_ns
     recording.sensor_range_m = said.sensor_range_m

@@ -83,6 +83,10 @@ def read(probe: Probe) -> Recording:
         if offset != (None, None):
             dx, dy = recording.map_offset = _offset(path, offset)
             recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
+        if geo := _extra(path / "data_log.parquet", (), ("geo_reference", "geo_x_m", "geo_y_m", "geo_yaw_rad")):
+            (said, *_) = geo.to_pylist()
+            x, y, yaw = (said.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))
+            recording.geo_reference, recording.geo_offset = said.get("geo_reference"), (x, y, yaw)
     if (path / "map.xodr").is_file():
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
