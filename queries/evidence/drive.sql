@@ -32,7 +32,7 @@ WITH
         FROM drive_condition WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     missing_signals AS (
         SELECT drive_id,
-            list({'ego_id': ego_id, 'signal': signal, 'reason': words} ORDER BY ego_id, signal) AS not_judged
+            list({'ego_id': ego_id, 'signal': signal, 'reason_code': cause_code, 'reason': words} ORDER BY ego_id, signal) AS not_judged
         FROM capability JOIN _worded ON cause = reason
         WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
 SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS map_name, e.sha256 AS map_sha256,

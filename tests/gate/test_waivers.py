@@ -203,9 +203,10 @@ def test_junit_still_shows_the_unknown_beside_what_is_waived() -> None:
 
 def test_the_terminal_shows_what_is_let_through_and_what_to_look_at() -> None:
     console = Console(width=120, record=True, file=io.StringIO())
-    console.print(terminal.render(gated(waiver(), waiver(rule="none.*"), rows=[ROW])))
+    console.print(terminal.render(gated(waiver(), waiver(rule="none.*"), rows=[ROW]), verbose=True))
     text = console.export_text()
     assert "Known or waived findings: they do not gate (1)" in text
+    assert "PASS  no findings; 1 known or waived" in text
     assert "no finding is like that: none.*" in text
     assert "exit 0: nothing failed at or above severity critical (1 waived)" in text
 

@@ -11,8 +11,9 @@ from rich.console import Console, RenderableType
 
 from drivelint.catalogue import load_rules
 from drivelint.catalogue.header import Conditions
+from drivelint.errors import ExitCode
 from drivelint.report import rules_text, terminal
-from drivelint.result.model import Result
+from drivelint.result.model import Result, exit_status
 from tests.report.synthetic import drive, finding, result, rule, verdict
 
 WARNING = {
@@ -22,9 +23,9 @@ WARNING = {
 INFO = WARNING | {"severity": "info", "check_id": "note", "message": "nothing to worry about"}
 
 
-def shown(run: Result, width: int = 120) -> str:
+def shown(run: Result, width: int = 120, *, verbose: bool = True) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=False)
-    console.print(terminal.render(run, "out", width))
+    console.print(terminal.render(run, "out", width, verbose=verbose))
     text = console.file.getvalue()  # type: ignore[attr-defined]
     assert max(len(line) for line in text.splitlines()) <= width
     return str(text)
@@ -51,8 +52,116 @@ def test_everything_is_told(width: int) -> None:
     assert "4 headings differ" in text
     assert "nothing to worry about" not in text
     assert "(draft)" in text
-    assert "1 pass, 1 fail, 1 unknown, 0 n/a, 0 error" in text
     assert "exit 1: 1 verdict failed at or above severity critical" in text
+
+
+def summary(run: Result, width: int = 120) -> list[str]:
+    return shown(run, width, verbose=False).splitlines()
+
+
+def collision(drive_id: str, **over: object) -> dict[str, object]:
+    more = {"profile": None, "observed": -0.1, "required": 0.0, "margin": -0.1, **over}
+    return finding(drive_id=drive_id, rule_id="ukhc.no-collision", **more)
+
+
+COLLISION = rule("ukhc.no-collision", tags=["contact"], title="No collision")
+
+
+def test_the_summary_fits_one_screen_whatever_the_catalogue() -> None:
+    names = [f"drive-{n}" for n in range(6)]
+    rules = [rule(f"ukhc.r{n}", severity=["critical", "major", "minor"][n % 3]) for n in range(300)]
+    failed = [(name, each) for name in names for each in rules[::10]]
+    verdicts = [
+        verdict("fail", drive_id=name, rule_id=each["rule_id"], severity=each["severity"]) for name, each in failed
+    ]
+    verdicts += [
+        verdict(
+            "unknown", drive_id=name, rule_id=rules[n]["rule_id"], reason_code=f"code_{n}", reason=f"unknown at {n} s"
+        )
+        for name in names
+        for n in range(90)
+    ]
+    findings = [finding(drive_id=name, rule_id=each["rule_id"], severity=each["severity"]) for name, each in failed]
+    assert len(findings) == 180
+    lines = summary(result(verdicts, findings, drives=[drive(name) for name in names], rules=rules))
+    assert len(lines) <= 40
+    assert all(sum(name in line for line in lines) >= 1 for name in names)
+    assert any(line.startswith("FAIL  60 critical, 60 major, 60 minor findings in 6 of 6 drives") for line in lines)
+    assert "300 rules: 30 judged, 81 never judgeable, 189 never applied" in lines
+
+
+def test_the_worst_drive_and_rule_stand_first() -> None:
+    findings = [
+        finding(),
+        collision("d2"),
+        finding(drive_id="d2", severity="minor"),
+        finding(drive_id="d3", margin=-9.0),
+    ]
+    drives = [
+        drive(),
+        drive("d2"),
+        drive("d3"),
+        drive("d4"),
+        drive("d5", status="not_judged", status_reason="d5: no ego"),
+    ]
+    verdicts = [verdict("fail", drive_id=name) for name in ("d1", "d2", "d3")] + [verdict("pass", drive_id="d4")]
+    lines = summary(result(verdicts, findings, drives=drives, rules=[rule(), COLLISION]))
+    first = [line.split()[0] for line in lines if re.match(r"d\d ", line)]
+    assert first == ["d5", "d2", "d1", "d3", "d4"]
+    assert [line for line in lines if line.startswith("FAIL")] == [
+        "FAIL  3 critical, 1 minor findings in 3 of 5 drives; CONTACT in 1"
+    ]
+    assert any("CONTACT -0.10 m, needs 0.00 m; object 3" in line for line in lines)
+    assert any("58.00 m, needs 64.00 m [nominal]; room to overtake; object 3" in line for line in lines)
+    broken = [line.split() for line in lines if line.startswith(("critical", "major", "minor"))]
+    assert broken == [
+        ["critical", "ukhc.no-collision", "1", "1", "-0.10", "m"],
+        ["critical", rule()["rule_id"], "3", "3", "-9.00", "m"],
+    ]
+    assert "explain  drivelint explain ukhc.no-collision@d2 --in out" in lines
+
+
+def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:
+    rows = [verdict("unknown", rule_id=name, reason_code="missing_mode_headlights") for name in ("ukhc.a", "ukhc.b")]
+    rows.append(verdict("unknown", rule_id="ukhc.c", reason_code="missing_indicator"))
+    rows += [verdict("unknown", reason_code="log_hole", reason=f"a hole at {n} s") for n in range(90)]
+    rules = [rule(name) for name in ("ukhc.a", "ukhc.b", "ukhc.c")] + [rule()]
+    lines = summary(result([*rows, verdict("pass", rule_id="ukhc.a")], rules=rules))
+    assert [line for line in lines if line.startswith("unknown")] == [
+        "unknown (not logged or not in the map): headlights (2 rules), indicator (1 rule)",
+        "unknown (1 rule, 90 times): a hole at 0 s",
+    ]
+    assert "4 rules: 1 judged, 3 never judgeable" in lines
+
+
+def test_a_run_that_decided_nothing_is_no_pass() -> None:
+    assert any(line.startswith("UNKNOWN  no findings") for line in summary(result([verdict("unknown")])))
+    assert any(line.startswith("PASS  no findings") for line in summary(result([verdict("pass")])))
+
+
+def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
+    ego = [{"ego_id": "1", "km": 0.1, "hours": 0.1, "engaged_km": 0.0, "engaged_hours": 0.0, "n_steps": 250}]
+    lost = [
+        {
+            "ego_id": "1",
+            "signal": "registration",
+            "reason_code": "seldom_on_lane",
+            "reason": "on a lane in only 27 of 181 steps",
+        }
+    ]
+    off = drive("off", exposure=ego, not_judged=lost)
+    run = result([verdict("unknown", drive_id="off"), verdict("pass")], drives=[drive(exposure=ego), off])
+    assert exit_status(run).code == ExitCode.NOT_JUDGED
+    lines = summary(run)
+    assert any(line.startswith("NOT JUDGED  no findings") for line in lines)
+    assert any(line.startswith("map: road.xodr fits 1 of 2 drives") for line in lines)
+    assert any(
+        line.startswith("exit 4: the map does not fit 1 of 2 drives: on a lane in only 27 of 181") for line in lines
+    )
+    second = [*ego, ego[0] | {"ego_id": "2"}]
+    assert exit_status(result([verdict("pass")], drives=[drive(exposure=second, not_judged=lost)])).code == ExitCode.OK
+    other = drive(exposure=ego, not_judged=[lost[0] | {"reason_code": "ego_without_position"}])
+    assert exit_status(result([verdict("pass")], drives=[other])).code == ExitCode.OK
 
 
 def test_packs_are_counted_apart() -> None:
@@ -83,7 +192,7 @@ def test_long_sections_are_cut_and_say_so() -> None:
     many = [finding(occurrence=n) for n in range(25)]
     text = shown(result([verdict("fail")], many))
     assert "Findings (first 20 of 25)" in text
-    assert text.count("58.00 m") == 20
+    assert text.count("observed 58.00 m") + text.count("  58.00 m") == 20
 
 
 def test_of_many_rules_with_one_reason_the_first_ten_are_named() -> None:
@@ -107,7 +216,7 @@ def test_a_logs_words_are_text_not_markup(width: int) -> None:
 
 
 def test_the_end_says_where_to_look_next() -> None:
-    assert "open out/report.html" in shown(result([verdict("pass")]))
+    assert "open     out/report.html" in shown(result([verdict("pass")]))
     assert "drivelint inspect" not in shown(result([verdict("pass")]))
     assert "drivelint inspect TRACE" in shown(result([verdict("unknown")]))
     console = Console(file=io.StringIO(), width=120)

@@ -91,7 +91,9 @@ def test_a_drive_is_told_with_map_way_and_what_is_missing(con: duckdb.DuckDBPyCo
         {"rule_id": "ukhc.r162.safe-distance-ahead", "profile": "relaxed", "n": 1, "n_judged": 0},
     ]
     assert [x["message"] for x in row["quality"]] == ["a hole", "map road.xodr, 1.0.1: no way on"]
-    assert row["not_judged"] == [{"ego_id": "a", "signal": "indicator", "reason": "not in the log"}]
+    assert row["not_judged"] == [
+        {"ego_id": "a", "signal": "indicator", "reason_code": "text", "reason": "not in the log"}
+    ]
     assert (empty["drive_id"], empty["n_egos"], empty["map_name"], empty["duration_s"]) == ("d0", 0, None, None)
 
 

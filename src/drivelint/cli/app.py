@@ -92,6 +92,9 @@ def check(
     waivers: options.Waivers = None,
     today: options.Today = None,
     memory: options.MemorySize = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge recorded drives against the rules.
@@ -146,7 +149,7 @@ def check(
     if format_ == "json":
         typer.echo(summary.render(result), nl=False)
     else:
-        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width))
+        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width, verbose=verbose))
     raise typer.Exit(int(exit_status(result).code))
 
 

@@ -12,11 +12,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.errors import ExitCode
-from drivelint.gate import descriptions
 from drivelint.phrases import listed
+from drivelint.report import terminal_summary
 from drivelint.result import counts
-from drivelint.result.model import exit_status
 from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
@@ -44,11 +42,14 @@ _HEAD: Final = {"pass": "pass", "fail": "fail", "unknown": "unknown", "not_appli
 _SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow", "error": "red", "warning": "yellow"}
 
 
-def render(result: Result, out: str | None = None, width: int = 120) -> Group:
+def render(result: Result, out: str | None = None, width: int = 120, *, verbose: bool = False) -> Group:
     """Return the summary of a run as one rich renderable for a terminal of `width` columns.
 
-    Sections: drives, rules, findings, near misses, what could not be judged, data quality, exit.
+    It takes one screen. With `verbose` the tables come before it: drives, rules, findings, near misses, what could not be judged,
+    data quality.
     """
+    if not verbose:
+        return terminal_summary.render(result, out, width)
     wide = width >= NARROW_WIDTH
     starts = result.start_times
     near = result.verdicts.filter(result.verdicts["near_miss"])
@@ -59,8 +60,8 @@ def render(result: Result, out: str | None = None, width: int = 120) -> Group:
         _measured("Near misses: kept, but only just", near, starts, "yellow", wide=wide),
         _open(result),
         _quality(result),
-        _gate(result),
-        _end(result, out),
+        _assumptions(result),
+        terminal_summary.render(result, out, width),
     ]
     return Group(*(Padding(section, (0, 0, 1, 0)) for section in sections if section is not None))
 
@@ -114,23 +115,6 @@ def _findings(result: Result, starts: dict[str, int | None], *, wide: bool) -> l
             "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), starts, "dim", wide=wide
         ),
     ]
-
-
-def _gate(result: Result) -> Table | None:
-    """Return what changed since the baseline, and the waivers that do not do what they are for."""
-    if result.gate is None:
-        return None
-    lines = [] if result.gate.baseline is None else [("baseline", descriptions.headline(result.gate.baseline))]
-    lines += [("waiver", line) for line in descriptions.waiver_warnings(result.gate)]
-    if not lines:
-        return None
-    table = _table("Gate", "bold")
-    table.show_header = False
-    table.add_column("what", no_wrap=True)
-    table.add_column("which", overflow="fold", ratio=1)
-    for what, line in lines:
-        table.add_row(what, Text(line))
-    return table
 
 
 def _measured(
@@ -212,30 +196,12 @@ def _quality(result: Result) -> Table | None:
     return table
 
 
-def _end(result: Result, out: str | None) -> Text:
-    end = exit_status(result)
-    style = {ExitCode.OK: "bold green", ExitCode.FAILED: "bold red", ExitCode.USAGE: "bold red"}
-    told = counts.total(result.verdicts)
-    text = Text(", ".join(f"{n} {_HEAD[verdict]}" for verdict, n in told.items()))
-    given = {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}
-    if given:
-        text.append(f"\njudged in: {', '.join(sorted(given))}")
+def _assumptions(result: Result) -> Text | None:
     assumed = counts.count_assuming(result.verdicts, "line_of_sight")
-    if assumed:
-        verb = "verdict assumes" if assumed == 1 else "verdicts assume"
-        text.append(f"\n{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
-    text.append(f"\nexit {int(end.code)}: {end.why}", style=style.get(end.code, "bold yellow"))
-    if told["unknown"]:
-        text.append(
-            "\nunknown is not pass: drivelint inspect TRACE tells what a log lacks, and what to provide", "yellow"
-        )
-    if out is None:
-        text.append(
-            "\nnothing was written: --out DIR keeps a report, the tables and the logs with their verdicts", "dim"
-        )
-    else:
-        text.append(f"\nto look at it, open {out}/report.html", style="bold")
-    return text
+    if not assumed:
+        return None
+    verb = "verdict assumes" if assumed == 1 else "verdicts assume"
+    return Text(f"{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.gate import Gate
     from drivelint.result.request import RunRequest
+    from drivelint.result.text import Row
+
+
+MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
+"""Reasons for which the signal `registration` is missing that tell of a map which does not fit."""
 
 
 class ExitStatus(NamedTuple):
@@ -98,6 +103,10 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
+    off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
+    if off_map:
+        drives = plural(result.drives.num_rows, "drive")
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
     if result.strict and (unknown := _count(gating, "unknown")):
         yield ExitStatus(ExitCode.NOT_JUDGED, f"{plural(unknown, 'verdict')} unknown, and --strict is set")
     if result.lossy:
@@ -110,6 +119,16 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
         )
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+
+
+def off_map_reason(drive: Row) -> str | None:
+    """Return why the map does not fit a drive, by its first ego; None: it fits some ego, it is not known, or there is no map.
+
+    `drive`: a row of the table `drive`.
+    """
+    lost = {row["ego_id"]: str(row["reason"]) for row in drive["not_judged"] if row["reason_code"] in MISFITS}
+    egos = [ego["ego_id"] for ego in drive["exposure"]]
+    return lost[egos[0]] if egos and lost.keys() >= set(egos) else None
 
 
 def _count(verdicts: pa.Table, verdict: str) -> int:
