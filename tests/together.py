@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.engine.batch import Drive
+    from drivelint.road.map_reader import MapTables
 
 LEAST_TESTS: Final = 6
 MOST_ROUNDS: Final = 6
@@ -74,13 +75,14 @@ class SceneTables:
         ctes = []
         for table in sorted(_tables(sql)):
             columns = store.column_comments()[table]
-            if "drive_id" in columns:
-                name = f"substr(drive_id::VARCHAR, {len(self.prefix) + 1}) AS drive_id"
-                where = f"starts_with(drive_id::VARCHAR, '{self.prefix}')"
-                ctes.append(f"{table} AS (SELECT * REPLACE ({name}) FROM main.{table} WHERE {where})")
-            elif "environment_id" in columns:
-                ids = ", ".join(f"'{each}'" for each in self.environments) or "NULL"
-                ctes.append(f"{table} AS (FROM main.{table} WHERE environment_id IN ({ids}))")
+            own = [column for column in ("drive_id", "environment_id") if column in columns]
+            if not own:
+                continue
+            names = ", ".join(f"substr({column}::VARCHAR, {len(self.prefix) + 1}) AS {column}" for column in own)
+            ids = ", ".join(f"'{each}'" for each in self.environments) or "NULL"
+            of_drives, of_maps = f"starts_with(drive_id::VARCHAR, '{self.prefix}')", f"environment_id IN ({ids})"
+            where = of_drives if "drive_id" in own else of_maps
+            ctes.append(f"{table} AS (SELECT * REPLACE ({names}) FROM main.{table} WHERE {where})")
         if not ctes:
             return sql
         head = ", ".join(ctes)
@@ -175,55 +177,47 @@ def _answer(questions: Mapping[tuple[str, int], Question]) -> dict[tuple[str, in
         groups[question.rules, question.profiles].append(key)
     found: dict[tuple[str, int], Any] = {}
     for (rules, profiles), keys in sorted(groups.items(), key=repr):
-        for some in _with_one_map_each(keys, questions):
-            renamed = {key: _renamed(questions[key].drives, f"q{n:04}.") for n, key in enumerate(some)}
-            drives = [drive for each in renamed.values() for drive in each]
-            con = store.connect(threads=1)
-            if rules is None:
-                tables = [questions[key].tables for key in some]
-                scenes.derived(*drives, tables=frozenset().union(*tables) if all(tables) else (), con=con)  # (): all
-                for n, key in enumerate(some):
-                    ids = {d.environment.environment_id for d in questions[key].drives if d.environment}
-                    found[key] = SceneTables(con, f"q{n:04}.", tuple(sorted(ids)))
-                continue
-            scenes.judged(drives, rules=rules, profiles=profiles, con=con)
-            for n, key in enumerate(some):
-                mine = SceneTables(con, f"q{n:04}.", ())
-                found[key] = scenes.rows(mine, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
-            con.close()
+        maps: dict[int, MapTables] = {}
+        renamed = {key: _renamed(questions[key].drives, f"q{n:04}.", maps) for n, key in enumerate(keys)}
+        drives = [drive for each in renamed.values() for drive in each]
+        con = store.connect(threads=1)
+        if rules is None:
+            tables = [questions[key].tables for key in keys]
+            scenes.derived(*drives, tables=frozenset().union(*tables) if all(tables) else (), con=con)  # (): all
+            for n, key in enumerate(keys):
+                ids = {d.environment.environment_id for d in renamed[key] if d.environment}
+                found[key] = SceneTables(con, f"q{n:04}.", tuple(sorted(ids)))
+            continue
+        scenes.judged(drives, rules=rules, profiles=profiles, con=con)
+        for n, key in enumerate(keys):
+            mine = SceneTables(con, f"q{n:04}.", ())
+            found[key] = scenes.rows(mine, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
+        con.close()
     return found
 
 
-def _with_one_map_each(
-    keys: Sequence[tuple[str, int]], questions: Mapping[tuple[str, int], Question]
-) -> Iterator[list[tuple[str, int]]]:
-    """Part the questions so that no two maps of one part have the same id: tests alter maps and leave their ids."""
-    parts: list[tuple[dict[str, int], list[tuple[str, int]]]] = []
-    for key in keys:
-        mine = {d.environment.environment_id: id(d.environment) for d in questions[key].drives if d.environment}
-        for maps, part in parts:
-            if all(maps.get(name, number) == number for name, number in mine.items()):
-                maps.update(mine)
-                part.append(key)
-                break
-        else:
-            parts.append((mine, [key]))
-    yield from (part for _, part in parts)
+def _renamed(drives: Sequence[Drive], prefix: str, maps: dict[int, MapTables]) -> list[Drive]:
+    """Return the drives with the prefix before their ids, on maps with ids of their own: tests alter maps and leave their ids.
 
-
-def _renamed(drives: Sequence[Drive], prefix: str) -> list[Drive]:
-    """Return the drives with the prefix before their ids."""
+    `maps`: the id of a map's object -> that map under its new id.
+    """
     found = []
     for drive in drives:
-        tables = {}
-        for name, table in drive.trace.tables.items():
-            at = table.schema.get_field_index("drive_id")
-            field = table.schema.field(at)
-            ids = pa.array([prefix + each for each in table["drive_id"].to_pylist()], field.type)
-            tables[name] = table.set_column(at, field, ids)
+        tables = {name: _with_prefix(table, "drive_id", prefix) for name, table in drive.trace.tables.items()}
         trace = replace(drive.trace, drive_id=prefix + drive.trace.drive_id, tables=tables)
-        found.append(replace(drive, trace=trace))
+        road = drive.environment
+        if road is not None and id(road) not in maps:
+            mark = f"m{len(maps):04}."
+            own = {name: _with_prefix(table, "environment_id", mark) for name, table in road.tables.items()}
+            maps[id(road)] = replace(road, environment_id=mark + road.environment_id, tables=own)
+        found.append(replace(drive, trace=trace, environment=maps[id(road)] if road is not None else None))
     return found
+
+
+def _with_prefix(table: pa.Table, column: str, prefix: str) -> pa.Table:
+    at = table.schema.get_field_index(column)
+    ids = pa.array([prefix + each for each in table[column].to_pylist()], table.schema.field(at).type)
+    return table.set_column(at, table.schema.field(at), ids)
 
 
 def _is_same(one: Drive, other: Drive) -> bool:
