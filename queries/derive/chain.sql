@@ -86,7 +86,7 @@ lanelet_behind AS (
     WHERE b.before_m < corridor_behind_m() AND b.hop < 200
 ),
 -- The lanelets of each chain in order: those behind the first visit, then those of each visit and ahead of it.
-link AS (
+chain_lanelet AS (
     SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM lanelet_behind WHERE hop > 0
     UNION ALL
     SELECT g.drive_id, g.ego_id, g.chain_id, g.v, a.hop, a.environment_id, a.lanelet_id
@@ -94,16 +94,16 @@ link AS (
     JOIN lanelet_ahead a USING (drive_id, ego_id, v)
     WHERE g.hop IS NULL OR a.hop < g.hop
 ),
-chain_link AS (
+chain_lanelet_with_end AS (
     SELECT
         k.drive_id, k.ego_id, k.chain_id, k.lanelet_id, n.length_m, k.v, k.hop,
         (row_number() OVER along - 1)::INTEGER AS seq,
         sum(to_picometres(n.length_m)) OVER (along ROWS UNBOUNDED PRECEDING) AS end_pm
-    FROM link k JOIN lanelet n USING (environment_id, lanelet_id)
+    FROM chain_lanelet k JOIN lanelet n USING (environment_id, lanelet_id)
     WINDOW along AS (PARTITION BY k.drive_id, k.ego_id, k.chain_id ORDER BY k.v, k.hop)
 )
 SELECT
     o.drive_id, o.ego_id, o.chain_id, o.seq, o.lanelet_id, o.length_m, v.t_first_ns, v.t_last_ns,
     from_picometres(o.end_pm - to_picometres(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
-FROM chain_link o
+FROM chain_lanelet_with_end o
 LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = CASE WHEN o.hop = 0 THEN o.v END

@@ -88,7 +88,7 @@ last_driven_point AS (
     FROM driven_point
     GROUP BY drive_id, object_id, t_from_ns
 ),
-course AS MATERIALIZED (
+path_point AS MATERIALIZED (
     SELECT *, t_from_ns + (1e9 * way_m / speed_mps)::BIGINT AS t_expected_ns, greatest(length_m, advance_m) / 2 AS half_length_m, width_m / 2 AS half_width_m, cos(yaw_rad) AS c, sin(yaw_rad) AS s
     FROM (
         SELECT
@@ -117,7 +117,7 @@ course AS MATERIALIZED (
 -- cells.
 grid_scale AS (
     SELECT c.drive_id, max(c.half_length_m) + max(c.half_width_m) + any_value(g.reach_m) AS cell_m
-    FROM course c
+    FROM path_point c
     JOIN (
         SELECT s.drive_id, max(swept_half_m(s.length_m, s.speed_mps, k.period_s)) + max(s.width_m) / 2 + hardly_room_m() AS reach_m
         FROM state_dynamics s
@@ -132,7 +132,7 @@ path_cell AS MATERIALIZED (
     SELECT
         c.*, meeting_cell(c.x_m, c.y_m, g.cell_m) + cell_key(x.i, y.i) AS cell,
         unnest(list_distinct([forced_slot(c.t_expected_ns - forced_apart_ns()), forced_slot(c.t_expected_ns + forced_apart_ns())])) AS slot
-    FROM course c
+    FROM path_point c
     JOIN grid_scale g USING (drive_id)
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i)
 ),
@@ -224,7 +224,7 @@ other_obstacle AS (
         AND (b.t_ns <= r.t_expected_ns OR abs(wrap_rad(r.dir_rad - b.dir_rad)) > conflict_angle_rad())
 ),
 -- A bend that is too tight for the speed of the object.
-tight_bend AS (SELECT DISTINCT drive_id, object_id, t_from_ns FROM course WHERE way_m <= reach_m AND speed_mps ** 2 * curvature > bend_mps2()),
+tight_bend AS (SELECT DISTINCT drive_id, object_id, t_from_ns FROM path_point WHERE way_m <= reach_m AND speed_mps ** 2 * curvature > bend_mps2()),
 -- The lane of the object when it begins to brake.
 braking_lane AS (
     SELECT b.drive_id, b.object_id, b.t_from_ns, b.t_to_ns, b.reach_m, g.environment_id, n.lanelet_id, -o.s_m AS lane_start_m, n.length_m

@@ -7,8 +7,8 @@ WITH link AS (
     JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id AND b.drivable
 ),
 lanelet_ahead AS (SELECT environment_id, from_id AS lanelet_id, min({'turn_abs_rad': turn_abs_rad, 'id': to_id}).id AS ahead_id FROM link GROUP BY ALL),
--- turn_rad of a link is the change of heading over the lanelet that the link leads to. So of the lanelets behind, the straightest is the
--- one that the link with the least turn_rad leads into.
+-- turn_rad of a link is the change of heading over the lanelet that the link leads to. How much a lanelet behind turns is therefore not in
+-- its link to this lanelet, but in the links that lead into it: the least of their turn_rad counts.
 least_turn AS (SELECT environment_id, to_id AS from_id, min(turn_abs_rad) AS turn_abs_rad FROM link GROUP BY ALL),
 lanelet_behind AS (
     SELECT l.environment_id, l.to_id AS lanelet_id, min({'turn_abs_rad': coalesce(t.turn_abs_rad, 0.0), 'id': l.from_id}).id AS behind_id

@@ -85,7 +85,7 @@ line_contact AS (
 ),
 -- Stretches in which the ego overtakes somebody astride of the line.
 overtaking AS (
-    SELECT s.drive_id, s.ego_id, s.seg, s.line_no, s.run_no, bool_or(NOT passed_over_any_line(a.actor_class, a.length_m, o.v_vbp_mps)) AS is_moving
+    SELECT s.drive_id, s.ego_id, s.seg, s.line_no, s.run_no, bool_or(NOT may_be_passed_over_solid_line(a.actor_class, a.length_m, o.v_vbp_mps)) AS is_moving
     FROM line_stretch s
     JOIN overtake o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t0_ns <= s.t_last_ns AND o.t_end_ns >= s.t_since_ns
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.vbp_id
@@ -104,7 +104,7 @@ lost_passable_object AS (
     SELECT DISTINCT p.drive_id, p.ego_id, p.object_id
     FROM pair p
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
-    WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND passed_over_any_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
+    WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
 ),
 -- Steps at which an object without a position on the corridor may be the one that is passed. A vehicle that is not in plain view is not in
 -- the part of the lane ahead that is in plain view. A vehicle that is certainly behind the ego is not the one that the ego goes round: that
@@ -156,7 +156,7 @@ passable_object AS (
     JOIN pair p USING (drive_id, ego_id, t_ns)
     LEFT JOIN overtaking o ON o.drive_id = n.drive_id AND o.ego_id = n.ego_id AND o.seg = n.seg AND o.line_no = n.line_no AND o.run_no = n.run_no
     CROSS JOIN LATERAL (
-        SELECT CASE WHEN p.actor_class IS DISTINCT FROM 'object' OR abs(p.d_m) >= p.half_width_m THEN passed_over_any_line(p.actor_class, p.length_m, p.speed_mps) END AS is_allowed
+        SELECT CASE WHEN p.actor_class IS DISTINCT FROM 'object' OR abs(p.d_m) >= p.half_width_m THEN may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) END AS is_allowed
     ) x
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND n.side * p.d_m < p.half_width_m
         AND p.half_width_m - n.side * p.d_m - p.lat_half_m < n.width_m + passing_room_m(p.actor_class)

@@ -1,4 +1,5 @@
--- The state that the lights of a mark show for the ego's turn. Several heads count as one if they agree; otherwise the state is not known.
+-- The state that the lights of a junction, stop line or crossing on the ego's way (a mark, see way_mark) show for the ego's turn. Several
+-- heads count as one if they agree; otherwise the state is not known.
 WITH signal_head AS (
     SELECT
         m.drive_id, m.ego_id, m.chain_id, m.kind, m.mark_id, m.s_start_m, m.light.signal_id, m.light.fit, r.signal_id IS NOT NULL AS is_recorded,

@@ -1,4 +1,5 @@
--- The steps of the ego around the marks of its chains, with the positions of its bumpers at the step and at the step before. The rear
+-- The steps of the ego around the marks of its chains (junctions, stop lines and crossings, see way_mark), with the positions of its
+-- bumpers at the step and at the step before. The rear
 -- bumper is that of its trailer, if it tows one. The first step after a hole is kept for every mark that the ego passed in the hole.
 WITH
 -- How far a trailer reaches behind the ego's middle, see ego_state. While the trailer is not seen, its furthest reach counts.

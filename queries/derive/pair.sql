@@ -143,7 +143,7 @@ chain_place AS MATERIALIZED (
         AND floor(b.ego_s_m / 1000) BETWEEN c.first_km AND c.last_km
 ),
 -- Of several places on a corridor that meets itself, the one nearest to the ego along it counts. The station decides a tie.
-pair_with_places AS MATERIALIZED (SELECT pair_no FROM chain_place GROUP BY pair_no HAVING count(*) > 1),
+pair_with_several_places AS MATERIALIZED (SELECT pair_no FROM chain_place GROUP BY pair_no HAVING count(*) > 1),
 nearest_place AS (
     SELECT
         pair_no,
@@ -155,11 +155,11 @@ nearest_place AS (
             's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'lane_heading_diff_rad': lane_heading_diff_rad, 'over_width_m': over_width_m, 'over_against': over_against,
             'lanelet_id': lanelet_id
         }) AS p
-    FROM chain_place SEMI JOIN pair_with_places USING (pair_no)
+    FROM chain_place SEMI JOIN pair_with_several_places USING (pair_no)
     GROUP BY pair_no
 ),
 object_place AS (
-    SELECT * EXCLUDE (ego_s_m, is_oncoming) FROM chain_place ANTI JOIN pair_with_places USING (pair_no)
+    SELECT * EXCLUDE (ego_s_m, is_oncoming) FROM chain_place ANTI JOIN pair_with_several_places USING (pair_no)
     UNION ALL
     SELECT pair_no, p.s_m, p.d_m, p.half_width_m, p.lane_heading_diff_rad, p.over_width_m, p.over_against, p.lanelet_id FROM nearest_place
 ),

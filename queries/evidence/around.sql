@@ -1,4 +1,4 @@
--- Every ego step near a moment, thinned alike for all moments.
+-- The ego steps near each moment of `_moment` (the worst step of a finding or near miss), thinned in the same way for all of them.
 CREATE OR REPLACE TEMP TABLE _around AS
 SELECT m.drive_id, m.ego_id, m.t_ns AS at_ns, e.t_ns
 FROM _moment m

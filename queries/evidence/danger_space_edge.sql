@@ -1,17 +1,17 @@
 -- The left and right points of the danger spaces at the steps of `_around`.
-WITH frame AS (
+WITH step_with_map AS (
     SELECT DISTINCT a.drive_id, a.ego_id, a.t_ns, l.environment_id FROM _around a JOIN data_log l USING (drive_id)
 ),
 extent AS (
     SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, m.ego_id AS actor_id, o.sd_av_m AS length_m,
         o.ds_av_s_m AS s0, o.ds_av_s_m + o.sd_av_m AS s1, o.ds_av_d_m AS d_m, o.ds_av_half_m AS half_m
-    FROM frame m
+    FROM step_with_map m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     UNION
     SELECT DISTINCT m.drive_id, m.ego_id, m.t_ns, m.environment_id, e.chain_id, o.ov_id, o.sd_ov_m,
         o.ds_ov_s_m - o.sd_ov_m, o.ds_ov_s_m, o.ds_ov_d_m, o.ds_ov_half_m
-    FROM frame m
+    FROM step_with_map m
     JOIN overtake_step o USING (drive_id, ego_id, t_ns)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE o.ov_id IS NOT NULL

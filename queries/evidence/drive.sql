@@ -27,7 +27,7 @@ WITH
             list({'check_id': check_id, 'severity': severity, 'actor_id': actor_id, 'n': n, 't_first_ns': t_first_ns,
                 'message': message} ORDER BY check_id, actor_id NULLS FIRST, t_first_ns NULLS FIRST, message) AS quality
         FROM defect GROUP BY drive_id),
-    given AS (
+    conditions_of_drive AS (
         SELECT drive_id, list({'condition': condition, 'value': value, 'source': source} ORDER BY condition) AS conditions
         FROM drive_condition WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
     missing_signals AS (
@@ -49,7 +49,7 @@ LEFT JOIN environment e USING (environment_id)
 LEFT JOIN exposure_of_egos w USING (drive_id)
 LEFT JOIN occasion o USING (drive_id)
 LEFT JOIN defects d USING (drive_id)
-LEFT JOIN given c USING (drive_id)
+LEFT JOIN conditions_of_drive c USING (drive_id)
 LEFT JOIN missing_signals g USING (drive_id)
 WHERE coalesce(list_contains($only::VARCHAR[], l.drive_id), true)
 ORDER BY l.drive_id

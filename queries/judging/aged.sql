@@ -1,4 +1,5 @@
--- Part of `judged_of_grid.sql`: without the steps of an episode that are younger than exempt_after_s, which are exempt. If the beginning of
+-- Part of `judged_of_grid.sql`: leaves out the steps in the first exempt_after_s seconds of each episode. They are exempt. If the beginning
+-- of
 -- an episode was not seen (the log's start, a hole), its age is not known and none of its steps is exempt.
 {steps_with_episode}
 ), _step_with_episode_begin AS (

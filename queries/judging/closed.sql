@@ -1,15 +1,15 @@
--- A verdict for every rule and subject: at least one row each.
+-- The verdicts: at least one row for every rule and subject (an ego in a drive).
 CREATE OR REPLACE TEMP TABLE _closed AS
 -- Groups that passed in the first pass (`clean`, see group.sql) are outcomes, too. If a rule failed with an error for a subject, that error
 -- is its only row.
-WITH _rows AS (
+WITH _outcome_or_clean_group AS (
     SELECT * FROM _outcome UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, '' AS profile, object_id, t_start_ns, t_end_ns, t_worst_ns,
         t_worst_ns AS t_decides_ns,
         'pass' AS verdict, code, reason, observed, required, margin, n AS n_expected, n AS n_judged
     FROM _group WHERE clean
 ), _rule_row AS (
-    SELECT r.* FROM _rows r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
+    SELECT r.* FROM _outcome_or_clean_group r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
         AND e.ego_id = r.ego_id
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'error' AS verdict, min(code) AS code, min(reason) AS reason

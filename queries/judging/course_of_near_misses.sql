@@ -1,4 +1,4 @@
--- The steps 5 s around the worst one of each near miss, the 20 closest of an ego, rule and profile.
+-- The steps within 5 s of the worst step of a near miss, for the 20 closest near misses of each ego, rule and profile.
 INSERT INTO _course BY NAME
 WITH {misses}, _closest_near_miss AS (
     SELECT * FROM _near_miss

@@ -5,7 +5,7 @@ WITH _step_with_previous AS (
     SELECT drive_id, ego_id, object_id, profile, t_ns, seg, lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
     FROM _judged WHERE applies IS DISTINCT FROM false
     WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, profile ORDER BY t_ns)
-), _ends AS (
+), _step_pair_over_hole AS (
     SELECT j.drive_id, j.ego_id, j.object_id, j.profile, j.seg_prev, j.seg,
         p.t_last_ns - j.t_prev_ns <= s.max_gap_ns AS from_edge, j.t_ns - q.t_first_ns <= s.max_gap_ns AS to_edge,
         s.period_ns
@@ -14,7 +14,7 @@ WITH _step_with_previous AS (
     JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
     WHERE j.seg_prev <> j.seg
 ), _holes AS (
-    SELECT e.*, p.t_last_ns AS t_start_ns, q.t_first_ns AS t_end_ns FROM _ends e
+    SELECT e.*, p.t_last_ns AS t_start_ns, q.t_first_ns AS t_end_ns FROM _step_pair_over_hole e
     JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev
         ELSE e.seg - 1 END
     JOIN _segment q ON q.drive_id = e.drive_id AND q.ego_id = e.ego_id AND q.seg = CASE WHEN to_edge THEN e.seg

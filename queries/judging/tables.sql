@@ -26,7 +26,7 @@ CREATE OR REPLACE TEMP TABLE _margin (rule_no INTEGER, drive_id VARCHAR, ego_id 
     ref_id INTEGER, t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _course (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, profile VARCHAR, object_id VARCHAR,
     ref_id INTEGER, t_start_ns BIGINT, near BOOLEAN, t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
--- The default grids of invariants: every ego step, and these times the objects present.
+-- The default grids of invariants: every ego step, or every ego step with each object that is present at it.
 CREATE OR REPLACE TEMP VIEW _step_grid AS
     SELECT drive_id, ego_id, t_ns, NULL::VARCHAR AS object_id, k, seg FROM step;
 CREATE OR REPLACE TEMP VIEW _pair_grid AS

@@ -1,5 +1,5 @@
 INSERT INTO verdict BY NAME
-WITH _sight AS (
+WITH _track_end_times AS (
     -- the first time at which the log loses somebody, and the last at which somebody comes into it
     SELECT drive_id, ego_id, min(t_ns) FILTER (lost) AS gone_ns, max(t_ns) FILTER (NOT lost) AS to_come_ns
     FROM track_end GROUP BY ALL
@@ -19,4 +19,4 @@ SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, obj
         THEN 'line_of_sight' END AS assumes
 FROM _numbered v
 LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_worst_ns
-LEFT JOIN _sight g ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id
+LEFT JOIN _track_end_times g ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id

@@ -1,4 +1,5 @@
--- The subjects with a step at which the automated driver does not drive, or may not; for all others every step is engaged.
+-- The subjects with a step at which the automated driver does not drive, or at which that is not known. All others are engaged at every
+-- step.
 -- `never`: it drives at no step at all. A step without a row is a step at which it is not known.
 CREATE OR REPLACE TEMP TABLE _watched AS
 SELECT s.drive_id, s.ego_id, bool_and(coalesce(NOT e.engaged, false)) AS never

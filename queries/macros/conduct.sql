@@ -9,9 +9,9 @@ CREATE OR REPLACE MACRO exact_slope(n, sum_t, sum_y, sum_ty, sum_tt) AS
 CREATE OR REPLACE MACRO filter_half_ns(period_ns) AS
     CASE WHEN period_ns <= 210_000_000 THEN greatest(250_000_000, (2.2 * period_ns)::BIGINT) END;
 
--- By how much a value stands out, away from zero, over the values half a window before and after it; 0 if it does not, or if one of them is
--- not known. A mean over a window (a slope is a mean of the derivative with parabolic weights) lowers a pointed peak by at most 0.7 of this
--- (at 20 samples a second or more), a round peak by 0.2.
+-- By how much a value is farther from zero than the values half a window before and after it; 0 if it is not, or if one of the three is not
+-- known. A mean over the window lowers a pointed peak by at most 0.7 of this (at 20 samples a second or more), and a round peak by 0.2. A
+-- slope counts as such a mean: it is a weighted mean of the derivative.
 CREATE OR REPLACE MACRO peak_rise(value, past, next) AS
     CASE WHEN value + past + next IS NOT NULL THEN greatest(0.0, abs(value) - greatest(sign(value) * past, sign(value) * next)) ELSE 0.0 END;
 

@@ -1,5 +1,5 @@
--- Plane geometry as arithmetic, for what a run asks of every row and for the depth of an overlap, which no ST_ function tells. Shapes for
--- the ST_ functions are in shapes.sql; tests hold that both say the same.
+-- Plane geometry as arithmetic. It is used where a value is computed for every row, because it is fast, and for the depth of an overlap,
+-- which no ST_ function returns. shapes.sql has shapes for the ST_ functions; tests check that both give the same results.
 
 -- Angle wrapped to [-pi, pi).
 CREATE OR REPLACE MACRO wrap_rad(a) AS a - 2 * pi() * floor((a + pi()) / (2 * pi()));

@@ -31,7 +31,7 @@ CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
 
 -- Whether an actor may be passed over a line that must not be crossed (UKHC R129): vehicles that stand, and cyclists and horses at 10 mph
 -- or less.
-CREATE OR REPLACE MACRO passed_over_any_line(actor_class, length_m, speed_mps) AS
+CREATE OR REPLACE MACRO may_be_passed_over_solid_line(actor_class, length_m, speed_mps) AS
     is_vehicle(actor_class) AND speed_mps <= standing_mps()
     OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
 

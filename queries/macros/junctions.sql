@@ -47,7 +47,7 @@ CREATE OR REPLACE MACRO possible_turns(turn_rad) AS
     || CASE WHEN abs(turn_rad) >= radians(135) THEN ['u_turn'] ELSE [] END;
 -- A signal at most this far before a junction, with no other junction in between, governs the way in.
 CREATE OR REPLACE MACRO governed_m() AS 50.0;
--- Steps are kept from this far before a mark until this far beyond it.
+-- near_mark has the steps from this far before a mark (a junction, a stop line or a crossing, see way_mark) until this far beyond it.
 CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 -- To say that nobody came, the log must go on for at least this long after the ego has left (twice what rules ask for).
 CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;

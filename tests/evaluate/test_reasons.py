@@ -66,7 +66,10 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
         ({"length_m": [4, None]}, "object o has no size: record it"),
         (
             {"off_level": [False, True]},
-            "object o may be over or under the road: record the heights of both, or correct them, or leave z out of the mapping, if the road has one level",
+            (
+                "object o may be over or under the road: record the heights of both, or correct them, or leave z out of the "
+                "mapping, if the road has one level"
+            ),
         ),
         ({"speed_mps": [4, None]}, "the speed of object o is not known: record it"),
         ({"actor_class": ["car", None]}, "the class of object o is not known: record it"),

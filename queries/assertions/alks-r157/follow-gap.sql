@@ -32,7 +32,7 @@
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: an ego that is faster by more than this than while the vehicle ahead braked closes the gap by its own doing; a held speed jitters by less"
+-- why = "our default: if the ego's speed is higher by more than this than it was while the vehicle ahead braked, the ego itself closes the gap; a held speed jitters by less"
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,

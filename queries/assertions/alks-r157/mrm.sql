@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = ">="
 -- unit = "m/s2"
--- observes = "mildest acceleration of the last moment"
+-- observes = "highest acceleration (negative when braking) over brief_s"
 -- near_margin = 0.2
 -- reads = ["clock", "ego_mode", "ego_motion"]
 -- requires = ["mode_engaged", "mode_minimal_risk_manoeuvre"]

@@ -33,7 +33,7 @@
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: an ego that is faster by more than this than when the other vehicle came in closes the gap by its own doing; a held speed jitters by less"
+-- why = "our default: if the ego's speed is higher by more than this than it was when the other vehicle came in, the ego itself closes the gap; a held speed jitters by less"
 
 -- @applies
 -- At a step without a row in `vehicle_ahead` it is not known which vehicle is ahead. The ego's speed is rounded because a speed that is

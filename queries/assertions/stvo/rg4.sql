@@ -1,6 +1,6 @@
 -- title = "Keeping the traffic flowing"
 -- clause = "StVO 3(2) (R_G4 of Maierhofer et al. 2020): without good reason do not drive so slowly that you hinder the traffic"
--- hypothesis = "At every step without a slow vehicle ahead or in the lane beside, or somebody else in the way, was the ego less than the allowed difference below the speed limit?"
+-- hypothesis = "At every step with no slow vehicle ahead or in the lane beside, and nobody else in the way, was the ego slower than the speed limit by less than the allowed difference?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "minor"
@@ -21,7 +21,7 @@
 -- [params.slower_mps]
 -- default = 15.0
 -- unit = "m/s"
--- why = "so far below the limit the traffic is hindered"
+-- why = "a vehicle this far below the limit hinders the traffic"
 -- source = "Maierhofer et al. 2020, Table II"
 --
 -- [params.settle_s]
@@ -55,7 +55,8 @@
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     CASE WHEN e.speed_mps > c.most_mps THEN c.most_mps WHEN e.speed_mps <= c.least_mps THEN c.least_mps END AS required,
     CASE WHEN required IS NULL AND c.least_mps IS NOT NULL THEN why('class_speed_unknown') END AS reason,
-    -- A slow vehicle ahead is a reason if it is as near as matters at the speed that the ego is allowed. At a step without a row in `lead`,
+    -- A slow vehicle ahead is a reason to drive slowly if it is near enough to matter at the speed limit. At a step without a row in
+    -- `lead`,
     -- there may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside
     -- (StVO 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
     CASE WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false

@@ -34,7 +34,7 @@
 -- default = 3.0
 -- unit = "s"
 -- why = "time to restore the distance after somebody changed lane in front; an ego that changes lanes itself keeps it at once"
--- source = "case law: not only quite briefly; as R_G1 of Maierhofer et al. 2020"
+-- source = "case law: a gap that is too small only for a moment is no offence; time as in R_G1 of Maierhofer et al. 2020"
 --
 -- [reasons.weight_unknown]
 -- says = "the ego was {gap_m:.1f} m behind the vehicle ahead: whether the ego weighs more than 3.5 t is not known"

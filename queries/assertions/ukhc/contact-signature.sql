@@ -17,7 +17,7 @@
 -- [params.within_m]
 -- default = 0.5
 -- unit = "m"
--- why = "recorded boxes are a little smaller than the bodies; our default, of the order of that difference and one step's way"
+-- why = "our default: recorded boxes are a little smaller than the vehicles, and the two move on between two steps; both together are about this much"
 --
 -- [params.tyre_mps2]
 -- default = 12.0

@@ -32,7 +32,7 @@ WHERE o.opposing IS DISTINCT FROM false AND (l.forbidden IS DISTINCT FROM true O
 GROUP BY o.drive_id, o.ego_id, o.t0_ns, o.begin_seen, o.t3_ns, o.t_end_ns, o.opposing, o.side
 
 -- @anchor
--- The reference point is the step at which the line becomes solid under the ego, else the step at which the ego is back.
+-- The anchor is the step at which the line becomes solid under the ego, else the step at which the ego is back.
 SELECT r.ref_id, coalesce(min(l.t_ns) FILTER (l.forbidden AND l.passing_id IS NULL AND l.passing_known), r.t3_ns) AS t_ns
 FROM reference r
 LEFT JOIN line_step l ON l.drive_id = r.drive_id AND l.ego_id = r.ego_id AND l.side = r.side AND l.t_ns >= r.t_ns AND l.t_ns <= r.t_end_ns

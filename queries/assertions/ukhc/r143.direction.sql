@@ -44,7 +44,7 @@
 -- [params.closed_m]
 -- default = 10.0
 -- unit = "m"
--- why = "our default: and so much further, however slow it is"
+-- why = "our default: this is added to the distance of closed_s, so that a slow ego has some room, too"
 --
 -- [params.junction_s]
 -- default = 2.0

@@ -1,6 +1,6 @@
 -- title = "Quickly past the vehicle being overtaken"
 -- clause = "UKHC R163: move quickly past the vehicle you are overtaking once you have started"
--- hypothesis = "Was the ego back in its lane no later than the least aggressive profile would have been, with time to spare?"
+-- hypothesis = "Was the ego back in its lane in at most one and a half times the time that the least aggressive profile takes?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"

@@ -28,7 +28,7 @@
 -- [params.close_m]
 -- default = 0.5
 -- unit = "m"
--- why = "our default: mirrors take 0.2 m of it on each side"
+-- why = "our default: two vehicles closer than this have hardly any room; mirrors take 0.2 m of it on each side"
 --
 -- [params.closing_mps]
 -- default = 8.94

@@ -19,7 +19,7 @@
 -- [params.drift_mps]
 -- default = 0.3
 -- unit = "m/s"
--- why = "our default: what keeping the lane makes anyway"
+-- why = "our default: an ego that only keeps its lane drifts by this much, too"
 --
 -- [params.gained_mps]
 -- default = 1.5

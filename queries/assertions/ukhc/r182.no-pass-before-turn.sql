@@ -16,7 +16,7 @@
 -- [params.window_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: whom the ego got ahead of longer ago has seen it signal and slow down"
+-- why = "our default: a road user that the ego passed earlier than this has had time to see it signal and slow down"
 --
 -- [reasons.got_ahead_of]
 -- says = "the ego got ahead of {object_id}"

@@ -23,7 +23,7 @@
 -- [params.parked_s]
 -- default = 60.0
 -- unit = "s"
--- why = "our default: who stands longer than this has parked, or waits as if"
+-- why = "our default: who stands longer than this has parked, or waits for so long that it comes to the same"
 --
 -- [params.near_m]
 -- default = 10.0

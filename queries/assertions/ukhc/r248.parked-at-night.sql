@@ -16,7 +16,7 @@
 -- [params.parked_s]
 -- default = 60.0
 -- unit = "s"
--- why = "our default: who stands longer than this has parked, or waits as if"
+-- why = "our default: who stands longer than this has parked, or waits for so long that it comes to the same"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence

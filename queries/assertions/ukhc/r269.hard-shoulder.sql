@@ -19,7 +19,7 @@
 -- [params.stops_mps2]
 -- default = 2.0
 -- unit = "m/s2"
--- why = "our default: braking in comfort; who takes longer to stop drives along it, and with hazard lights on only a person can say why"
+-- why = "our default: braking in comfort; an ego that takes longer to stop is driving along the shoulder, and if its hazard lights are on, a person must judge why"
 --
 -- [params.rejoins_s]
 -- default = 20.0
