@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.model import Change, Row, Step
+    from drivelint.explain.model import Change, Step
     from drivelint.explain.target import Target
-    from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
 __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter", "explain"]
@@ -41,6 +40,7 @@ __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter"
 _RULE: Final = (
     "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
 )  # fmt: skip
+_DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,8 @@ def explain(request: ExplainRequest) -> Explanation:
             errors = request.errors.for_verdict(row["verdict"])
             if errors.samples:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
-    rule, about = case.rule, _drive(result, row["drive_id"])
+    rule = case.rule
+    about = next(each for each in result.drives.select(_DRIVE).to_pylist() if each["drive_id"] == row["drive_id"])
     return Explanation(
         rule={
             "rule_id": rule.id,
@@ -159,8 +160,3 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if now != before:
         notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
-
-
-def _drive(result: Result, drive_id: str) -> Row:
-    keys = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
-    return next(row for row in result.drives.select(keys).to_pylist() if row["drive_id"] == drive_id)
