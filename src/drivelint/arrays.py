@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     import pyarrow as pa
 
@@ -30,6 +30,23 @@ def spelled(codes: NDArray[np.integer], words: Sequence[str]) -> pa.Array:
 def floats(column: pa.Array | pa.ChunkedArray) -> Floats:
     """Return a column as numbers, with NaN for NULL."""
     return np.asarray(column.to_numpy(zero_copy_only=False), np.float64)
+
+
+def turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
+    """Return vectors turned to the left by an angle (rad)."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return x * cos - y * sin, x * sin + y * cos
+
+
+def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
+    """Return a table with other values in some of its columns, of the types that these have; NaN as NULL."""
+    import pyarrow as pa
+
+    for name, values in columns.items():
+        at = table.schema.get_field_index(name)
+        field = table.schema.field(at)
+        table = table.set_column(at, field, pa.array(values, field.type, from_pandas=True))
+    return table
 
 
 def coded(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:

@@ -144,7 +144,7 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the map that goes along, the user's, else the log's own, the trace in its frame, and what to tell. Errors: as `convert`."""
-    library, own = MapLibrary.from_options(request), trace.embedded_map
+    library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
         return (None, trace, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
@@ -156,7 +156,7 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
 def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
     notes = []
-    library = MapLibrary(None, None, "auto")
+    library = MapLibrary(DriveInput())
     try:
         environment, trace = library.find(trace)
         library.doubts(trace, environment)

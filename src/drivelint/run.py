@@ -64,7 +64,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
     paths = sorted_logs(expand_traces(settings.traces))
-    options, library = settings.ingest_options(), MapLibrary.from_options(settings)
+    options, library = settings.ingest_options(), MapLibrary(settings)
 
     with store.workspace(settings.memory) as con:
         memory = Memory(con, settings.memory, progress.note)

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from drivelint import catalogue
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput, IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.profiles import load_profiles, profile_table
@@ -30,7 +30,7 @@ def profile(place: Place) -> list[Row]:
     rules = catalogue.select_rules(catalogue.load_rules(()), ("ukhc",), ())
     tables = {table for rule in rules for table in rule.reads}
     trace = read_trace(place.reference, IngestOptions())
-    road = MapLibrary(place.road, None, "auto").find(trace)[0]
+    road = MapLibrary(DriveInput(map=place.road)).find(trace)[0]
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
         bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None)

@@ -50,7 +50,14 @@ def test_each_runs_after_what_it_reads(
     )
     monkeypatch.setattr(derive, "ONE_WORKER_STATES", large)  # on one connection, or on two
     told: list[str] = []
-    derive.derive(con, ["clock"], of_the_map=False, advance=told.append)
+    fill = derive._fill
+
+    def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
+        told.append(step.table)
+        return fill(con, step)
+
+    monkeypatch.setattr(derive, "_fill", telling)
+    derive.derive(con, ["clock"], of_the_map=False)
     assert told == ["step", "visited_cell", "clock"]
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 

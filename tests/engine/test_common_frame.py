@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.convert import ConvertRequest, convert
-from drivelint.drive.trace import IngestOptions, Trace
+from drivelint.drive.trace import DriveInput, IngestOptions, Trace
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError
@@ -87,7 +87,7 @@ def in_frame(reference: str, offset: tuple[float, float, float] = WHOLE, place: 
 
 
 def judged(trace: Trace, road: Path, offset: tuple[float, float] | None = None) -> Drive:
-    return drive_with_map(trace, MapLibrary(road, offset, "auto"))
+    return drive_with_map(trace, MapLibrary(DriveInput(map=road, map_offset=offset)))
 
 
 def said(drive: Drive) -> dict[str, tuple[str, str]]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_folder import MapFolder
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
@@ -20,7 +21,7 @@ def put(folder: Path, name: str, x: float = 0.0) -> None:
 
 
 def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
-    library = MapLibrary(None, None, "auto", folder=folder)
+    library = MapLibrary(DriveInput(map_dir=folder))
     environment, _ = library.find(log_of(states(x), Path(log), embedded=embedded))
     assert environment is not None
     return environment.environment_id.split("-")[0]
@@ -64,13 +65,13 @@ def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Pat
 def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
-    library, log = MapLibrary(None, None, "auto", folder=tmp_path), log_of(states(5.0))
+    library, log = MapLibrary(DriveInput(map_dir=tmp_path)), log_of(states(5.0))
     environment, _ = library.find(log)
     assert environment is not None
     assert environment.environment_id.startswith("a-")
     assert "1 cannot, the first: " in library.doubts(log, environment)["map_unread"]
     (tmp_path / "broken.xodr").unlink()
-    assert not MapLibrary(None, None, "auto", folder=tmp_path).doubts(log, environment)
+    assert not MapLibrary(DriveInput(map_dir=tmp_path)).doubts(log, environment)
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
     with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
         found(tmp_path, x=5000.0)
@@ -101,4 +102,4 @@ def test_a_folder_without_maps(tmp_path: Path) -> None:
 def test_one_map_or_many(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     with pytest.raises(UsageError, match="give one of them"):
-        MapLibrary(tmp_path / "a.xml", None, "auto", folder=tmp_path)
+        MapLibrary(DriveInput(map=tmp_path / "a.xml", map_dir=tmp_path))

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput, IngestOptions
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import read_trace
@@ -140,9 +140,7 @@ def test_the_reference_and_offset_of_an_osi_log(tmp_path: Path) -> None:
             osi_log.Out("osi3.GroundTruth", "gt", i * 50_000_000, truth.SerializeToString() + (b"" if i else said))
         )
     trace = read_trace(osi_log.write(tmp_path / "log.mcap", messages), IngestOptions(ego="0"))
-    assert drive_with_map(trace, MapLibrary(None, None, "auto")).geo == GeoFrame(
-        UTM, 456_000.0, 5_430_000.0, yaw_rad=0.25
-    )
+    assert drive_with_map(trace, MapLibrary(DriveInput())).geo == GeoFrame(UTM, 456_000.0, 5_430_000.0, yaw_rad=0.25)
 
 
 def test_an_osi_log_whose_reference_is_a_placeholder(tmp_path: Path) -> None:
@@ -152,7 +150,7 @@ def test_an_osi_log_whose_reference_is_a_placeholder(tmp_path: Path) -> None:
     path = osi_log.write(
         tmp_path / "log.mcap", [osi_log.Out("osi3.GroundTruth", "gt", 0, truth.SerializeToString() + said)]
     )
-    drive = drive_with_map(read_trace(path, IngestOptions(ego="0")), MapLibrary(None, None, "auto"))
+    drive = drive_with_map(read_trace(path, IngestOptions(ego="0")), MapLibrary(DriveInput()))
     assert drive.geo is None
     rows = [r for r in drive.trace.tables["quality"].to_pylist() if r["check_id"] == "geo_reference_unusable"]
     assert [row["severity"] for row in rows] == ["info"]

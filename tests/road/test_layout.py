@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, side_driven_on
@@ -158,20 +159,20 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
     content = xodr(*pair(hand)).encode()
     path = tmp_path / "small.xodr"  # type: ignore[operator]
     path.write_bytes(content)
-    library = MapLibrary(path, None, "auto")
+    library = MapLibrary(DriveInput(map=path))
     found, _ = library.find(log)
     assert found is not None
     assert (found.handedness, found.handedness_source) == (hand, "traces")
     assert not library.doubts(log, found)
 
-    wrong = MapLibrary(path, None, "rht" if hand == "lht" else "lht")
+    wrong = MapLibrary(DriveInput(map=path, handedness="rht" if hand == "lht" else "lht"))
     with pytest.raises(MapError, match="runs against its lanes, on road 1 both ways"):
         wrong.doubts(log, wrong.find(log)[0])
 
     alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
     path.write_bytes(alone.content)
     for said, source in (("auto", "default"), ("lht", "option")):
-        library = MapLibrary(path, None, said)
+        library = MapLibrary(DriveInput(map=path, handedness=said))
         for way in (1, -1):
             log = log_of(_states(hand, way).slice(0, 60))
             found, _ = library.find(log)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import pytest
 
 from drivelint import catalogue
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput, IngestOptions
 from drivelint.engine import session
 from drivelint.engine.batch import Drive
 from drivelint.engine.map_library import MapLibrary
@@ -146,7 +146,7 @@ def drives(home: Path) -> list[Drive]:
     fixtures = ROOT / "fixtures/scenes"
     logs += [(fixtures / f"{log}.mcap", fixtures / f"{road}.xodr") for log, road in LOGS.items()]
     traces = [(read_trace(log, IngestOptions()), road) for log, road in logs]
-    return [Drive(trace, MapLibrary(road, None, "auto").find(trace)[0]) for trace, road in traces]
+    return [Drive(trace, MapLibrary(DriveInput(map=road)).find(trace)[0]) for trace, road in traces]
 
 
 def test_a_join_without_keys_is_seen() -> None:

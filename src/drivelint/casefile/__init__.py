@@ -195,13 +195,8 @@ def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
     with _placed(rule, case):
         message = difference(case, judge(rule, case))
-    if (
-        message
-        and rule.kind == "invariant"
-        and rule.per_object
-        and "applies" not in rule.sections
-        and "pair" not in case.given
-    ):
+    of_pairs = rule.kind == "invariant" and rule.per_object and "applies" not in rule.sections
+    if message and of_pairs and "pair" not in case.given:
         message += (
             "; without @applies, an invariant about objects is judged for the actors of pair, and this case has none"
         )

@@ -100,11 +100,8 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     for line in strange:
         say(f"FAIL {line}")
     say(mutation.summary(proofs))
-    good = (
-        all(proof.ok for proof in proofs)
-        and not strange
-        and (only or mutation.noticed_share(proofs) >= mutation.LEAST_NOTICED_SHARE)
-    )
+    enough = only or mutation.noticed_share(proofs) >= mutation.LEAST_NOTICED_SHARE
+    good = enough and not strange and all(proof.ok for proof in proofs)
     return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
 
 

@@ -17,6 +17,7 @@ import copy
 import json
 from collections import Counter
 from functools import cache
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -172,13 +173,10 @@ def _faults(tree: Node, way: NodePath, node: Node) -> Iterator[tuple[str, Node]]
 
 
 def _without_terms(tree: Node, way: NodePath, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
-    if clause["type"] != "CONJUNCTION_AND":
-        yield f"{words} without: {_text(clause)}", _replaced(tree, way, _expression("true"))
-        return
-    terms = clause["children"]
+    terms = clause["children"] if clause["type"] == "CONJUNCTION_AND" else [clause]
     for i, term in enumerate(terms):
         rest = terms[:i] + terms[i + 1 :]
-        new = rest[0] if len(rest) == 1 else clause | {"children": rest}
+        new = clause | {"children": rest} if len(rest) > 1 else rest[0] if rest else _expression("true")
         yield f"{words} without: {_text(term)}", _replaced(tree, way, new)
 
 
@@ -233,12 +231,8 @@ def _bare(text: str) -> str:
 
 
 def _balanced(text: str) -> bool:
-    depth = 0
-    for letter in text:
-        depth += (letter == "(") - (letter == ")")
-        if depth < 0:
-            return False
-    return depth == 0
+    depths = list(accumulate(((letter == "(") - (letter == ")") for letter in text), initial=0))
+    return min(depths) == depths[-1] == 0
 
 
 def _sql(tree: Node) -> str:

@@ -146,9 +146,8 @@ class _Found:
         if name == "why":
             place = self._text.at(_offset(part))
             code, *rest = part["children"]
-            self.reasons += [
-                GivenReason(each, _fields(rest[0]) if rest else frozenset(), place) for each in _results(code)
-            ]
+            arguments = _fields(rest[0]) if rest else frozenset[str]()
+            self.reasons += [GivenReason(each, arguments, place) for each in _results(code)]
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed.REFUSED_NAMES:

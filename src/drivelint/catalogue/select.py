@@ -17,6 +17,7 @@ from __future__ import annotations
 import re
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Final
 
@@ -92,13 +93,12 @@ def clause_names(rule: Rule) -> set[str]:
     return {name.rstrip(".").casefold() for name in [*named, *inside]}
 
 
+def _header_word(name: str, rule: Rule) -> set[str]:
+    return {getattr(rule, name)} - {None}
+
+
 _METHODS: Final[dict[str, Callable[[Rule], set[str]]]] = {
-    "kind": lambda rule: {rule.kind},
-    "subtype": lambda rule: {rule.subtype} if rule.subtype else set(),
-    "severity": lambda rule: {rule.severity},
-    "status": lambda rule: {rule.status},
-    "legal": lambda rule: {rule.legal},
-    "derivation": lambda rule: {rule.derivation},
+    **{name: partial(_header_word, name) for name in ("kind", "subtype", "severity", "status", "legal", "derivation")},
     "clause": clause_names,
     "requires": lambda rule: set(rule.requires),
 }

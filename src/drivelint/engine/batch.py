@@ -49,9 +49,24 @@ class Drive:
     @cached_property
     def pairs_by_ego(self) -> dict[str, int]:
         """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
-        actors = self.trace.tables["actor"]
+        actors, states = self.trace.tables["actor"], self.trace.tables["actor_state"]
         egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
-        return _pairs_by_ego(self.trace, egos) if len(egos) > 1 else {}
+        if len(egos) < 2:
+            return {}
+        coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
+        names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()
+        order = np.lexsort((t_ns, code))
+        code, t_ns = code[order], t_ns[order]
+        ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
+        starts = np.r_[0, ends[:-1] + 1]
+        first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])
+        found = {}
+        for name, start, end in zip(names, starts, ends, strict=True):
+            if name in egos:
+                steps = t_ns[start : end + 1]
+                there = np.searchsorted(first, steps, side="right") - np.searchsorted(last, steps, side="left")
+                found[name] = int(there.sum())
+        return dict(sorted(found.items()))
 
     @property
     def size(self) -> int:
@@ -129,24 +144,6 @@ def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = N
         found[-1].append(ego)
         left -= n
     return [[ego for ego in pairs if ego not in part] for part in map(set, found)] or [[]]
-
-
-def _pairs_by_ego(trace: Trace, egos: set[str]) -> dict[str, int]:
-    states = trace.tables["actor_state"]
-    coded = pc.dictionary_encode(states["actor_id"].combine_chunks())
-    names, code, t_ns = coded.dictionary.to_pylist(), coded.indices.to_numpy(), states["t_ns"].to_numpy()
-    order = np.lexsort((t_ns, code))
-    code, t_ns = code[order], t_ns[order]
-    ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
-    starts = np.r_[0, ends[:-1] + 1]
-    first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])
-    found = {}
-    for name, start, end in zip(names, starts, ends, strict=True):
-        if name in egos:
-            steps = t_ns[start : end + 1]
-            there = np.searchsorted(first, steps, side="right") - np.searchsorted(last, steps, side="left")
-            found[name] = int(there.sum())
-    return dict(sorted(found.items()))
 
 
 def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import floats
+from drivelint.arrays import floats, turned, with_columns
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.order import wrapped
 from drivelint.drive.trace import QualityFinding
@@ -60,15 +60,12 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     columns["yaw_rad"] = wrapped(columns["yaw_rad"] + angle)
     for x, y in (("vx_mps", "vy_mps"), ("ax_mps2", "ay_mps2")):
         if x in columns:
-            columns[x], columns[y] = _turned(columns[x], columns[y], angle)
-    for name, values in columns.items():
-        at = states.schema.get_field_index(name)
-        states = states.set_column(at, states.schema.field(at), pa.array(values, from_pandas=True))
+            columns[x], columns[y] = turned(columns[x], columns[y], angle)
     message = (
         f"the log's coordinates are {own.reference!r}, the map's {theirs.reference!r}: the log is moved into the map's, turned by "
         f"{math.degrees(turn):.4f} degrees, lengths times {stretch:.5f}"
     )
-    moved = replace(now, tables={**trace.tables, "actor_state": states})
+    moved = replace(now, tables={**trace.tables, "actor_state": with_columns(states, columns)})
     return with_quality_finding(moved, QualityFinding("moved_to_map", "info", message))
 
 
@@ -95,8 +92,3 @@ def _similarity(own: GeoFrame, theirs: GeoFrame, low: Floats, high: Floats) -> t
 
 def _through(own: GeoFrame, theirs: GeoFrame, xy: Floats) -> Floats:
     return theirs.unproject(geo_reference.transform(own.project(xy), own.reference, theirs.reference))
-
-
-def _turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
-    cos, sin = np.cos(angle), np.sin(angle)
-    return x * cos - y * sin, x * sin + y * cos

@@ -15,7 +15,7 @@ from drivelint.sql.derivations import needed
 from drivelint.sql.statements import statement, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
     from drivelint.sql.derivations import Derivation
 
@@ -26,13 +26,7 @@ ONE_WORKER_STATES: Final = 1_000_000
 _EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
 
 
-def derive(
-    con: duckdb.DuckDBPyConnection,
-    tables: Iterable[str],
-    *,
-    of_the_map: bool,
-    advance: Callable[[str], None] = lambda _table: None,
-) -> None:
+def derive(con: duckdb.DuckDBPyConnection, tables: Iterable[str], *, of_the_map: bool) -> None:
     """Fill the library tables behind `tables`: those of the map, whose own tables get their geometries, or those of the drives.
 
     Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
@@ -69,9 +63,7 @@ def derive(
                     empty.add(table)
                 free.append(cursor)
                 filled.append(table)
-            for table in filled:
-                graph.done(table)
-                advance(table)
+            graph.done(*filled)
 
 
 def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:

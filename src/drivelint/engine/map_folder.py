@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS, read_source, root_element_name
 from drivelint.phrases import listed
-from drivelint.road import geo_reference
+from drivelint.road.geo_reference import reference_of, same_reference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,11 +51,7 @@ class MapFolder:
 
     def with_reference(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference, if it is the only one that has it."""
-        found = [
-            source
-            for source in self.sources()
-            if geo_reference.same_reference(geo_reference.reference_of(source) or "", reference)
-        ]
+        found = [source for source in self.sources() if same_reference(reference_of(source) or "", reference)]
         return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:

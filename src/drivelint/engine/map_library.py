@@ -14,17 +14,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
-from drivelint.engine import common_frame
-from drivelint.engine.map_fit import (
-    SIDE_CHECK_SAMPLES,
-    VOTE_SAMPLES,
-    compare_headings,
-    count_on_map,
-    lane_areas,
-    one_way_lanes,
-    reversed_road,
-    vote_handedness,
-)
+from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
@@ -50,34 +40,19 @@ OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewher
 class MapLibrary:
     """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither.
 
-    `path` is one map for all, `folder` one that holds several; `origin` is the latitude and longitude of the log's 0,0.
+    Errors: `MapError` for a map or folder that cannot be read, `UsageError`.
     """
 
-    def __init__(
-        self,
-        path: Path | None,
-        offset: tuple[float, float] | None,
-        handedness: str,
-        *,
-        origin: tuple[float, float] | None = None,
-        folder: Path | None = None,
-    ) -> None:
-        if path and folder:
+    def __init__(self, options: DriveInput) -> None:
+        if options.map and options.map_dir:
             raise UsageError("--map names one map and --map-dir many: give one of them")
-        self._given = read_source(path) if path else None
-        self._map_folder = MapFolder(folder) if folder else None
-        self._offset = offset
-        self._handedness = handedness
-        self._origin = origin
-        self._ground = cache(lane_areas)
-        self._lanes = cache(one_way_lanes)
+        self._options = options
+        self._given = read_source(options.map) if options.map else None
+        self._map_folder = MapFolder(options.map_dir) if options.map_dir else None
+        self._ground = cache(map_fit.lane_areas)
+        self._lanes = cache(map_fit.one_way_lanes)
         self._loaded: dict[tuple[str, tuple[float, float], str | None], MapTables] = {}
         self._unread: dict[Path, str] = {}
-
-    @classmethod
-    def from_options(cls, given: DriveInput) -> MapLibrary:
-        """Return the library for these options. Errors: `MapError` for a map that cannot be read, `UsageError`."""
-        return cls(given.map, given.map_offset, given.handedness, origin=given.map_origin, folder=given.map_dir)
 
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
         """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
@@ -96,8 +71,8 @@ class MapLibrary:
             )
         if environment.lanes_source == "default":
             assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
-            headings = self._headings(environment, trace.tables["actor_state"], VOTE_SAMPLES)
-            if voted := vote_handedness(environment.lanes, headings):
+            headings = self._headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
+            if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load(source, trace, voted)
         return environment, trace
 
@@ -150,12 +125,7 @@ class MapLibrary:
             "map_unread": self._unread.get(trace.path),
         }
         reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
-        if (
-            reference
-            and theirs
-            and not geo_reference.same_reference(reference, theirs)
-            and geo_reference.different_places(reference, theirs)
-        ):
+        if reference and theirs and geo_reference.different_places(reference, theirs):
             found["geo_reference_differs"] = (
                 f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "
                 "right --map or --map-offset"
@@ -166,14 +136,14 @@ class MapLibrary:
         side, source = environment.handedness, environment.handedness_source
         if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._headings(environment, trace.tables["actor_state"], SIDE_CHECK_SAMPLES)
-        if road := reversed_road(self._lanes(environment), seen):
+        seen = self._headings(environment, trace.tables["actor_state"], map_fit.SIDE_CHECK_SAMPLES)
+        if road := map_fit.reversed_road(self._lanes(environment), seen):
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
                 f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
                 f"{correction_hint(side, source)}, or give another map"
             )
-        if vote_handedness(side, seen) in {None, side}:
+        if map_fit.vote_handedness(side, seen) in {None, side}:
             return None
         said = "--handedness says" if source == "option" else f"the map says (by {source})"
         return (
@@ -186,7 +156,7 @@ class MapLibrary:
         speed = np.hypot(floats(states["vx_mps"]), floats(states["vy_mps"]))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
-        return compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
+        return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
 
     def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource:
         """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
@@ -214,15 +184,15 @@ class MapLibrary:
         )
 
     def _load(self, source: MapSource, trace: Trace, voted_handedness: str | None) -> MapTables:
-        offset = self._offset or trace.map_offset or (0.0, 0.0)
+        offset = self._options.map_offset or trace.map_offset or (0.0, 0.0)
         key = (source.sha256, offset, voted_handedness)
         if key not in self._loaded:
             self._loaded[key] = load_map(
                 source,
                 offset=offset,
-                handedness=self._handedness,
+                handedness=self._options.handedness,
                 voted_handedness=voted_handedness,
-                origin=self._origin,
+                origin=self._options.map_origin,
             )
         return self._loaded[key]
 
@@ -238,7 +208,7 @@ def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table)
             f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
             f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
-    looked, found = count_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
+    looked, found = map_fit.count_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
     if looked and not found:
         return f"of {looked} positions looked at, none is on anything that it knows"
     return None

@@ -9,6 +9,7 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import with_columns
 from drivelint.engine.batch import skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
@@ -213,10 +214,7 @@ def _on_map(drive: Drive) -> pa.Table:
     found: dict[str, str | float | None] = {"environment_id": place}
     if geo:
         found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
-    for name, value in found.items():
-        at = log.schema.get_field_index(name)
-        log = log.set_column(at, name, pa.array([value], log.schema.field(at).type))
-    return log
+    return with_columns(log, {name: [value] for name, value in found.items()})
 
 
 def _actors(drives: Iterable[Drive]) -> set[str]:

@@ -31,9 +31,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.model import Change, Row, Step
+    from drivelint.explain.model import Change, Step
     from drivelint.explain.target import Target
-    from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
 __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter", "explain"]
@@ -41,6 +40,7 @@ __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter"
 _RULE: Final = (
     "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
 )  # fmt: skip
+_DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,9 @@ def explain(request: ExplainRequest) -> Explanation:
             errors = request.errors.for_verdict(row["verdict"])
             if errors.samples:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
-    rule, about = case.rule, _drive(result, row["drive_id"])
+    rule = case.rule
+    drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
+    about = {name: drive[name] for name in _DRIVE}
     return Explanation(
         rule={
             "rule_id": rule.id,
@@ -114,7 +116,7 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=found,
         sensitivity=sensitivity,
         source=source,
-        notes=[*_notes(case, now), *_left_out(result, row)],
+        notes=[*_notes(case, now), *_left_out(drive, row["reason_code"])],
     )
 
 
@@ -161,16 +163,8 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     return notes
 
 
-def _left_out(result: Result, row: Row) -> list[str]:
+def _left_out(drive: Row, reason_code: str | None) -> list[str]:
     """Return a note on the tracks whose ends drivelint itself left out, if the verdict is unknown because a track ends."""
-    lost = (row["reason_code"] or "").startswith("lost_")
-    checks = [
-        q for drive in result.drives.to_pylist() if drive["drive_id"] == row["drive_id"] for q in drive["quality"]
-    ]
+    removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
     told = "drivelint left out the ends of tracks, which no longer recording brings back"
-    return [f"{told}: {check['message']}." for check in checks if lost and check["check_id"] == "removed"]
-
-
-def _drive(result: Result, drive_id: str) -> Row:
-    keys = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
-    return next(row for row in result.drives.select(keys).to_pylist() if row["drive_id"] == drive_id)
+    return [f"{told}: {message}." for message in removed if (reason_code or "").startswith("lost_")]

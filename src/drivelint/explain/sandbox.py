@@ -10,6 +10,7 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import with_columns
 from drivelint.engine.derive import derive
 from drivelint.engine.memory import Memory
 from drivelint.evaluate import evaluate
@@ -67,11 +68,11 @@ class Sandbox:
             for table, rows in environment.tables.items():
                 self._insert(table, rows)
         store.lock(self.con)
-        place = pa.array([environment.environment_id if environment else None], pa.string())
+        place = environment.environment_id if environment else None
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
             if table == "data_log":
-                rows = with_column(rows, "environment_id", pa.concat_arrays([place] * rows.num_rows))
+                rows = with_columns(rows, {"environment_id": [place] * rows.num_rows})
             self._insert(table, rows)
 
     def _derive(self) -> None:
@@ -114,17 +115,10 @@ class Sandbox:
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
 
 
-def with_column(rows: pa.Table, name: str, values: pa.Array) -> pa.Table:
-    """Return a table with other values in one column."""
-    return rows.set_column(rows.schema.get_field_index(name), name, values)
-
-
 def renamed(trace: Trace, drive_id: str) -> Trace:
     """Return a trace under another name."""
-    tables = {
-        name: with_column(rows, "drive_id", pa.repeat(pa.scalar(drive_id, pa.string()), rows.num_rows))
-        for name, rows in trace.tables.items()
-    }
+    name = pa.scalar(drive_id, pa.string())
+    tables = {t: with_columns(rows, {"drive_id": pa.repeat(name, len(rows))}) for t, rows in trace.tables.items()}
     return replace(trace, drive_id=drive_id, tables=tables)
 
 
@@ -137,12 +131,6 @@ def crop(drive: Drive, from_ns: int, to_ns: int) -> Drive:
     seen = pc.unique(tables["actor_state"]["actor_id"])
     tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
     span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
-    log = tables["data_log"]
-    for column, value in (
-        ("t_start_ns", span["min"]),
-        ("t_end_ns", span["max"]),
-        ("n_states", tables["actor_state"].num_rows),
-    ):
-        log = with_column(log, column, pa.array([value], pa.int64()))
-    tables["data_log"] = log
+    about = {"t_start_ns": [span["min"]], "t_end_ns": [span["max"]], "n_states": [tables["actor_state"].num_rows]}
+    tables["data_log"] = with_columns(tables["data_log"], about)
     return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -14,10 +14,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import floats
+from drivelint.arrays import floats, with_columns
 from drivelint.engine.batch import BATCH_STATES, Drive
 from drivelint.explain.model import Sensitivity
-from drivelint.explain.sandbox import renamed, with_column
+from drivelint.explain.sandbox import renamed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -69,7 +69,7 @@ def _copy(
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         along = np.nan_to_num(numbers[speed]) * clock
         values = numbers[place] + drawn[:, axis] * errors.position_m + of_map[axis] * errors.map_m + along
-        states = with_column(states, place, pa.array(values, from_pandas=True))
+        states = with_columns(states, {place: values})
     moved = replace(drive.trace, tables={**drive.trace.tables, "actor_state": states})
     return Drive(renamed(moved, f"{drive.trace.drive_id}~{sample:05}"), drive.environment)
 

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import duckdb
-import pyarrow.compute as pc
 
+from drivelint.arrays import with_columns
 from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.explain.sandbox import renamed, with_column
+from drivelint.explain.sandbox import renamed
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
 from drivelint.sql import store
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 DATABASE_FILE = "drivelint.duckdb"
-_OTHER = {"map_quality"}
-"""Tables of the map that nothing is derived from."""
 
 
 def open_drive(
@@ -64,7 +62,7 @@ def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_i
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = renamed(read, drive_id)
-    return drive_with_map(read, MapLibrary.from_options(asked))
+    return drive_with_map(read, MapLibrary(asked))
 
 
 def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
@@ -72,17 +70,14 @@ def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
-        actors = tables["actor"]
-        is_ego = pc.equal(actors["actor_id"], ego_id)
-        tables["actor"] = with_column(actors, "is_ego", is_ego)
+        is_ego = [name == ego_id for name in tables["actor"]["actor_id"].to_pylist()]
+        tables["actor"] = with_columns(tables["actor"], {"is_ego": is_ego})
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
-            road = {
-                name: _rows(con, name, "environment_id", place)
-                for name in store.column_comments("map")
-                if name not in _OTHER
-            }
+            # nothing is derived from map_quality
+            known = [name for name in store.column_comments("map") if name != "map_quality"]
+            road = {name: _rows(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
     return Drive(Trace(drive_id, file, tables, None, None, []), environment)

@@ -60,8 +60,7 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
     ids = sorted({row["finding_id"] for row in findings})
     if meant := [i for i in ids if i.startswith(name)]:
         exact = name if name in meant else _only(name, meant, "findings")
-        found = [row for row in findings if row["finding_id"] == exact]
-        finding = found[0]
+        finding = next(row for row in findings if row["finding_id"] == exact)
         row = min(_under(finding, verdicts), key=_order)
         return Target(row, finding, _others(row, verdicts))
     rule, _, drive = name.partition("@")
@@ -70,8 +69,7 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
     if drive:
         drive = _meant(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
-    starts = result.start_times
-    row = min(_asked(rows, wanted, starts), key=_order)
+    row = min(_asked(rows, wanted, result.start_times), key=_order)
     return Target(row, None, _others(row, verdicts))
 
 
@@ -149,8 +147,6 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     if name in rules:
         return name
     meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
-    if len(meant) == 1:
-        return meant[0]
     if meant:
         return _only(name, meant, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)

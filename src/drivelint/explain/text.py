@@ -150,10 +150,8 @@ def _comment(text: str) -> str:
 def _series(found: Explanation, width: int) -> list[str]:
     unit = found.rule["unit"] or ""
     lines = [f"|{line}" for line in plot(found.series, width - 16, PLOT_HEIGHT, found.drive["t_start_ns"] or 0, unit)]
-    if not lines and len(found.series) == 1:
-        return ["It was judged at one moment only."]
     if not lines:
-        return []
+        return ["It was judged at one moment only."] if len(found.series) == 1 else []
     key = "Above the limit: kept, and by how much; below: broken; ?: not known."
     measured = any(step.margin is not None for step in found.series)
     return [*lines, key if measured else "█ broken, · kept, ? not known."]

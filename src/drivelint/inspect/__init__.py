@@ -64,7 +64,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
             f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary.from_options(request)
+    library = MapLibrary(request)
     options = request.ingest_options(need_ego=False)
     name, size = path.resolve().name, size_bytes(path)
     try:
@@ -109,9 +109,8 @@ def _drive(
     if not egos:
         candidates = tracks.ego_candidates(everybody)
         supposing = replace(request, ego=candidates[0].actor_id).ingest_options(need_ego=False)
-        ((supposed,), _) = _judgeable(
-            read_trace(trace.path, supposing), environment, everybody, rules, road_problem, memory=request.memory
-        )
+        again = read_trace(trace.path, supposing)
+        ((supposed,), _) = _judgeable(again, environment, everybody, rules, road_problem, memory=request.memory)
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
@@ -153,12 +152,10 @@ def _judgeable(
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "exposure")}
-        registrations = {
-            row["ego_id"]: msgspec.convert(
-                {**row, "reason": reason_text.sentence(row["reason"])}, model.MapRegistration
-            )
-            for row in (_rows(con, statement("inspect/registration")) if environment is not None else ())
-        }
+        fits = _rows(con, statement("inspect/registration")) if environment is not None else []
+        for fit in fits:
+            fit["reason"] = reason_text.sentence(fit["reason"])
+        registrations = {fit["ego_id"]: msgspec.convert(fit, model.MapRegistration) for fit in fits}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()

@@ -17,6 +17,7 @@ from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables import parquet
+from drivelint.formats.tables.mapped_table import open_sheet
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
 from drivelint.inspect.mapping_draft import draft_mapping
@@ -94,16 +95,15 @@ def _plain(path: Path) -> Sheet:
 
 def _mapped(path: Path, mapping: Mapping) -> Sheet:
     """Return a table's columns, those that the mapping reads first."""
-    with path.open("rb") as file:
-        is_parquet = file.read(4) == b"PAR1"
-    names = ParquetSheet(path).names if is_parquet else CsvSheet(path, mapping.table).names
+    sheet = open_sheet(path, mapping)
     columns = _read(mapping)
     shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
     grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
-    unread = [name for name in names if name and not any(shape.fullmatch(name) for shape in shapes)]
+    unread = [name for name in sheet.names if name and not any(shape.fullmatch(name) for shape in shapes)]
     others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if grouped else name for name in unread)
     columns += _unread(others)
-    return Sheet(name=path.name, rows=parquet.n_rows(path) if is_parquet else None, columns=columns)
+    rows = parquet.n_rows(path) if isinstance(sheet, ParquetSheet) else None
+    return Sheet(name=path.name, rows=rows, columns=columns)
 
 
 def _filmed(path: Path, film: VideoMapping) -> Sheet:

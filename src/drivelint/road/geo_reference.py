@@ -140,8 +140,10 @@ def same_reference(one: str, other: str) -> bool:
 
 
 def different_places(one: str, other: str) -> bool:
-    """Return whether two unequal references mean different places: both must be PROJ strings with a projection."""
-    return all("proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (one, other))
+    """Return whether two references mean different places: they are unequal PROJ strings, each with a projection."""
+    return not same_reference(one, other) and all(
+        "proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (one, other)
+    )
 
 
 def is_tangent_plane(reference: str) -> bool:

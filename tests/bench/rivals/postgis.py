@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint import catalogue
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import DriveInput, IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.profiles import load_profiles, profile_table
@@ -138,7 +138,7 @@ def compare(place: Place) -> list[Row]:
 
 def _read(place: Place) -> Drive:
     trace = read_trace(place.reference, IngestOptions())
-    return Drive(trace, MapLibrary(place.road, None, "auto").find(trace)[0])
+    return Drive(trace, MapLibrary(DriveInput(map=place.road)).find(trace)[0])
 
 
 def _ours(place: Place) -> Answer:

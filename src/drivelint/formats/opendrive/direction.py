@@ -95,9 +95,8 @@ class DrivingSideStatements:
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
-            quality.add(
-                "handedness_mixed", "warning", None, f"roads of both rules in one map ({counts}): one is taken for all"
-            )
+            message = f"roads of both rules in one map ({counts}): one is taken for all"
+            quality.add("handedness_mixed", "warning", None, message)
         found = (
             self._without_opposing(quality)
             if side_by_lanes is None

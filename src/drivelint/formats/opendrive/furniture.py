@@ -100,15 +100,11 @@ def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], q
 
 def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality) -> tuple[Rows, Rows]:
     """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
-    flat = [
-        (p, p.outline)
-        for p in objects
-        if p.kind in {"stop_line", "crossing"} and p.outline is not None and len(p.outline) > 1
-    ]
+    found: dict[str, Rows] = {"stop_line": [], "crossing": []}
+    flat = [(p, p.outline) for p in objects if p.kind in found and p.outline is not None and len(p.outline) > 1]
     if not flat:
         return [], []
     tree = shapely.STRtree([_valid(np.vstack([lane.line.right, lane.line.left[::-1]])) for lane in lanes])
-    found: dict[str, Rows] = {"stop_line": [], "crossing": []}
     for placed, corners in flat:
         rows = []
         shape = _shape(corners)

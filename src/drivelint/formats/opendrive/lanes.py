@@ -75,12 +75,10 @@ class _StripBuilder:
     def build(self) -> None:
         strip, road = self.strip, self.road
         keys = [self._key(lane) for lane in strip.lanes]
-        length = strip.end_m - strip.start_m
+        length, name = strip.end_m - strip.start_m, f"section {strip.section} of road {road.road_id}"
         if length < SHORT_M:
             self.lanes.short.update(keys)
-            message = (
-                f"section {strip.section} of road {road.road_id} is {length:.4f} m long: left out, links pass through"
-            )
+            message = f"{name} is {length:.4f} m long: left out, links pass through"
             self.quality.add("short_section", "info", road.road_id, message, max(len(keys), 1))
             return
         self._fail(_unbuildable(strip))
@@ -94,17 +92,14 @@ class _StripBuilder:
             self._fail({lane.number: str(error) for lane in strip.lanes if self._key(lane) not in self.lanes.failed})
             return
         if len(at):
-            worst = float(step.max())
-            message = (
-                f"lane edges in section {strip.section} of road {road.road_id} step sideways by up to {worst:.2f} m"
-            )
+            message = f"lane edges in {name} step sideways by up to {float(step.max()):.2f} m"
             self.quality.add("edge_step", "warning", road.road_id, message, len(at))
         self._cut(evaluator, edges, s)
         for number, low in sorted(evaluator.negative_m.items()):
             if low < -0.01:
-                name = lanelet_id((road.road_id, strip.section, number))
-                message = f"the width of lane {name} falls to {low:.2f} m: taken as 0 there"
-                self.quality.add("negative_width", "warning", name, message)
+                lane_id = lanelet_id((road.road_id, strip.section, number))
+                message = f"the width of lane {lane_id} falls to {low:.2f} m: taken as 0 there"
+                self.quality.add("negative_width", "warning", lane_id, message)
 
     def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:
         """Make a lanelet between each lane's edges, from left to right, and adjoin each to the next."""
@@ -198,12 +193,7 @@ def _adjoin(a: Lanelet, b: Lanelet) -> None:
 
 def _join_sides(road: Road, lanes: BuiltLanes) -> None:
     """Adjoin the innermost lanes of strips that hold one side only to the lane across that they lie longest beside."""
-    built = [
-        lane
-        for strip in road.strips
-        for n in strip.lanes
-        if (lane := lanes.built.get((road.road_id, strip.section, n.number)))
-    ]
+    built = [lanes.built[key] for key in road.lane_keys if key in lanes.built]
     for a in built:
         inward = "right" if (a.lane.number > 0) == (a.along > 0) else "left"
         if getattr(a, inward) is not None:

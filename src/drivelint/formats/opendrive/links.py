@@ -31,12 +31,7 @@ _OTHER = {START: END, END: START}
 
 def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
     """Return the links, each once, ordered by ids; links to nowhere and over gaps are rows of `quality`."""
-    declared = {
-        (road.road_id, strip.section, lane.number)
-        for road in net.roads.values()
-        for strip in road.strips
-        for lane in strip.lanes
-    }
+    declared = {key for road in net.roads.values() for key in road.lane_keys}
     touching: set[tuple[LaneEnd, LaneEnd]] = set()
     for a, b in _declared_contacts(net, quality):
         if b[0] in declared:
@@ -63,12 +58,10 @@ def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[Lane
     for road in net.roads.values():
         for side in (1, -1):
             strips = road.sections_on_side(side)
-            for k, strip in enumerate(strips):
+            for before, strip, after in zip([None, *strips], strips, [*strips[1:], None], strict=False):
                 for lane in strip.lanes:
                     if lane.number * side > 0 and lane.invalid is None:
                         key = (road.road_id, strip.section, lane.number)
-                        before = strips[k - 1] if k else None
-                        after = strips[k + 1] if k + 1 < len(strips) else None
                         yield from _contacts_at(net, road, (key, START), lane.predecessors, before, quality=quality)
                         yield from _contacts_at(net, road, (key, END), lane.successors, after, quality=quality)
     for connection in net.connections:
@@ -116,12 +109,9 @@ def _junction_contacts(net: Network, connection: Connection, quality: MapQuality
         message = f"junction {connection.junction_id} connects road {gone}, which is not there"
         quality.add("missing_link", "error", gone, message, max(len(connection.lanes), 1))
         return
-    end = _end_at_junction(incoming, connecting, connection)
+    end, contact = _end_at_junction(incoming, connecting, connection), connection.contact
     for source, target in connection.lanes:
-        yield (
-            (_lane_at(incoming, end, source), end),
-            (_lane_at(connecting, connection.contact, target), connection.contact),
-        )
+        yield (_lane_at(incoming, end, source), end), (_lane_at(connecting, contact, target), contact)
 
 
 def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:

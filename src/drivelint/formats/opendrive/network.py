@@ -109,6 +109,11 @@ class Road:
     strips: tuple[LaneSection, ...]
     element: etree._Element = field(repr=False)
 
+    @property
+    def lane_keys(self) -> list[tuple[str, int, int]]:
+        """Road, section and number of each lane."""
+        return [(self.road_id, strip.section, lane.number) for strip in self.strips for lane in strip.lanes]
+
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
         """Return the strips that hold lanes of that side, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
@@ -206,13 +211,9 @@ def _joins(element: etree._Element) -> dict[str, RoadLink]:
     joins = {}
     for end, name in ((START, "predecessor"), (END, "successor")):
         link = element.find(f"link/{name}")
-        if link is not None and link.get("elementId") is not None:
-            contact = link.get("contactPoint")
-            joins[end] = RoadLink(
-                link.get("elementType") == "junction",
-                required_attribute(link, "elementId"),
-                contact if contact in {START, END} else None,
-            )
+        if link is not None and (other := link.get("elementId")) is not None:
+            contact = link.get("contactPoint") if link.get("contactPoint") in {START, END} else None
+            joins[end] = RoadLink(link.get("elementType") == "junction", other, contact)
     return joins
 
 

@@ -138,10 +138,8 @@ class _Reader:
         across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
         if not across or any(lane in held for lane in across):
             return [lane for lane in across if lane in held] or held
-        if (
-            sum(common for lane, common, _ in shared if lane in held and common > 0.0)
-            > MIN_SAME_DIRECTION_SHARE * width
-        ):
+        same_way_m = sum(common for lane, common, _ in shared if lane in held and common > 0.0)
+        if same_way_m > MIN_SAME_DIRECTION_SHARE * width:
             return held
         self.contradictions.append(listing.get("id", ""))
         return across

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -51,13 +50,8 @@ _FIELD_TREES = ros_ego.FIELD_TREES | ros_objects.FIELD_TREES
 _CARLA = "carla_msgs/"
 
 
-@dataclass
-class TopicMessages:
-    """The messages of one topic, decoded: what was read of each batch."""
-
-    kind: str
-    topic: str
-    parts: list[Any] = field(default_factory=list)
+Topics = dict[str, list[Any]]
+"""Topic -> what was read of each batch of its messages."""
 
 
 class _Log:
@@ -65,7 +59,7 @@ class _Log:
 
     def __init__(self, path: Path, forward_m: float) -> None:
         self.path = path
-        self.topics: dict[str, dict[str, TopicMessages]] = {}
+        self.topics: dict[str, Topics] = {}  # by the type of their messages
         self.findings: list[QualityFinding] = []
         self.carla = False
         self._forward_m = forward_m
@@ -78,9 +72,8 @@ class _Log:
                 channel = packets[0].channel
                 table = decoders[channel.schema_id].table(packets)
                 log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
-                topics = self.topics.setdefault(kind, {})
-                topic = topics.setdefault(channel.topic, TopicMessages(kind, channel.topic))
-                topic.parts.append(self._part(kind, table, log_ns))
+                parts = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
+                parts.append(self._part(kind, table, log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
 
@@ -95,18 +88,18 @@ class _Log:
 
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch of the messages of a kind, by topic."""
-        for topic, source in sorted(self.topics.get(kind, {}).items()):
-            yield from ((topic, part) for part in source.parts)
+        for topic, parts in sorted(self.topics.get(kind, {}).items()):
+            yield from ((topic, part) for part in parts)
 
-    def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> TopicMessages | None:
-        """Return the one topic with messages of some kinds. Errors: `TraceError` where there are several, none asked for."""
-        found = {topic: source for kind in kinds for topic, source in self.topics.get(kind, {}).items()}
+    def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> Topics:
+        """Return the one topic with messages of some kinds, if any. Errors: `TraceError` where there are several, none asked for."""
+        found = {topic: parts for kind in kinds for topic, parts in self.topics.get(kind, {}).items()}
         chosen = [topic for topic in asked if topic in found] or sorted(found)
         if len(chosen) > 1:
             raise TraceError(
                 f"{self.path}: {what} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
             )
-        return found[chosen[0]] if chosen else None
+        return {topic: found[topic] for topic in chosen}
 
 
 def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
@@ -138,30 +131,31 @@ def read(path: Path, options: IngestOptions) -> Recording:
             )
     objects = log.one(OBJECT_ROWS, "road users", asked)
     odometry = log.one([ros_ego.ODOMETRY], "odometry", asked)
-    parts = {source.topic: join_batches(source.parts) for source in (objects, odometry) if source is not None}
+    parts = {topic: join_batches(batches) for topic, batches in (objects | odometry).items()}
     if not sum(map(len, parts.values())):
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
         )
     findings = log.findings
     own_times = choose_clock(parts, findings)
-    frames = _frames(log, own_times=own_times)
-    if objects is not None:
-        parts[objects.topic] = _named(parts[objects.topic], objects.topic, findings)
-    used = [sorted(distinct(parts[source.topic].frames)[0]) for source in (odometry, objects) if source]
+    frames = TransformTree()
+    for topic, (table, log_ns) in log.parts(ros_ego.TRANSFORMS):
+        static = topic.endswith(STATIC_TOPIC_SUFFIX)
+        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
+    for topic in objects:
+        parts[topic] = _named(parts[topic], topic, findings)
+    used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
-    for source in (objects, odometry):
-        if source is not None:
-            states[source.topic], found = states_in_fixed_frame(parts[source.topic], frames, fixed, source.topic)
-            findings += found
+    for topic in (*objects, *odometry):
+        states[topic], found = states_in_fixed_frame(parts[topic], frames, fixed, topic)
+        findings += found
     if not any(np.isfinite(part.numbers["x_m"]).any() for part in states.values()):
         raise TraceError(f"{path}: nothing can be placed: {findings[-1].message if findings else 'no positions'}")
     others, own = (
-        None if source is None or not len(states[source.topic]) else (source.topic, states[source.topic])
-        for source in (objects, odometry)
+        next(((topic, states[topic]) for topic in source if len(states[topic])), None) for source in (objects, odometry)
     )
-    carla = objects is not None and objects.kind == "derived_object_msgs/ObjectArray" and log.carla
+    carla = log.carla and not objects.keys().isdisjoint(log.topics.get("derived_object_msgs/ObjectArray", ()))
     # the id of the ego that each topic of the CARLA bridge's ego info gives last
     infos = {
         topic: str(number)
@@ -188,14 +182,6 @@ def read(path: Path, options: IngestOptions) -> Recording:
     return recording
 
 
-def _frames(log: _Log, *, own_times: bool) -> TransformTree:
-    frames = TransformTree()
-    for topic, (table, log_ns) in log.parts(ros_ego.TRANSFORMS):
-        static = topic.endswith(STATIC_TOPIC_SUFFIX)
-        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
-    return frames
-
-
 def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
@@ -209,10 +195,8 @@ def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> R
 def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
-        source = log.one([kind], kind.split("/")[1], asked)
-        if source is None:
-            continue
-        t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in source.parts]
-        values = [table.columns[column] for table, _ in source.parts]
-        reports[kind] = (np.concatenate(t_ns), np.concatenate(values))
+        for parts in log.one([kind], kind.split("/")[1], asked).values():
+            t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in parts]
+            values = [table.columns[column] for table, _ in parts]
+            reports[kind] = (np.concatenate(t_ns), np.concatenate(values))
     return reports

@@ -6,7 +6,7 @@ Syntax: https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
@@ -75,10 +75,7 @@ def parse(path: Path, name: str, text: bytes) -> Types:
     defined = {title for title, _ in sections}
     types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
     for title, body in sections:
-        types[title] = [
-            Field(field.name, _resolved(field.kind, title, defined, wrong), field.count)
-            for field in _fields(body, wrong)
-        ]
+        types[title] = [replace(f, kind=_resolved(f.kind, title, defined, wrong)) for f in _fields(body, wrong)]
     _refuse_loops(short_type_name(name), types, wrong)
     return types
 

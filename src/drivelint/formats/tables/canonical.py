@@ -107,10 +107,7 @@ def _quality(path: Path) -> list[QualityFinding]:
     rows = parquet.table(path)
     _need(path, rows, ("check_id", "severity", "message"))
     try:
-        return [
-            msgspec.convert({name: value for name, value in row.items() if name != "drive_id"}, QualityFinding)
-            for row in rows.to_pylist()
-        ]
+        return [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drivelint.arrays import turned
 from drivelint.drive.order import steps, time_derivative, wrapped
 
 if TYPE_CHECKING:
@@ -41,23 +42,17 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
     elif mapping.frame.velocity == "vehicle":
         for east, north in (("vx", "vy"), ("ax", "ay")):
             if east in log:
-                log[east], log[north] = _turned(log[east], log[north], log["yaw"])
+                log[east], log[north] = turned(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _to_centre(states, mapping)
     states.numbers = {ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items()}
-
-
-def _turned(forward: Floats, left: Floats, yaw: Floats) -> tuple[Floats, Floats]:
-    """Rotate a vector from the vehicle's axes into the world's."""
-    cos, sin = np.cos(yaw), np.sin(yaw)
-    return forward * cos - left * sin, forward * sin + left * cos
 
 
 def _to_centre(states: States, mapping: Mapping) -> None:
     log = states.numbers
     zero = np.zeros(len(states))
     forward = -0.5 * log["length"] if mapping.reference.point == "front_bumper" else log["forward"]
-    east, north = _turned(forward, log.get("left", zero), log["yaw"])
+    east, north = turned(forward, log.get("left", zero), log["yaw"])
     log["x"], log["y"] = log["x"] + east, log["y"] + north
     if "z" in log:
         log["z"] = log["z"] + log.get("up", zero)

@@ -49,11 +49,9 @@ def read(probe: Probe) -> Recording:
         said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
     else:
         name, mapping = mappings.load(name)
-        sheet = _open(path, mapping)
+        sheet = open_sheet(path, mapping)
         said = []
-    groups = _groups(path, name, mapping, sheet)
-    body = _Body(path, mapping, sheet, groups)
-    recording = body.read()
+    recording = _Body(path, mapping, sheet, _groups(path, name, mapping, sheet)).read()
     _refuse_misread(path, name, recording)
     recording.format = name
     recording.notes = said
@@ -77,7 +75,8 @@ def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
         )
 
 
-def _open(path: Path, mapping: Mapping) -> Sheet:
+def open_sheet(path: Path, mapping: Mapping) -> Sheet:
+    """Return a table laid out as the mapping says, or Parquet; no row is read. Errors: `TraceError`."""
     with path.open("rb") as file:
         is_parquet = file.read(4) == b"PAR1"
     return ParquetSheet(path) if is_parquet else CsvSheet(path, mapping.table)
@@ -88,7 +87,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
     for name in mappings.shipped_mappings():
         _, mapping = mappings.load(name)
         try:
-            sheet = _open(path, mapping)
+            sheet = open_sheet(path, mapping)
             _groups(path, name, mapping, sheet)
         except TraceError:
             continue  # it is not this table; if none fits, the user is told

@@ -34,8 +34,7 @@ def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
 
 def column(rows: pa.Table, name: str) -> pa.Array:
     """Return a column as one array, dictionaries spelled out."""
-    chunks = rows.column(name)
-    array = chunks.combine_chunks() if isinstance(chunks, pa.ChunkedArray) else chunks
+    array = rows.column(name).combine_chunks()
     return array.cast(array.type.value_type) if pa.types.is_dictionary(array.type) else array
 
 
