@@ -54,7 +54,8 @@ ego_input AS (
             'reason_available': CASE WHEN s.is_road_type_given THEN why('given_road_type') ELSE why('has_road_types') END,
             'reason_missing': why('no_road_types')},
         {'signal': 'junctions', 'is_of_map': true, 'available': m.has_junctions, 'reason_available': why('has_junctions'), 'reason_missing': why('no_junctions')},
-        -- A map without junctions and crossings needs no traffic lights, and without these three a log has no states of lights to record.
+        -- A map without junctions and crossings needs no traffic lights. If it has no traffic lights either, the log has no states of
+        -- lights to record.
         {'signal': 'traffic_lights', 'is_of_map': true, 'available': m.has_traffic_lights OR NOT (m.has_junctions OR m.has_crossings),
             'reason_available': CASE WHEN m.has_traffic_lights THEN why('has_traffic_lights') ELSE why('needs_no_lights') END,
             'reason_missing': why('no_traffic_lights')},

@@ -71,7 +71,7 @@ encounter_time AS MATERIALIZED (
 -- One row per entry (sense 1) or exit (sense -1) of a box: on_id is the actor whose ground is entered or left, t_from_ns to t_to_ns the
 -- time in which that actor is there. i is the box at the first or last moment on the ground; t_off_ns is the moment just before or after,
 -- at which the box is off the ground.
-ground_edge AS MATERIALIZED (
+entry_or_exit AS MATERIALIZED (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.n, p.is_ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,
         CASE WHEN p.sense = 1 THEN i.t_before_ns ELSE i.t_after_ns END AS t_off_ns
@@ -89,9 +89,9 @@ ground_edge AS MATERIALIZED (
     JOIN drive_clock g USING (drive_id)
     JOIN swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
 ),
-edge_box AS MATERIALIZED (
+entry_or_exit_with_boxes AS MATERIALIZED (
     SELECT e.*, f
-    FROM ground_edge e
+    FROM entry_or_exit e
     LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
 -- share: the part of the way, from the moment off the ground to the moment on it, after which the box first touches a box of the other.
@@ -107,19 +107,19 @@ first_contact AS MATERIALIZED (
             abs(wrap_rad(b.travel_rad - i.travel_rad)) > conflict_angle_rad()
             AND boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
         ).angle_rad AS angle_rad
-    FROM edge_box e
+    FROM entry_or_exit_with_boxes e
     JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
     GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
 ),
--- If the common ground ends because the angle becomes too small, not because the boxes part, share is NULL and the edge is the moment off
--- the ground. An edge without a moment off the ground was not seen.
-edge_time AS MATERIALIZED (
+-- If the common ground ends because the angle becomes too small, not because the boxes part, share is NULL, and the moment off the ground
+-- is the time of the entry or exit. An entry or exit without a moment off the ground was not seen.
+entry_or_exit_time AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, is_ego, sense, min(sense * t_sample_ns) AS signed_sample_ns,
         min({
             'ns': sense * (t_on_ns - coalesce(round((1 - coalesce(share, 0)) * (t_on_ns - t_off_ns)), 0)::BIGINT), 'is_known': t_off_ns IS NOT NULL,
             'off_rad': -abs(angle_rad), 'angle_rad': CASE WHEN is_ego THEN angle_rad ELSE -angle_rad END
-        }) AS ground_edge
+        }) AS entry_or_exit
     FROM first_contact
     GROUP BY drive_id, ego_id, object_id, n, is_ego, sense
 ),
@@ -127,9 +127,9 @@ encounter AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, min(signed_sample_ns) FILTER (is_ego AND sense = 1) AS t_ego_in_ns, min(-signed_sample_ns) FILTER (is_ego AND sense = -1) AS t_ego_out_ns,
         min(signed_sample_ns) FILTER (NOT is_ego AND sense = 1) AS t_object_in_ns, min(-signed_sample_ns) FILTER (NOT is_ego AND sense = -1) AS t_object_out_ns,
-        max({'ns': ground_edge.ns, 'is_unknown': NOT ground_edge.is_known, 'off_rad': -ground_edge.off_rad, 'angle_rad': ground_edge.angle_rad}) FILTER (sense = 1) AS later_entry,
-        min({'ns': -ground_edge.ns, 'is_known': ground_edge.is_known}) FILTER (sense = -1) AS earlier_exit
-    FROM edge_time
+        max({'ns': entry_or_exit.ns, 'is_unknown': NOT entry_or_exit.is_known, 'off_rad': -entry_or_exit.off_rad, 'angle_rad': entry_or_exit.angle_rad}) FILTER (sense = 1) AS later_entry,
+        min({'ns': -entry_or_exit.ns, 'is_known': entry_or_exit.is_known}) FILTER (sense = -1) AS earlier_exit
+    FROM entry_or_exit_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
 -- An actor that stands as long as it is on the ground is an obstacle, not a partner in a conflict.

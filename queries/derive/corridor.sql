@@ -1,4 +1,5 @@
--- The running chain with the lane beside it on the overtaking side. Through a junction that is the lane before or after it.
+-- The running chain with the lane beside it on the overtaking side. Inside a junction, the lane beside is taken from before the junction,
+-- else from after it.
 WITH overtaking_lane AS (
     SELECT e.environment_id, o.lanelet_id, o.against, from_picometres(sum(to_picometres(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
     FROM environment e

@@ -26,7 +26,7 @@ entry AS (
     LEFT JOIN stretch_before b USING (drive_id, ego_id, chain_id, mark_id, s_start_m, n)
     WHERE o.begins AND (o.n = 1 OR CASE WHEN o.enters_backwards THEN b.was_past ELSE b.was_before END OR NOT o.joined)
 ),
-bounded_entry AS (
+entry_with_next AS (
     SELECT *, lead(t_ns, 1, 9223372036854775807) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_next_ns FROM entry
 ),
 passage AS (
@@ -34,7 +34,7 @@ passage AS (
         b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.enters_backwards,
         min(n.t_ns) FILTER ((n.rear_m >= 0 OR (b.enters_backwards AND n.front_m < 0)) AND n.seg = b.seg) AS t_out_ns,
         max(n.t_ns) FILTER (n.rear_m < 0 AND NOT (b.enters_backwards AND n.front_m < 0) AND n.seg = b.seg) AS t_last_ns
-    FROM bounded_entry b
+    FROM entry_with_next b
     JOIN passage_step n ON n.drive_id = b.drive_id AND n.ego_id = b.ego_id AND n.chain_id = b.chain_id AND n.mark_id = b.mark_id AND n.s_start_m = b.s_start_m
         AND n.t_ns >= b.t_ns AND n.t_ns < b.t_next_ns
     GROUP BY b.drive_id, b.ego_id, b.chain_id, b.mark_id, b.s_start_m, b.t_ns, b.t_in_ns, b.enters_backwards

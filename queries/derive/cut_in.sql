@@ -58,7 +58,7 @@ cut_in_sample AS (
 centre_in_lane_step AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL
 ),
--- The least distance ahead (m) along the lane of an unseen vehicle that may be there, or of a seen actor that may not be a vehicle.
+-- The least distance ahead (m) along the lane of an unseen vehicle that may be there, or of a seen actor that is not known to be a vehicle.
 free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (

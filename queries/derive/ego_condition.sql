@@ -38,7 +38,7 @@ step_road AS (
     LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
     LEFT JOIN cross_section r ON r.environment_id = n.environment_id AND r.road_id = n.road_id AND r.section = n.section
 ),
-declaring_ego AS (
+ego_with_engaged_mode AS (
     SELECT DISTINCT drive_id, ego_id FROM ego_mode WHERE mode = 'engaged'
 ),
 towing_ego AS (
@@ -76,5 +76,5 @@ FROM step_road h
 JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.ego_id
 LEFT JOIN given_condition g ON g.drive_id = h.drive_id
 LEFT JOIN towing_ego t ON t.drive_id = h.drive_id AND t.ego_id = h.ego_id
-LEFT JOIN declaring_ego d ON d.drive_id = h.drive_id AND d.ego_id = h.ego_id
+LEFT JOIN ego_with_engaged_mode d ON d.drive_id = h.drive_id AND d.ego_id = h.ego_id
 LEFT JOIN ego_mode m ON m.drive_id = h.drive_id AND m.ego_id = h.ego_id AND m.t_ns = h.t_ns AND m.mode = 'engaged'

@@ -24,15 +24,16 @@ passage AS (
     WHERE junction_id IS NOT NULL
     GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run_no
 ),
--- Where the ego cut the corner of a junction, it drove beside a lanelet of its chain: it passed that lanelet between those before and after
--- it.
+-- Where the ego cut the corner of a junction, it drove beside a lanelet of its chain. The times at that lanelet are then those between the
+-- lanelet before and the one after.
 chain_lanelet AS (
     SELECT
         drive_id, ego_id, chain_id, seq, coalesce(t_first_ns, lag(t_last_ns IGNORE NULLS) OVER w) AS t_first_ns, coalesce(t_last_ns, lead(t_first_ns IGNORE NULLS) OVER w) AS t_last_ns
     FROM chain
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq)
 ),
--- The junction on the chains on which the ego drove through it: one chain may end in the junction and the next one begin there.
+-- Where the junction begins on the chain by which the ego came in, and where it ends on the chain by which it left. One chain may end in
+-- the junction and the next one begin there.
 passage_chain AS (
     SELECT
         i.drive_id, i.ego_id, i.t_first_ns,

@@ -72,7 +72,7 @@ late_candidate AS (
     GROUP BY drive_id, ego_id, chain_id, t0_ns, object_id
     HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
-vbp_candidate AS (
+overtaken_candidate AS (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY coalesce(near_m, 0.0), object_id) AS rank
     FROM (
         SELECT * FROM ahead
@@ -87,14 +87,14 @@ vbp_candidate AS (
 passing AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > coalesce(p.front_s_m, p.s_m)) AS passed,
         count(p.front_s_m) AS n_seen
-    FROM vbp_candidate c
+    FROM overtaken_candidate c
     JOIN pair_in_excursion p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     GROUP BY ALL
 ),
 overtaken_vehicle AS (
     SELECT
         g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed
-    FROM vbp_candidate c
+    FROM overtaken_candidate c
     JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     WHERE coalesce(a.passed, false)

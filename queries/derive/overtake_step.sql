@@ -27,7 +27,8 @@ pair_in_overtake AS (
         s_m + length_m / 2 * cos(heading_diff_rad) AS bumper_s_m, d_m + length_m / 2 * sin(heading_diff_rad) AS bumper_d_m
     FROM pair SEMI JOIN stage USING (t_ns)
 ),
--- All oncoming vehicles except the VBP, which may stand the wrong way round. For each of the three overlaps (ov_in_m, av_in_m, overlap_m)
+-- All oncoming vehicles except the vehicle being passed (VBP), which may stand the wrong way round. For each of the three overlaps
+-- (ov_in_m, av_in_m, overlap_m)
 -- the worst of them counts. If the place of a vehicle across the corridor is not known, because it is still on its way there or has no
 -- size, it may be the worst one, unless the danger spaces do not even reach so far.
 ov_overlap AS (

@@ -105,8 +105,9 @@ object_on_strip AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- A lanelet is on the chain once per lap. If the object were level with the ego, the lanelet would start at the station `level_start_m`. The
--- lap that starts nearest to it is the object's lap: from_m < level_start_m <= to_m. But an object that comes the other way and is at most
+-- An ego that drives round a ring has a lanelet on its chain once per lap. `level_start_m` is the station at which the lanelet would start
+-- if the object were level with the ego. The lap whose start is nearest to that station is the object's lap: from_m < level_start_m <=
+-- to_m. But an object that comes the other way and is at most
 -- 1.2 km ahead is still ahead, even if the shorter way round a ring leads back.
 lap_end AS (
     SELECT

@@ -1,7 +1,7 @@
 -- Tracks that end or begin on another level: the actor is recorded, but over or under the ego's road, where pair has no row for it. It was
 -- neither lost nor did it appear.
 WITH drive_with_heights AS (SELECT DISTINCT drive_id FROM state_dynamics WHERE z_m IS NOT NULL),
-met_track AS (
+track_in_pair AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns
     FROM pair
     SEMI JOIN drive_with_heights USING (drive_id)
@@ -15,12 +15,12 @@ recorded_track AS (
 ),
 step_off_level AS (
     SELECT m.drive_id, m.ego_id, m.object_id, true AS lost
-    FROM met_track m
+    FROM track_in_pair m
     JOIN recorded_track r USING (drive_id, object_id)
     JOIN step st ON st.drive_id = m.drive_id AND st.ego_id = m.ego_id AND st.t_ns > m.t_last_ns AND st.t_ns <= r.t_last_ns
     UNION ALL
     SELECT m.drive_id, m.ego_id, m.object_id, false
-    FROM met_track m
+    FROM track_in_pair m
     JOIN recorded_track r USING (drive_id, object_id)
     JOIN step st ON st.drive_id = m.drive_id AND st.ego_id = m.ego_id AND st.t_ns < m.t_first_ns AND st.t_ns >= r.t_first_ns
 )

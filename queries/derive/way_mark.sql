@@ -48,7 +48,7 @@ junction_turn AS (
     GROUP BY n.drive_id, n.ego_id, n.chain_id, n.run_no, n.environment_id, n.junction_id
 ),
 -- ---- signals: a signal inside a junction holds for the way into it
-listed_signal AS (
+signal_on_chain AS (
     SELECT
         l.drive_id, l.ego_id, l.chain_id, l.environment_id, l.seq, l.lanelet_id, t.signal_id, t.kind, t.turns, j.s_start_m IS NOT NULL AS is_inside,
         j.is_known AS is_turn_known, coalesce(j.s_start_m, l.s_start_m + t.lane_s_m) AS s_m
@@ -68,7 +68,7 @@ listed_signal AS (
 -- The junction that the ego comes to next decides which of the arrows it needs.
 signal_with_turns AS (
     SELECT h.*, CASE WHEN j.is_known AND j.s_start_m - h.s_m <= turn_reach_m() THEN possible_turns(j.turn_rad) END AS ego_turns
-    FROM listed_signal h
+    FROM signal_on_chain h
     ASOF LEFT JOIN junction_turn j ON j.drive_id = h.drive_id AND j.ego_id = h.ego_id AND j.chain_id = h.chain_id AND j.s_start_m >= h.s_m
 ),
 signal AS (

@@ -40,7 +40,7 @@ extents AS (
         min(least(left_y_m, right_y_m)) AS y0, max(greatest(left_y_m, right_y_m)) AS y1
     FROM lane_point GROUP BY ALL
 ),
-near AS (
+near_lanelets AS (
     SELECT m.drive_id, m.ego_id, m.t_ns, list(b.lanelet_id ORDER BY b.lanelet_id) AS lanelets
     FROM _moment m
     JOIN extents b ON b.environment_id = m.environment_id AND b.x0 <= m.x_m + m.reach_m AND b.x1 >= m.x_m - m.reach_m
@@ -50,4 +50,4 @@ near AS (
 SELECT m.drive_id, m.ego_id, m.t_ns, m.environment_id, round(m.reach_m, 1) AS reach_m, coalesce(n.lanelets, []) AS lanelets, c.actors
 FROM _moment m
 JOIN scene_actors c USING (drive_id, ego_id, t_ns)
-LEFT JOIN near n USING (drive_id, ego_id, t_ns)
+LEFT JOIN near_lanelets n USING (drive_id, ego_id, t_ns)

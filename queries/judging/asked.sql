@@ -1,2 +1,2 @@
--- The steps to judge of a rule without a first pass; empty if there are none.
+-- The steps to judge of an invariant that has no first pass (see group.sql); empty if there are none.
 CREATE OR REPLACE TEMP TABLE _asked AS WITH {grid} SELECT * FROM _step_to_judge

@@ -6,7 +6,8 @@ CREATE OR REPLACE TEMP MACRO is_near_miss(margin, near_margin) AS round(margin, 
 -- A number, NULL where it is infinite; never a negative zero.
 CREATE OR REPLACE TEMP MACRO finite(value) AS CASE WHEN isfinite(value) THEN value + 0.0::DOUBLE END;
 
--- By how much a measure keeps what is required; there is no margin to infinity, to what is not decided, or of sense 'holds'.
+-- The margin by which the observed value keeps the required one; negative if it misses it. NULL if it is infinite, if `holds` is not known,
+-- or for the sense 'holds'.
 CREATE OR REPLACE TEMP MACRO margin_of(sense, observed, required, holds) AS CASE WHEN sense <> 'holds' AND holds IS NOT NULL
     THEN finite(CASE WHEN sense IN ('>', '>=') THEN observed - required ELSE required - observed END) END;
 

@@ -14,7 +14,7 @@ WITH {coverage}, _judged_count AS (
         s.n_fail, s.n_hold, s.worst, s.unknown
     FROM _occasion_with_coverage o LEFT JOIN _judged_count s ON s.drive_id = o.drive_id AND s.ego_id = o.ego_id AND s.ref_id = o.ref_no
         AND s.profile = o.profile
-), _coded AS (
+), _occasion_with_verdict AS (
     SELECT *, CASE
         WHEN t_ref_ns IS NULL THEN ['unknown', 'reference_time_unknown']
         WHEN NOT applies THEN ['not_applicable', 'outside_conditions']
@@ -29,7 +29,7 @@ WITH {coverage}, _judged_count AS (
         ELSE [CASE WHEN $_eventually THEN 'fail' ELSE 'pass' END, worst.code] END AS coded
     FROM _occasion_with_counts
 ), _decided AS (
-    SELECT *, coded[1] = 'unknown' AND problem IS NULL AS of_step FROM _coded
+    SELECT *, coded[1] = 'unknown' AND problem IS NULL AS of_step FROM _occasion_with_verdict
 )
 SELECT $_no AS rule_no, drive_id, ego_id, profile, {who} AS object_id, ref_no AS ref_id, t_ref_ns,
     coalesce(t_min, a_ns) AS t_start_ns, coalesce(t_max, b_ns) AS t_end_ns, known_time_ns(worst.t) AS t_worst_ns,

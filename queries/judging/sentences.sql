@@ -3,7 +3,7 @@
 -- out), and the times, numbers and names that the codes of the engine tell. `_worded` has the words of the causes.
 CREATE OR REPLACE TEMP MACRO with_sentences(verdict_table) AS TABLE
 WITH _parts AS (
-    -- a person counts from the drive's first time stamp, as every other output does: the log's clock may be that of 1970
+    -- times in sentences count from the drive's first time stamp, as in every other output: the log's own times may count from 1970
     SELECT n.*, w.words, w.cause_code, w.cause_args,
         seconds(t_decides_ns - start_ns) AS at_time,
         coalesce(' at ' || at_time, '') AS if_at_time,

@@ -93,5 +93,5 @@ CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane 
 -- Whether the lead comes towards the ego in its lane.
 CREATE OR REPLACE MACRO meets(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND comes(speed_mps, oncoming);
 
--- Speed, away from the ego, of a vehicle that the ego follows. A vehicle that faces the ego stands.
+-- Speed, away from the ego, of a vehicle that the ego follows. A followed vehicle that faces the ego is a parked one: its speed is 0.
 CREATE OR REPLACE MACRO ahead_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN 0.0::DOUBLE WHEN NOT oncoming THEN speed_mps END;

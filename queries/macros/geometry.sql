@@ -91,7 +91,8 @@ CREATE OR REPLACE MACRO box_clearance(dx, dy, c, s, hla, hwa, hlb, hwb) AS
         ))
     END;
 
--- Depth of an overlap from its three one-sided depths; NULL if one of them is (least() alone would ignore it).
+-- Depth of the overlap of two boxes along the lane: the least of its depths from the front, from the rear and across; NULL if one of these
+-- is NULL (least() alone would ignore it).
 CREATE OR REPLACE MACRO least_of_three(a, b, c) AS CASE WHEN a IS NOT NULL AND b IS NOT NULL AND c IS NOT NULL THEN least(a, b, c) END;
 
 -- The depth of the overlap of two boxes whose overlap is known along one axis only: its value if they are apart along this axis (negative),
@@ -137,8 +138,8 @@ CREATE OR REPLACE MACRO between_way(x0, y0, x1, y1, vx0, vy0, vx1, vy1, dt_s) AS
             'long_m': sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
         }
     END;
--- How far the box may be off that way: the most that f'' <= a allows between f and its cubic (Peano kernel: a dt^2 / 16), or its chord (a
--- dt^2 / 8).
+-- How far the box may be off that way, if its acceleration is at most a = swerve_mps2: a dt^2 / 16 off the cubic (Peano kernel), a dt^2 / 8
+-- off the chord.
 CREATE OR REPLACE MACRO between_blur_m(way, dt_s) AS swerve_mps2() * dt_s ** 2 / CASE WHEN way.told THEN 16 ELSE 8 END;
 -- Where the object is after the fraction u of that time, seen from the ego, on one axis. a: its place at the start, g: the change of that
 -- place, p and q as above.

@@ -29,7 +29,7 @@
 -- [params.delay_s]
 -- default = 0.35
 -- unit = "s"
--- why = "time until it brakes so (0.25 s in EU 2022/1426)"
+-- why = "time until it brakes that hard (0.25 s in EU 2022/1426)"
 -- source = "UN R157 5.2.5.2"
 --
 -- [params.visible_s]

@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "<="
 -- unit = "m"
--- observes = "distance of the front from the middle of the half metre before the line"
+-- observes = "distance of the front from the best place to stop, a quarter of a metre before the line"
 -- reads = ["standstill"]
 -- requires = ["map", "registration", "ego_size", "stop_lines"]
 --

@@ -20,7 +20,7 @@
 -- [params.abrupt_mps2]
 -- default = 2.0
 -- unit = "m/s2"
--- why = "deceleration beyond which braking is abrupt, alone and against the vehicle ahead"
+-- why = "deceleration beyond which braking is abrupt: taken by itself, and as the difference from that of the vehicle ahead"
 -- source = "Maierhofer et al. 2020, Table II (a_abrupt)"
 --
 -- [params.lately_s]

@@ -35,7 +35,7 @@
 -- [params.queue_m]
 -- default = 137.5
 -- unit = "m"
--- why = "our default: vehicles no further than this from the passed vehicle belong to its queue; from the first to the last of three lorries of 18.75 m that keep 50 m"
+-- why = "our default: vehicles no further than this from the passed vehicle belong to its queue; that is as far as from the first to the last of three lorries of 18.75 m that keep 50 m"
 -- source = "StVO 4(3), StVZO 32(4)"
 --
 -- [reasons.broad_line_unknown]

@@ -29,7 +29,7 @@
 -- [params.waited_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: who drew up beside the standing ego need not be given the distance when traffic starts again (StVO 5(4) sentence 4)"
+-- why = "our default: for this long after the ego moves off, who drew up beside it while it stood need not be given the distance (StVO 5(4) sentence 4)"
 --
 -- [params.junction_m]
 -- default = 60.0

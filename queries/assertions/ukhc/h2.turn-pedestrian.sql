@@ -22,11 +22,11 @@
 -- [params.decel_mps2]
 -- default = 1.5
 -- unit = "m/s2"
--- why = "our default: a walker who stops within a second loses as much"
+-- why = "our default: a walker who stops within a second brakes this hard"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS fork, c.object_id,
-    -- Whether a pedestrian stopped for the ego, or because the way ended, is never known: hence the other cause on_foot.
+    -- Whether a pedestrian stopped for the ego, or had got where they were going, is never known: hence the other cause on_foot.
     made_to_brake(c.braked_mps2, c.braked_pet_s, 'on_foot', $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced IS NULL THEN braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, class_doubt(c.object_id)) END AS reason,
     pet_forced(pet_known(c.pet_s, c.reason, $pet_s, is_class(c.actor_class, 'pedestrian')), forced, c.braked_pet_s, $pet_s) AS pet_s

@@ -1,6 +1,6 @@
 -- title = "Changing lanes forces nobody to brake"
 -- clause = "UKHC R133: change lanes only if it does not force another road user to change course or speed"
--- hypothesis = "In the seconds after a lane change began, did the vehicle behind in the new lane get by without braking hard?"
+-- hypothesis = "In the seconds after a lane change began, did the vehicle behind in the new lane not have to brake hard?"
 -- kind = "postcondition"
 -- subtype = "temporal"
 -- window_s = "window_s"
@@ -14,18 +14,10 @@
 -- near_margin = 0.5
 -- reads = ["lane_change"]
 -- requires = ["map", "registration", "ego_size"]
---
--- [params.window_s]
--- default = 4.0
--- unit = "s"
--- why = "our default: time for a driver's reaction and the braking that it leads to; lane_change looks at the follower for the same time"
---
--- [params.decel_mps2]
--- default = 2.0
--- unit = "m/s2"
--- why = "our default: more than letting off the accelerator or braking in comfort"
---
--- # Draft: why the follower braked is a judgement; it is asked only where the follower could not have stopped behind the place of the ego.
+-- [params.window_s] default = 4.0 unit = "s" why = "our default: time for a driver's reaction and the braking that it leads to; lane_change
+-- looks at the follower for the same time" [params.decel_mps2] default = 2.0 unit = "m/s2" why = "our default: more than letting off the
+-- accelerator or braking in comfort" # Draft: why the follower braked is a judgement. The rule applies only where the follower was too near
+-- to stop before it reached the ego's place.
 --
 -- [reasons.lane_change_begin_unseen]
 -- says = "the log does not show where the lane change began"

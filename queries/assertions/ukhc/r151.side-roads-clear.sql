@@ -21,7 +21,7 @@
 -- [params.slow_mps]
 -- default = 1.0
 -- unit = "m/s"
--- why = "our default: slower than this moves up in a queue"
+-- why = "our default: a vehicle slower than this moves up in a queue"
 --
 -- [params.long_s]
 -- default = 5.0

@@ -22,7 +22,7 @@ FROM crossing_passage
 WHERE coalesce(kind, 'zebra') = 'zebra'
 
 -- @condition
--- A person who steps onto the crossing when the ego is already on it has not been refused.
+-- The ego need not give way to a person who steps onto the crossing when the ego is already on it.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN CASE WHEN kind = 'zebra' THEN false END
         -- The map tables have no islands: if somebody comes from the other half, it is not known whether the ego had to give way.

@@ -33,7 +33,7 @@
 -- [params.slow_mps]
 -- default = 1.0
 -- unit = "m/s"
--- why = "our default: slower than this moves up in a queue"
+-- why = "our default: a vehicle slower than this moves up in a queue"
 --
 -- [reasons.may_have_queued]
 -- says = "not everybody ahead can be placed: it may have been a queue"

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.model import Change, Step
+    from drivelint.explain.model import Change, Row, Step
     from drivelint.explain.target import Target
     from drivelint.result.request import RunRequest
 
