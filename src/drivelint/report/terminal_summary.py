@@ -203,8 +203,7 @@ def _lines(result: Result) -> list[Text]:
 
 def _unknown(result: Result) -> list[Text]:
     """Return unknown verdicts by what is missing: signals that no log has in one line, then the most frequent other reasons."""
-    columns = ["verdict", "reason_code", "cause_code", "rule_id", "reason"]
-    rows = counts.undecided(result.verdicts).select(columns).to_pylist()
+    rows = counts.undecided(result.verdicts).select(["verdict", "reason_code", "cause_code", "rule_id", "reason"]).to_pylist()
     signals, others = (
         [row for row in rows if row["reason_code"].startswith("missing_") is missing] for missing in (True, False)
     )

@@ -197,7 +197,7 @@ def _adjoin(a: Lanelet, b: Lanelet) -> None:
 
 
 def _join_sides(road: Road, lanes: BuiltLanes) -> None:
-    """Make neighbours of the innermost lanes of one-sided lane sections: each with the lane across the centre that it adjoins longest."""
+    """Adjoin the innermost lanes of strips that hold one side only to the lane across that they lie longest beside."""
     built = [
         lane
         for strip in road.strips
