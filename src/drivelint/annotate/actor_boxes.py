@@ -35,7 +35,7 @@ RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
 def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
-    """Return the rows to show, by time, then actor, and n: all that have a place and a heading, at every n-th step if too many."""
+    """Return the rows with a place and a heading, by time and actor, and n: if they are more than MAX_BOXES, only every n-th step."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
@@ -107,7 +107,7 @@ def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np
 def _behind(
     starts: wire.Bytes, count: NDArray[np.int64], heads: list[bytes], actor: NDArray[np.int32], tails: wire.Bytes
 ) -> tuple[bytes, NDArray[np.int64]]:
-    """Lay `count` boxes behind each of `starts`, all pieces of one width at once; return where each start lies.
+    """Append `count` encoded boxes after each encoded message start; return the bytes and the offset of each message.
 
     Of each box: `heads[actor]`, which is the same for that actor at every step, and a row of `tails`, which changes.
     """
@@ -173,7 +173,7 @@ def _pose_fields(x: Floats, y: Floats, z: Floats, half_yaw: Floats) -> wire.Byte
 
 
 def _doubles(number: int, *columns: Floats, first: int = 1) -> wire.Bytes:
-    """Return a field that holds a message of doubles, numbered from `first`, a row each."""
+    """Return, for each row, field `number`: a message whose fields, numbered from `first`, are doubles."""
     keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first)]
     head = wire.varint(number << 3 | 2) + wire.varint(9 * len(columns))
     return wire.join_columns(len(columns[0]), head, *(part for pair in keyed for part in pair))

@@ -47,7 +47,7 @@ class Annotator:
         self._parts: list[list[pa.Table]] = []
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
-        """Annotate a batch that was just judged in `con`, once the last of its parts was.
+        """Annotate the drives of a judged batch; of a batch judged in parts, after its last part.
 
         Errors: `TraceError` for a log that cannot be copied; `OutputError` when the folder cannot be written.
         """

@@ -1,4 +1,4 @@
-"""The danger spaces in an overtake, as they were judged: swept along the corridor, as wide as the vehicle, SD long."""
+"""The danger spaces in an overtake, as they were judged: along the lanes, as wide as the vehicle, as long as its safe distance."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LEAST_M: Final = 0.1
 
 
 def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock) -> list[Message]:
-    """Return a SceneUpdate for every step of an overtake, and an empty one behind each.
+    """Return a SceneUpdate for every step of an overtake, and an empty one after its last step.
 
     `spaces` and `chains` are the danger spaces and the centre lines, by station, of the chains that they were judged on.
     """
@@ -103,7 +103,7 @@ def _roles(row: dict[str, Any], poses: Mapping[str, ActorPoses], k: int) -> byte
 
 
 def _spaces(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes:
-    """Return the danger spaces of ego and OV at one step."""
+    """Return the danger spaces of the ego and the oncoming vehicle (OV) at one step."""
     own = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
     theirs = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
     parts = []

@@ -30,7 +30,7 @@ MAX_STEPS: Final = 5_000
 """So many steps of findings are drawn per drive; of longer ones every second, third ... step."""
 DRAW_BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
 DRAW_AFTER_NS: Final = 2_000_000_000
-LABEL_OFFSET_M: Final = 9.0  # beside the ego: its role stands on it, and a viewer that follows it has this in sight
+LABEL_OFFSET_M: Final = 9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
 MAX_LABEL_LINES: Final = 5
 _UNKNOWN_SIZE: Final = 1.0
 
@@ -83,7 +83,7 @@ def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, 
 
 
 def messages(found: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
-    """Return the SceneUpdates of all windows: one for every step in any of them, and an empty one behind each."""
+    """Return the SceneUpdates of all windows: one for every step in a window, and an empty one after each window."""
     steps = [_steps(tracks, window) for window in found]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
     drawn: dict[int, list[MarkerFrame]] = {}

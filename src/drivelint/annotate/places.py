@@ -1,4 +1,4 @@
-"""The drive on the earth, for a viewer's map: where the ego is, and findings, ways and lanes as GeoJSON (RFC 7946)."""
+"""The drive on the earth, for a viewer's map: the ego's positions, and findings, paths of egos and lanes as GeoJSON (RFC 7946)."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
 def geojson(
     findings: pa.Table, tracks: Tracks, geo: GeoFrame, road: Road | None, sense_by_rule: Mapping[str, str]
 ) -> bytes:
-    """Return a `foxglove.GeoJSON`: the drivable lanes near anybody's way, the egos' ways, the findings."""
+    """Return a `foxglove.GeoJSON`: the drivable lanes near the paths of all actors, the paths of the egos, the findings."""
     shapes = [*_lanes(road, tracks), *_ways(tracks)]
     degrees = geo.degrees(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
     ends = np.cumsum([len(points) for _, _, points in shapes])[:-1]

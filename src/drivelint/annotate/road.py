@@ -72,7 +72,7 @@ class Road:
 
     @cached_property
     def _lanelet_of(self) -> NDArray[np.int64]:
-        """The lanelet of each piece of the tree."""
+        """The lanelet of each segment in the spatial index."""
         return np.repeat(np.arange(len(self._rows)), [r.stop - r.start - 1 for r in self._rows])
 
     @cached_property

@@ -51,67 +51,66 @@ class Annotation:
     geo: GeoFrame | None
 
 
-def write(file: BinaryIO, said: Annotation) -> None:
+def write(file: BinaryIO, annotation: Annotation) -> None:
     """Write the annotated log of one drive. Same inputs, same bytes. Errors: `TraceError` where the log cannot be copied."""
     sink = Sink(file)
-    log = said.trace.tables["data_log"].to_pylist()[0]
-    if is_mcap(said.trace.path):
-        with Original(said.trace.path, log["sha256"]) as original:
+    log = annotation.trace.tables["data_log"].to_pylist()[0]
+    if is_mcap(annotation.trace.path):
+        with Original(annotation.trace.path, log["sha256"]) as original:
             original.copy(sink)
     else:
         sink.begin(f"drivelint {__version__}")
-    _Writer(sink, said, int(log["t_start_ns"])).run()
+    _Writer(sink, annotation, int(log["t_start_ns"])).run()
     sink.finish()
 
 
 class _Writer:
     """Adds the channels of one drive to a sink that holds the original, or nothing yet."""
 
-    def __init__(self, sink: Sink, said: Annotation, t_start_ns: int) -> None:
+    def __init__(self, sink: Sink, annotation: Annotation, t_start_ns: int) -> None:
         self._sink = sink
-        self._said = said
+        self._annotation = annotation
         self._start_ns = t_start_ns
-        self._tracks = tracks_of(said.trace.tables)
-        self._rules = said.result.rules.to_pylist()
+        self._tracks = tracks_of(annotation.trace.tables)
+        self._rules = annotation.result.rules.to_pylist()
         self._sense_by_rule = {rule["rule_id"]: rule["sense"] for rule in self._rules}
-        frames = said.trace.frame_times
+        frames = annotation.trace.frame_times
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
         self._prefix = _free_prefix({channel.topic for channel in sink.channels.values()})
         self._moves = any(schema.name.endswith(_TRANSFORMS) for schema in sink.schemas.values())
 
     def run(self) -> None:
         """Write every channel, then metadata and attachment."""
-        said, tracks, times, start = self._said, self._tracks, self._clock, self._start_ns
-        verdicts, findings, senses = said.result.verdicts, said.result.findings, self._sense_by_rule
+        annotation, tracks, times, start = self._annotation, self._tracks, self._clock, self._start_ns
+        verdicts, findings, senses = annotation.result.verdicts, annotation.result.findings, self._sense_by_rule
         boxes, every = actor_boxes.select_boxes(tracks)
         scene = foxglove.schema("SceneUpdate")
-        if said.road is not None and len(boxes):
+        if annotation.road is not None and len(boxes):
             at = times.at(start)
-            lanes = said.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
+            lanes = annotation.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
             self._few("map", scene, [result_messages.Message(at, lanes)])
         self._many("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
-        if not self._moves:  # the log's own frames are not ours to speak of
+        if not self._moves:  # a log that has transforms of its own gets none from us
             transform = foxglove.schema("FrameTransform")
             self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel))
-        self._few("danger_spaces", scene, danger_spaces.messages(said.spaces, said.chains, tracks, times))
+        self._few("danger_spaces", scene, danger_spaces.messages(annotation.spaces, annotation.chains, tracks, times))
         markers = finding_markers.markers(verdicts, findings, senses)
         self._few("markers", scene, finding_markers.messages(markers, tracks, times))
-        told = result_messages.verdict_messages(verdicts, times, start)
-        self._few("verdicts", result_messages.schema("verdict"), told)
-        told = result_messages.finding_messages(findings, times)
-        self._few("findings", result_messages.schema("finding"), told)
-        told = result_messages.log_messages(verdicts, times, start, senses)
-        self._few("log", foxglove.schema("Log"), told)
-        if said.geo:
-            self._on_earth(said.geo)
+        judged = result_messages.verdict_messages(verdicts, times, start)
+        self._few("verdicts", result_messages.schema("verdict"), judged)
+        self._few("findings", result_messages.schema("finding"), result_messages.finding_messages(findings, times))
+        self._few("log", foxglove.schema("Log"), result_messages.log_messages(verdicts, times, start, senses))
+        if annotation.geo:
+            self._on_earth(annotation.geo)
         self._sink.add_metadata("drivelint", self._facts(every))
-        self._sink.add_attachment("summary.json", "application/json", summary.render(said.result), times.at(start))
+        content = summary.render(annotation.result)
+        self._sink.add_attachment("summary.json", "application/json", content, times.at(start))
 
     def _on_earth(self, geo: GeoFrame) -> None:
-        frame = "" if self._moves else actor_boxes.EGO_FRAME
-        fixes = places.location_messages(self._tracks, geo, self._clock, frame)
+        fixes = places.location_messages(self._tracks, geo, self._clock, "" if self._moves else actor_boxes.EGO_FRAME)
         self._few("location", foxglove.schema("LocationFix"), fixes)
-        layer = places.geojson(self._said.result.findings, self._tracks, geo, self._said.road, self._sense_by_rule)
+        findings, road = self._annotation.result.findings, self._annotation.road
+        layer = places.geojson(findings, self._tracks, geo, road, self._sense_by_rule)
         at = self._clock.at(self._start_ns)
         self._few("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
 
@@ -133,7 +132,7 @@ class _Writer:
 
     def _facts(self, every: int) -> dict[str, str]:
         """Return what the verdicts stand on: tool, log, map, rules with their versions."""
-        row = self._said.result.drives.to_pylist()[0]
+        row = self._annotation.result.drives.to_pylist()[0]
         known = (
             "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",
             "handedness_source",

@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-    Crowd = Sequence[merged_cases.NumberedCase]
-
 CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
@@ -77,7 +75,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     """Where it stands in its file: filled in, never written."""
 
     def categories(self) -> set[str]:
-        """Return which of SHOWS this case shows, by its own word or by its name."""
+        """Return which of CATEGORIES this case shows: those in `shows`, else those in its name."""
         said = {self.shows} if isinstance(self.shows, str) else set(self.shows)
         words = re.sub(r"[\s_-]+", "_", self.name.lower())
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
@@ -160,7 +158,7 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     """
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
-    if all(result.ok for result in results):  # else the crowd only says it again
+    if all(result.ok for result in results):  # if one fails alone, judging all together says nothing new
         mixed, codes = run_merged_cases(rule, cases)
         never = unused_reasons(rule, codes)
         results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
@@ -169,7 +167,7 @@ def run_cases(rule: Rule) -> list[CaseResult]:
 
 
 def unused_reasons(rule: Rule, codes: AbstractSet[str]) -> str:
-    """Return '' where each reason that the SQL names is among `codes`, which its cases gave; else which is not."""
+    """Return '' if every reason that the SQL can give is among `codes`, the reasons given in the cases; else name those that are not."""
     never = sorted(rule.reason_codes - codes)
     return f"{cases_path(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
 
@@ -210,7 +208,7 @@ def case_location(rule: Rule, case: Case) -> str:
 
 @contextmanager
 def _placed(rule: Rule, case: Case) -> Iterator[None]:
-    """Say of what is wrong in a case where the case stands."""
+    """Add the location of the case to errors raised inside."""
     try:
         yield
     except RuleError as error:
@@ -240,9 +238,11 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     return found
 
 
-def crowd_difference(cases: Sequence[Case], crowd: Crowd, outcome: merged_cases.CaseOutcome) -> tuple[Case, str] | None:
-    """Return the first case of a crowd that comes out otherwise than it expects, and how; None: there is none."""
-    found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in crowd)
+def merged_cases_difference(
+    cases: Sequence[Case], numbered: Sequence[merged_cases.NumberedCase], outcome: merged_cases.CaseOutcome
+) -> tuple[Case, str] | None:
+    """Return the first of the merged cases whose outcome differs from what it expects, and the difference; None if all agree."""
+    found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in numbered)
     return next(((case, message) for case, rows in found if (message := difference(case, rows))), None)
 
 
@@ -261,7 +261,7 @@ def run_merged_cases(
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
                     codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
-            if wrong := crowd_difference(cases, group, outcome):
+            if wrong := merged_cases_difference(cases, group, outcome):
                 case, message = wrong
                 return f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?", codes
     return "", codes

@@ -1,6 +1,6 @@
 """Cases judged together: as drives of one database, or as egos of one drive.
 
-A drive checked alone has the same rows as in a crowd: a rule whose join leaves out `drive_id` or `ego_id` mixes the
+A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the
 cases up, and that shows. And many variants of a rule can be judged at once on tables that are filled once.
 """
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
-"""What tells the cases of a crowd apart, and what they are then."""
+"""The key column that keeps merged cases apart -> what each case is in the merged scene."""
 
 _MARKED = ("drive_id", "ego_id", "environment_id")
 _FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
@@ -84,7 +84,7 @@ def _is_apart(table: str, scene: Scene, key: str) -> bool:
     if key == "drive_id":
         return key in names or _of_the_map(table)
     egos = {row["ego_id"] for row in scene["clock"]}
-    # a table of any actor that tells of egos only
+    # or its rows are about actors, and here all of these are egos
     return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= egos)
 
 
@@ -93,15 +93,15 @@ def _of_the_map(table: str) -> bool:
     return "environment_id" in column_comments()[table] and "drive_id" not in column_comments()[table]
 
 
-def merge(crowd: Sequence[NumberedCase], key: str) -> Scene:
+def merge(cases: Sequence[NumberedCase], key: str) -> Scene:
     """Return the tables of all cases as one scene; each case's number is put before its keys."""
     merged: Scene = {}
-    for member in crowd:
+    for member in cases:
         for table, rows in member.scene.items():
             if _is_apart(table, member.scene, key):
                 merged.setdefault(table, []).extend(_marked(row, table, key, member.no) for row in rows)
             else:
-                merged[table] = rows  # the same in every case of the crowd
+                merged[table] = rows  # the same in every case
     return merged
 
 

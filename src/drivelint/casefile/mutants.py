@@ -109,7 +109,7 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
 
 
 def _places(root: Node) -> list[tuple[NodePath, Node]]:
-    """Return every node that can matter to a verdict, in the order of the text, each after the way to it."""
+    """Return every node that can matter to a verdict, in the order of the text, each with its path in the tree."""
     wording = _columns(root, frozenset({"reason", "reason_code"}))
     found: list[tuple[NodePath, Node]] = []
     todo: list[tuple[NodePath, Any]] = [((), root)]
@@ -126,7 +126,7 @@ def _places(root: Node) -> list[tuple[NodePath, Node]]:
 
 
 def _outputs(root: Node) -> list[NodePath]:
-    """Return the ways to the SELECT nodes whose columns are those of the statement: itself or the branches of a UNION."""
+    """Return the paths of the SELECT nodes that give the statement's columns: itself or the branches of a UNION."""
     if root["type"] == "SELECT_NODE":
         return [()]
     if root["type"] != "SET_OPERATION_NODE":
@@ -138,7 +138,7 @@ def _outputs(root: Node) -> list[NodePath]:
 
 
 def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
-    """Return the ways to the expressions of the statement's columns of these names."""
+    """Return the paths of the expressions that give the statement's columns of these names."""
     outputs = _outputs(root)
     if not outputs:
         return set()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
-from drivelint.casefile import case_location, crowd_difference, numbered_cases, read_cases
+from drivelint.casefile import case_location, merged_cases_difference, numbered_cases, read_cases
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
@@ -32,8 +32,8 @@ LEAST_NOTICED_SHARE: Final = 0.95
 class MutationResult(NamedTuple):
     """The result of judging a rule's mutants.
 
-    `survivors`: the faults that no case noticed; `listed`: those that the pack lets live; `problem`: why there is no
-    proof at all (the rule does not keep its own cases), or ''.
+    `survivors`: the faults that no case noticed; `listed`: those that the pack lets live; `problem`: why the mutants
+    could not be judged (the rule does not keep its own cases), or ''.
     """
 
     rule_id: str
@@ -45,7 +45,7 @@ class MutationResult(NamedTuple):
 
     @property
     def noticed(self) -> int:
-        """How many of the mutants some case noticed; none where there is no proof."""
+        """How many mutants some case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property
@@ -75,7 +75,7 @@ class _Survivors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResult]:
-    """Yield the proof of every rule, in order, worked out by `jobs` processes."""
+    """Yield the result of every rule, in order, judged by `jobs` processes."""
     if jobs <= 1 or len(rules) < 4:
         yield from map(judge_mutants, rules)
         return
@@ -89,21 +89,21 @@ def noticed_share(proofs: Sequence[MutationResult]) -> float:
     return sum(proof.noticed for proof in proofs if proof.stable) / n if n else 1.0
 
 
-def result_text(proof: MutationResult) -> str:
+def result_text(result: MutationResult) -> str:
     """Return the result as text: one line, and one more for each mutant to look at."""
-    draft = "" if proof.stable else " (not stable yet: it may have survivors)"
-    noticed = f"{proof.noticed} of {proof.n} mutants noticed{draft}"
+    draft = "" if result.stable else " (not stable yet: it may have survivors)"
+    noticed = f"{result.noticed} of {result.n} mutants noticed{draft}"
     return "\n".join(
         [
-            f"{'ok  ' if proof.ok else 'FAIL'} {proof.rule_id}: {proof.problem or noticed}",
-            *(f"     no case notices: {fault}" for fault in proof.unlisted),
-            *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in proof.stale),
+            f"{'ok  ' if result.ok else 'FAIL'} {result.rule_id}: {result.problem or noticed}",
+            *(f"     no case notices: {fault}" for fault in result.unlisted),
+            *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in result.stale),
         ]
     )
 
 
 def summary(proofs: Sequence[MutationResult]) -> str:
-    """Return the figures of all proofs in one line."""
+    """Return the counts of all results in one line."""
     if not proofs:
         return "no rule was tested"
     stable = [proof for proof in proofs if proof.stable]
@@ -134,12 +134,12 @@ def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
     cases = read_cases(rule)
     everybody = numbered_cases(rule, cases)
     for key, where in MERGE_KEYS.items():
-        for crowd in mergeable_groups(everybody, key):
-            outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(crowd, key), crowd[0].params)
-            if wrong := crowd_difference(cases, crowd, outcomes[rule.id]):
+        for group in mergeable_groups(everybody, key):
+            outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(group, key), group[0].params)
+            if wrong := merged_cases_difference(cases, group, outcomes[rule.id]):
                 place = case_location(rule, wrong[0])
                 raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
-            alive = [mutant for mutant in alive if not crowd_difference(cases, crowd, outcomes[mutant.rule.id])]
+            alive = [mutant for mutant in alive if not merged_cases_difference(cases, group, outcomes[mutant.rule.id])]
     return alive
 
 

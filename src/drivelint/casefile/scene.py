@@ -37,7 +37,7 @@ def case_database() -> duckdb.DuckDBPyConnection:
 
 @cache
 def _tables() -> dict[str, dict[str, Any]]:
-    """Return table -> column -> what it has where it must not be NULL and is not given; None: it may be NULL."""
+    """Return table -> column -> the default of a NOT NULL column; None for a column that may be NULL."""
     zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
     tables: dict[str, dict[str, Any]] = {}
     columns = "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
@@ -127,7 +127,7 @@ def _scaled(value: Decimal, scale: int) -> float | int:
 
 
 def _values(value: Any, scale: int) -> Any:
-    """Return a list, a scalar, a by-time mapping, or what `a..b` is over n rows as a function of n, in the column's own unit."""
+    """Return the values in the column's own unit: a list, a scalar, a by-time mapping, or for `a..b` a function of the number of rows."""
     if isinstance(value, list):
         return [_values(item, scale) for item in value]
     if isinstance(value, dict):
@@ -184,7 +184,7 @@ def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
 
 
 def _engaged(steps: Iterable[Row], given: Iterable[Row]) -> list[Row]:
-    """Return the conditions of every step: what a case does not give is not known, but the automated driver drives."""
+    """Return the conditions of every step: `engaged` is true by default, the others are unknown unless the case gives them."""
     keys = ("drive_id", "ego_id", "t_ns")
     said = {tuple(row.get(key) for key in keys): row for row in given}
     at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *said])
@@ -202,7 +202,7 @@ def _period(ordered: Sequence[int]) -> int:
 
 
 def _clocks(steps: Iterable[Row], given: Sequence[Row]) -> list[Row]:
-    """Return one clock per subject, with what the case says about it."""
+    """Return one clock row per drive and ego, with what the case gives replacing the defaults."""
     times: dict[tuple[str, str], list[int]] = {}
     for row in steps:
         times.setdefault((row["drive_id"], row["ego_id"]), []).append(row["t_ns"])

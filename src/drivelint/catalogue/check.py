@@ -192,7 +192,7 @@ def _fields(part: Node) -> frozenset[str] | None:
 
 
 def _offset(part: Any) -> int | None:
-    """Return the first byte that a node, or else what is in it, says it stands at."""
+    """Return the byte offset of a node, else the first offset inside it."""
     todo = [part]
     while todo:
         node = todo.pop(0)

@@ -51,7 +51,7 @@ def select_rules(
 
 
 def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
-    """Return the rules that are all that the selector says, joined by commas."""
+    """Return the rules that match every comma-separated part of the selector."""
     parts = [part.strip() for part in selector.split(",")]
     found = [{rule.id for rule in _being(rules, part)} for part in parts]
     both = set.intersection(*found)

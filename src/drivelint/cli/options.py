@@ -40,7 +40,7 @@ Baseline = Annotated[
     Path | None, option("--baseline", "DIR", "An earlier result: its findings are known, only new ones gate.")
 ]
 Waivers = Annotated[
-    Path | None, option("--waivers", "FILE", "TOML of findings that somebody answers for: shown, but no gate.")
+    Path | None, option("--waivers", "FILE", "TOML of findings that an owner accepts until a day: shown, fail no run.")
 ]
 Today = Annotated[
     str | None, option("--today", "DATE", "The day that waivers are held against. Default: the system's.")
@@ -50,8 +50,8 @@ MemorySize = Annotated[
     option(
         "--memory",
         "SIZE|none",
-        "What the database keeps to before it uses the disk: 512MB, 2GB; none, 80 % of the machine's. Results do not depend "
-        "on it; what cannot go to disk takes more, which is said. The program itself takes some 300 MB more. Default: 1200MB.",
+        "Memory of the database before it uses the disk: 512MB, 2GB; none: 80 % of the machine's. Results do not depend "
+        "on it; a step that needs more takes more, with a note. The program itself takes some 300 MB more. Default: 1200MB.",
     ),
 ]
 FormatOption = Annotated[Format, option("--format", None, "What is printed on stdout.")]
@@ -108,7 +108,7 @@ _DRIVE_OPTIONS = {
         option(
             "--visibility",
             None,
-            "Whoever is not recorded: line-of-sight, not in plain view of the recorder (2.5 s after it was lost); none, anywhere.",
+            "Where an unrecorded actor may be. line-of-sight: not in plain view of the recorder (2.5 s after it was lost); none: anywhere.",
         ),
         "line-of-sight",
     ),

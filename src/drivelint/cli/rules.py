@@ -54,7 +54,9 @@ def show(rule_id: Annotated[str, argument("ID", "The rule's id.")], rules_dir: o
 def new(
     rule_id: Annotated[str, argument("PACK.NAME", "The id of the rule to write.")],
     folder: Annotated[Path, option("--dir", "DIR", "Folder of packs to write it into.")] = Path(),
-    kind: Annotated[options.RuleKind, option("--kind", None, "What it is judged at.")] = "invariant",
+    kind: Annotated[
+        options.RuleKind, option("--kind", None, "Judged at every step, or else at, before or after a reference point.")
+    ] = "invariant",
 ) -> None:
     """Write a rule to start from.
 

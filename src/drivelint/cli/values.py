@@ -41,7 +41,7 @@ def parse_memory(text: str | None) -> int | None:
 
 
 def _numbers(text: str) -> tuple[float, ...]:
-    """Return the numbers between commas; none where one is none."""
+    """Return the comma-separated numbers; an empty tuple if one of them is not a number."""
     try:
         return tuple(float(part) for part in text.split(","))
     except ValueError:

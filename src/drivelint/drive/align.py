@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Times
 
 LONGEST_PERIOD_NS: Final = 250_000_000
-"""An object that is sampled more rarely is not aligned: half of that time on, a car that brakes is 8 cm beside the line."""
+"""Objects sampled more rarely are not aligned: with 250 ms between samples, interpolating a braking car is already 8 cm off."""
 DIFFERENT_RATE_FACTOR: Final = 1.5
-"""So many times the ego's period is another rate, less is a sample that is missing now and then."""
+"""A period longer than the ego's by more than this factor is another rate; a smaller difference is a missing sample now and then."""
 COVERED_SHARE: Final = 0.75
 """A track that has a sample at so many of the ego's steps needs no others."""
 _MOVED: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
@@ -44,7 +44,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         own = _own_period(states.t_ns[span], grid, period)
         if own is None:
             continue
-        # a finer track keeps its samples beside those at the ego's steps, every track those of before and after the ego's
+        # a track with a shorter period keeps its own samples too; every track keeps those before and after the ego's steps
         kept[span] = (own < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
         track = _at_steps(states, span, grid, own, log_ns)
         added.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if own < period else track)
@@ -73,7 +73,7 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= COVERED_SHARE * len(steps):  # as where there is no step of the ego's at all
+    if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step in that time
         return None
     return own if own > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 

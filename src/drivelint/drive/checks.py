@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, integral_per_step, known_motion, sums_over, ways_over, wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
@@ -144,13 +144,12 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
 
 
 def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
-    """Compare the way over every `n_steps` steps of a track with the way that the velocities lead, in m/s.
+    """Compare the mean velocity from positions over every `n_steps` steps with the mean of the velocities, in m/s.
 
-    Returns by first row (n - n_steps): how far the two ways are apart, the mean speed that is told, the way's speed, and where
-    no jump or hole lies between.
+    By first row (n - n_steps): how far the two are apart, the mean speed, the speed from positions, and where no jump or hole lies between.
     """
     known = known_motion(states, step) & ~jump[1:]
-    went, led, usable, span_s = ways_over(states, step, known, n_steps)
+    went, led, usable, span_s = displacements(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
     told = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
     return np.hypot(*(went / span_s - led / span_s)), told, np.hypot(*(went / span_s)), usable
@@ -186,7 +185,7 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     wrong = moving & (off > YAW_MISMATCH_RAD)
     backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
-    # of one that never drives forwards, in company that does, or alone, it is the heading that is right
+    # an actor that drives backwards only is believed if others drive forwards, or if it is the only one that does
     fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0
     only = (np.bincount(states.actor[backwards], minlength=len(states.ids)) > 0) & ~forwards & ~fast
     reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards

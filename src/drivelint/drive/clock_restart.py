@@ -51,7 +51,7 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
 
 
 def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
-    """Return for each two runs (by number) in which the time of an actor passes twice from when to when it does."""
+    """Return, for each pair of runs (numbers) that cover the same time of some actor, the first and last time covered twice."""
     by = np.lexsort((run, states.actor))
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.jumps import COUNT_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
-from drivelint.drive.order import integral_per_step, known_motion, sums_until, ways_over, wrapped
+from drivelint.drive.order import displacements, integral_per_step, known_motion, sums_until, wrapped
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity import Tracklets, sample_noise
 from drivelint.phrases import listed
@@ -39,7 +39,7 @@ STEP_MISMATCH_M: Final = 2.0
 WINDOW_S: Final = 0.5
 DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
-"""A motion has a direction if within a second around it leads 0.4 m on, and half as far as its speed says."""
+"""A motion has a direction if the actor moves 0.4 m within a second around it, and half as far as its speed says."""
 REVERSING_MPS: Final = 8.0
 """Nobody reverses faster than this (29 km/h),"""
 FAST_REVERSING_MPS: Final = 20.0
@@ -64,7 +64,7 @@ SIGMAS: Final = 4.0
 SINGLE_STEP_SHARE: Final = 0.75
 """A single step that makes up more of the difference is a step of the positions, of which the velocity knows nothing."""
 WHOLE_TRACK_SHARE: Final = 0.5
-"""Of a track that contradicts its velocities for longer than this not a stretch is wrong, but what is recorded (see `checks`)."""
+"""If more than this share of a track contradicts its velocities, the recorded velocity is wrong, not a stretch of it (see `checks`)."""
 LARGEST_HALF_BOX_M: Final = 6.0
 """No box reaches further than this from its middle, where its size is not known."""
 
@@ -186,7 +186,7 @@ def _drifts(rest: Floats, step: Steps) -> bool:
     """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
-    # a window of a second lies in three strides at the most: one of them has a third of what it has
+    # a one-second window spans at most three strides, so one of them has at least a third of its difference
     return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
 
 
@@ -200,7 +200,7 @@ def _mismatched(states: States, step: Steps) -> Mask:
     usable = known_motion(states, step)
     went, led, slack = _step_by_step(states, step, usable)
     alone = np.hypot(*(went - led))
-    went, led, whole, span = ways_over(states, step, usable, k)
+    went, led, whole, span = displacements(states, step, usable, k)
     span = np.where(whole, span, np.nan)
     went, led = went / span, led / span
     off, fastest = np.hypot(*(went - led)), np.hypot(*np.maximum(np.abs(went), np.abs(led)))

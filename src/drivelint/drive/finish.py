@@ -64,7 +64,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         step = steps(states)
     if "yaw_rad" in states.numbers:
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
-    # what a film's mapping assumes is asked for; of most actors' velocities another mapping is at fault, and can be corrected
+    # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
     findings += complete_velocities(states, step, most_replaced_share=most_replaced)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in findings)

@@ -35,7 +35,7 @@ OUTLIER_S: Final = 2.0
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
-"""A place is put right by no more than this along the lane, and to its side, where no other lane is; the velocity goes on."""
+"""A jump within these distances along the lane and to the side (not to another lane), at nearly the same velocity, corrects the track."""
 MOVING_MPS: Final = 1.0
 """Below this the direction of motion is noise, and the heading is what there is."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
@@ -211,7 +211,7 @@ def without_removed_actors(
 
 
 def _together(states: States, place: Floats, one: tuple[int, int], other: tuple[int, int]) -> bool:
-    """Say whether both rows (first, end) are of one place and share some time."""
+    """Say whether two parked stretches (first row, end row) are at the same place and overlap in time."""
     (a, a_end), (b, b_end) = one, other
     apart = np.hypot(*(place[:, a] - place[:, b]))
     return bool(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import extent, known_motion, ways_over
+from drivelint.drive.order import displacements, extent, known_motion
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 MISMATCH_MPS = 1.0
 MISMATCH_SHARE = 0.15
-"""A velocity is not the motion if over a second it leads more than this elsewhere (see `checks.VELOCITY_MISMATCH_MPS`)."""
+"""Velocities mismatch the positions if over a second their displacements differ by more than this (see `checks.VELOCITY_MISMATCH_MPS`)."""
 MISMATCH_WINDOW_NS = 1_000_000_000
 LEAST_MISMATCHES = 20
-"""Over a second the trembling of positions averages out, which step by step is worse than any velocity: so many must be wrong."""
+"""At least so many one-second windows must mismatch; single steps are too noisy to compare."""
 
 
 def complete_velocities(states: States, step: Steps, *, most_replaced_share: float = 1.0) -> list[QualityFinding]:
@@ -62,7 +62,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
 
 
 def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
-    """Name each actor whose positions tremble: what a filter hides, and what its error leaves open, is unknown of it."""
+    """Report each actor whose velocities were filtered because its positions are noisy, and how exactly they are known."""
     text = (
         "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
         f"known to {LARGEST_ERROR_MPS:g} m/s, its acceleration is not known"
@@ -79,7 +79,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
         return wrong
-    went, led, whole, span = ways_over(states, step, known_motion(states, step), k)
+    went, led, whole, span = displacements(states, step, known_motion(states, step), k)
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     fastest = np.maximum(moved, told)
     moving = whole & (fastest > MISMATCH_MPS * span)
@@ -91,7 +91,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
 
 
 def _suspicious(states: States, k: int) -> bool:
-    """Look at every k-th state only, and by Simpson's rule: whether the velocities of somebody may well be wrong."""
+    """Say by a quick look at every k-th state whether any actor's velocities may mismatch its positions (Simpson's rule)."""
     first = np.arange(0, len(states) - k, k)
     middle, last = first + k // 2, first + k
     here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])

@@ -68,7 +68,7 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
 
 def repetitions(states: States) -> tuple[Mask, Indices]:
-    """Return the rows (states in order) of the actor and time of the row before, and each row's number without them."""
+    """Return which rows repeat the actor and time of the row before, and the number of each row when these are left out."""
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
     return repeated, np.cumsum(~repeated) - 1
@@ -137,10 +137,10 @@ def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
     return np.where(known, 0.5 * (rate[..., 1:] + rate[..., :-1]) * step.dt_s, 0.0)
 
 
-def ways_over(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
+def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
     """Compare how far positions go and velocities lead over every `k` steps of a track.
 
-    Returns by first row (n - k): both ways (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
+    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
     """
     place = states.place
     went = place[:, k:] - place[:, :-k]

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 TYRE_MPS2: Final = 12.0
 """Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
 SAME_SPEED_SHARE: Final = 0.25
-"""After a step the speed is the one before, but for this share of what the step makes of it."""
+"""A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
 LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
-"""Where velocities are derived, a step counts from 24 m/s2 dt2 on, within these bounds: of less no jolt of 12 m/s2 is made."""
+"""With derived velocities a step counts if longer than 24 m/s2 dt2, clipped to these bounds: shorter ones cause no jolt of 12 m/s2."""
 LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
-"""Where velocities are recorded nothing hangs on the step but the place: less is within what boxes are known to."""
+"""With recorded velocities a step only moves the position; below this it is within the accuracy of boxes."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
@@ -48,7 +48,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     told = _told(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
     moves = np.diff(place, axis=1) / dt_s, dt_s
-    # the noise of the positions is worth its time only where without any somebody is off its track
+    # noise is costly to estimate: skip it if no sample is off even with zero noise
     exact, any_error = np.zeros(n), np.full(n, np.inf)
     if not (
         _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
@@ -95,7 +95,7 @@ def _beside(place: Floats, moves: _Moves, told: Mask, sigma: Floats, error: Floa
 
 
 def _stepped(moves: _Moves, told: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
-    """Return the ends of steps that both neighbours contradict by the same way, where no velocity is recorded."""
+    """Return the two samples of each step that differs alike from the motion before and after it, where no velocity is recorded."""
     n = len(told)
     found = np.zeros(n, np.bool_)
     v, dt = moves

@@ -26,7 +26,7 @@ LARGEST_ERROR_MPS: Final = 0.25
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
 LONGEST_PERIOD_NS: Final = 210_000_000
-"""Positions that come more rarely change by the motion as much as by noise: central differences, as exact ones."""
+"""With longer periods positions change by motion as much as by noise: central differences are used, as for exact positions."""
 MOVED_M: Final = 1.0
 """An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
 LEAST_NOISE_SAMPLES: Final = 8
@@ -65,7 +65,7 @@ def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps,
         wide, error = runs.slopes(place, width, sigma)
         now = ~known & (error <= LARGEST_ERROR_MPS)
         v, known, filtered = np.where(now, wide, v), known | now, filtered | now
-    # the widest tells who stands, at the ends of a track by one side alone
+    # the widest filter decides who stands still; at the ends of a track it is one-sided
     wide, error = runs.slopes(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
     stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
     return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~known & ~stands))
@@ -131,7 +131,7 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     inner = np.arange(1, len(values) - 1)
     share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
     beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
-    twice = np.abs(np.diff(beside))  # of two tracks where these meet: not finite, and not used
+    twice = np.abs(np.diff(beside))  # `whole` leaves out the values across two tracks
     whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 STEP_M: Final = 100.0
-SHAPE_M: Final = 0.01
-"""What a step may be out of shape in the other frame: longer than the step across it, or not at a right angle to it."""
-LENGTH_M: Final = 0.1
+SHAPE_TOLERANCE_M: Final = 0.01
+"""How much the two sides of a square of STEP_M may differ in length in the other frame, or be out of square (m)."""
+LENGTH_TOLERANCE_M: Final = 0.1
 """What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
 SAME_M: Final = 0.01
 
@@ -82,7 +82,7 @@ def _similarity(own: GeoFrame, theirs: GeoFrame, low: Floats, high: Floats) -> t
     along, across = along - start, across - start
     bent = np.hypot(*(across - along[:, ::-1] * (-1.0, 1.0)).T).max()
     lengths = np.hypot(*along.T)
-    if not (bent <= SHAPE_M and np.abs(lengths - STEP_M).max() <= LENGTH_M):
+    if not (bent <= SHAPE_TOLERANCE_M and np.abs(lengths - STEP_M).max() <= LENGTH_TOLERANCE_M):
         raise MapError(
             f"the log's coordinates ({own.reference!r}) cannot be moved into the map's ({theirs.reference!r}): {STEP_M:.0f} m would be "
             f"{lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; bring log and map into one projection"

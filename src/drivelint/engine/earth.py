@@ -29,7 +29,7 @@ def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFram
 
 
 def frame_of_log(trace: Trace) -> tuple[GeoFrame | None, str | None]:
-    """Return how the log itself says that its coordinates become those of a projection, and why that is of no use."""
+    """Return the frame that the log's own geo reference gives, or None and why that reference is unusable."""
     states = trace.tables["actor_state"]
     ends = [pc.min_max(states[axis]).as_py() for axis in ("x_m", "y_m")]
     if trace.geo_reference is None or any(end["min"] is None for end in ends):
@@ -52,7 +52,7 @@ def frame_of_map(environment: MapTables) -> GeoFrame | None:
 
 
 def place_rows(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:
-    """Set longitude and latitude of these drives: in `data_log`, which has their projection, or of each `finding` without any."""
+    """Set longitude and latitude of these drives in `data_log`, or of their findings that have none."""
     key, places = ("drive_id", "places_of_drives") if table == "data_log" else ("rowid", "places_of_findings")
     if ids:
         position = statement("earth/position", table=table, key=key, places=statement(f"earth/{places}"))

@@ -134,7 +134,7 @@ class JudgingSession:
         return True
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
-        """Judge the egos that do not rest."""
+        """Judge the egos that are not skipped in this part."""
         derive(self._con, self._tables, of_the_map=False)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(self._con, self._rules, self._params, margins=margins, keep_measure_series=series, may_retry=may_retry)

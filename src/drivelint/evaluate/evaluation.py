@@ -176,7 +176,7 @@ class Evaluation:
             self._execute(findings.margins_sql(binding.rule), binding)
 
     def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
-        """Whether courses are asked for, and kept rows of a table of outcomes are near misses."""
+        """Whether measure series are asked for, and some kept rows of a table of outcomes are near misses."""
         near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND is_near_miss(margin, near_margin)"
         return self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}"))
 
@@ -199,12 +199,12 @@ class Evaluation:
         return int(row[0]) if row else 0
 
     def _blame(self, binding: Binding, error: duckdb.Error) -> None:
-        """Make this rule an error for every subject that it was to judge; raise what another try may not meet."""
+        """Record this rule as an error for every drive and ego that it was to judge; raise the error if a retry may avoid it."""
         code, words = "rule_error", str(error).splitlines()[0]
         if isinstance(error, duckdb.OutOfMemoryException):
             if self.may_retry:
                 raise error
-            # the database tells of blocks, ever others
+            # the database's message names block sizes that differ from run to run
             code, words = "out_of_memory", "needs more memory than there is"
         self.con.execute(
             "INSERT INTO _error SELECT rule_no, drive_id, ego_id, $code, $reason FROM _todo WHERE rule_no = $no",

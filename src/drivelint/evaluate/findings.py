@@ -1,4 +1,4 @@
-"""Builds the SQL that keeps failing stretches, courses around them and around near misses, and margins."""
+"""Builds the SQL that stores failing stretches, the measure series around them and around near misses, and margins."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def stretches_sql(rule: Rule) -> str:
     invariant = rule.kind == "invariant"
     failed = ""
     if rule.quantifier == "eventually":
-        # its condition may well not hold at steps of a window that is kept, or unknown: no findings there
+        # a window that passes, or is unknown, may have steps that fail: these are no findings
         failed = f"""SEMI JOIN (SELECT * FROM _outcome WHERE rule_no = $_no AND verdict = 'fail') o
         ON j.drive_id = o.drive_id AND j.ego_id = o.ego_id AND j.ref_id = o.ref_id
             AND j.profile = o.profile{_same_object(rule, "o")}"""
@@ -36,7 +36,7 @@ def measure_series_sql(rule: Rule) -> str:
 
 
 def settled_measure_series_sql(rule: Rule) -> str:
-    """Return the SQL of near-miss courses for groups that the first pass settled."""
+    """Return the SQL of measure series around near misses for groups that the first pass settled."""
     steps_object = "coalesce(object_id, '')" if rule.per_object else "''"
     return _near(rule, statement("judging/near_groups", condition=condition_ctes(rule), object=steps_object))
 
@@ -63,7 +63,7 @@ def margins_sql(rule: Rule) -> str:
 
 
 def _same_object(rule: Rule, alias: str) -> str:
-    """A join's condition on the objects; rows of a rule that combines objects are of none."""
+    """Return the join condition that rows are about the same object; '' for a rule that combines objects."""
     return f" AND j.object_id = {alias}.object_id" if rule.combine == "each" else ""
 
 

@@ -81,7 +81,7 @@ def condition_ctes(rule: Rule) -> str:
     """
     has = rule.has_column
     measured = rule.sense != "holds"
-    # at least 1.5 m is kept by what geometry computes to be a nanometre less; more than 0 m is kept by whatever is more
+    # for >= and <= values are rounded, so that 1.5 m still keeps "at least 1.5 m" after the rounding errors of geometry
     exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"
     number = f"CASE WHEN isnan({{0}}::DOUBLE) THEN NULL ELSE {exact} END AS {{0}}"
     columns = [
@@ -98,14 +98,13 @@ def condition_ctes(rule: Rule) -> str:
     ]  # fmt: skip
     holds, gain, code = "holds", "0.0::DOUBLE", "code"
     if measured:
-        compare = f"(observed {rule.sense} required)"
-        holds = compare
+        holds = compare = f"(observed {rule.sense} required)"
         difference = "observed - required" if rule.sense[0] == ">" else "required - observed"
         gain = f"CASE WHEN isnan({difference}) THEN 0.0::DOUBLE ELSE {difference} END"
         if has("at_least"):
             proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"
             holds = f"CASE WHEN NOT at_least OR ({proven}) THEN {compare} END"
-            # known numbers and yet no answer: the bound did not reach
+            # the numbers are known, but only as a bound that does not decide
             code = f"coalesce(code, CASE WHEN ({holds}) IS NULL AND {compare} IS NOT NULL THEN 'only_a_bound' END)"
     return f"""_condition AS (
 {rule.sections["condition"]}

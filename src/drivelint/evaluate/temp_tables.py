@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.evaluate.sql_fragments import Binding
 
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
-"""What rules leave behind: what another connection judged is brought together with."""
+"""Tables that hold what rules found; those of a second connection are appended to them."""
 _MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 

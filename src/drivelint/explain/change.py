@@ -76,7 +76,7 @@ def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
 def _nearest(number: _Number, verdict: str) -> Change:
     """Look outwards on both sides at once until the verdict changes on one, then halve the last stretch there."""
     scale = abs(number.now) or 1.0
-    least = 0.0 if number.now >= 0 else -math.inf  # what is counted from nothing upwards stays so
+    least = 0.0 if number.now >= 0 else -math.inf  # a number that is not negative stays so
     sides = [_values(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
     none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
@@ -104,7 +104,7 @@ def _values(number: _Number, scale: float, least: float) -> list[float]:
 
 
 def _same(becomes: str, verdict: str) -> bool:
-    """Whether a verdict is no other one; what was decided and becomes unknown has met a value of no meaning."""
+    """Whether the verdict is the same; a decided one that becomes unknown counts as the same: such a value makes no sense."""
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 

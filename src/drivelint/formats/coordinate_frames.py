@@ -63,7 +63,7 @@ class TransformTree:
     ambiguous: set[str] = field(default_factory=set)
 
     def add(self, child: str, parent: str, t_ns: Times, poses: Poses, *, static: bool) -> None:
-        """Add all transforms of a frame. A second parent makes it ambiguous; static ones count from the last."""
+        """Add all transforms of a frame. A second parent makes the frame ambiguous; of static transforms the last holds."""
         known = self.edges.get(child)
         if known is not None and known.parent != parent:
             self.ambiguous.add(child)

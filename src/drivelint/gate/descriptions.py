@@ -31,7 +31,7 @@ DIFF_STATUS_TITLES: Final = {
     "lost": "Not fixed: not looked at any more",
     "fixed": "Fixed",
 }
-"""Standing -> heading, in the order shown; unchanged findings are counted only."""
+"""Diff status -> heading, in the order shown; unchanged findings are counted only."""
 
 
 def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[ComparedFinding]:
@@ -161,10 +161,10 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
     }
 
 
-def group_by_reason(opened: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
+def group_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
     """Return each reason with its rules and the number of additional unknown verdicts, most first."""
     found = [
         (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))
-        for reason, alike in counts.grouped(opened, lambda each: each.reason).items()
+        for reason, alike in counts.grouped(new_unknowns, lambda each: each.reason).items()
     ]
     return sorted(found, key=lambda item: (-item[2], item[0]))

@@ -205,7 +205,7 @@ class ResultLookup:
         row = at.row
         if gap := self._not_looked(drive_id, row):
             return gap
-        assert drive_id is not None  # noqa: S101 - for the type checker: else there is a gap
+        assert drive_id is not None  # noqa: S101 - for the type checker: without the drive, _not_looked returned a result above
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
             return LookupResult("none", "the log ends before it")

@@ -146,7 +146,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Lay the drive on the session without a rule, and ask what the library says of its egos and its data."""
+    """Fill the database with the drive, derive the library tables, and read from them what is known of its egos and data."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))

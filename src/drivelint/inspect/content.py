@@ -42,7 +42,7 @@ _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
     "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLES.items()},
     "foxglove": {(name, kind): role for name, role in bag.FOXGLOVE_ROLES.items() for kind in ("protobuf", "json")},
 }
-"""What is read of a log of each family: (schema, encoding) -> what as."""
+"""Message family -> (schema, encoding) -> what its messages are read as."""
 
 
 def size_bytes(path: Path) -> int:

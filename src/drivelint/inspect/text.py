@@ -28,7 +28,7 @@ _NAMED: Final = 6
 """Egos that a line names before it says how many more there are."""
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _TOLD: Final = "read through"
-"""How notes of the readers begin that the content tells anyway."""
+"""Reader notes that begin with this repeat what the content section says, and are left out."""
 _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
@@ -293,7 +293,7 @@ def _by_signal(ego: model.Ego) -> Table:
 
 
 def _by_rule(ego: model.Ego) -> Table:
-    """Return the rules that wait for the same together."""
+    """Return the undecidable rules, those that lack the same signals in one row."""
     grid = _grid("yellow", overflow="fold")
     waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):

@@ -45,7 +45,7 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
     if signal == "registration" and advice:
         return advice  # the map is not at fault
     name = log_format if log_format in FORMATS else "mapped"
-    # what a format has no place for goes into its tables
+    # what a format cannot hold is given in the Parquet tables of a converted log
     tables = TEXTS["where"]["canonical-parquet"].items()
     where = {key: f"drivelint convert --to parquet, and in its tables {table}" for key, table in tables}
     where |= TEXTS["where"].get(name, {})

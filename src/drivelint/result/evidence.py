@@ -35,7 +35,7 @@ _KEYS: Final = {
 PATH_S: Final = 5.0
 """How long before and after the moment the ways are kept."""
 PATH_STEP_NS: Final = 200_000_000
-"""A way has at most one point in so long."""
+"""A path has at most one point per time step of this length."""
 REACH_M: Final = (60.0, 300.0)
 """Least and largest reach of a scene around the ego."""
 SCENES_AT_ONCE: Final = 400

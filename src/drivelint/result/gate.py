@@ -82,7 +82,7 @@ class Difference:
     name: str = "new"
 
     def counts(self) -> dict[str, int]:
-        """Return standing -> number of findings, zeros included."""
+        """Return diff status -> number of findings, zeros included."""
         found = Counter(entry.standing for entry in self.entries)
         return {standing: found[standing] for standing in DIFF_STATUSES}
 

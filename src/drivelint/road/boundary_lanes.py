@@ -139,8 +139,8 @@ class LaneGeometry:
         """The ground between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
-    def course(self, z: Floats) -> Floats:
-        """Return the lane as `driving_side` takes it, (n, 4); `z`: its heights (m), NaN: not known."""
+    def driving_side_points(self, z: Floats) -> Floats:
+        """Return centre line, height and half width at each point, (n, 4), as `driving_side` takes them; `z`: heights (m), NaN: unknown."""
         return np.column_stack([self.centre, z, self.half_width])
 
     def station(self, place: Floats) -> float:
@@ -365,7 +365,7 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     if left != right:
         return "rht" if left > right else "lht"
     outside = [lane.line for lane in one_way.values() if lane.junction_id is None]
-    return driving_side.side_driven_on([line.course(np.full(len(line.s), np.nan)) for line in outside])
+    return driving_side.side_driven_on([line.driving_side_points(np.full(len(line.s), np.nan)) for line in outside])
 
 
 def crossings(

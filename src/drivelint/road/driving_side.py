@@ -30,7 +30,7 @@ _PROBES: Final = 20_000  # stations looked at, evenly spread
 
 
 class _Pieces(NamedTuple):
-    """The straight pieces of all courses, (m,): of which lane, where they begin and end (m, 4), how long, and their direction."""
+    """The segments of the centre lines of all lanes, (m,): lane, start and end (m, 4), length, direction."""
 
     lane: Indices
     begin: Floats

@@ -166,7 +166,7 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
             return None
         columns.append(dict(zip(places, values.T, strict=True)))
     rest = b"<trajectory/>".join(parts[::2])
-    # in a comment, a trajectory is none, and with attributes or empty it was not cut out: then it cannot be told which is whose
+    # a trajectory in a comment does not count, and one with attributes or without content was not cut out: the order is then unsure
     if b"<trajectory" in b"".join(_COMMENT.findall(rest)) or rest.count(b"<trajectory") != len(columns):
         return None
     return rest, columns

@@ -1,4 +1,4 @@
-"""Where the edges of a strip's lanes lie, and at which stations they have to be sampled."""
+"""The edges of the lanes of one lane section (or one side of it), and the stations at which they must be sampled."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Edges:
 
 
 class Evaluator:
-    """Evaluates the edges of one strip."""
+    """Evaluates the lane edges of one lane section."""
 
     def __init__(self, road: Road, strip: LaneSection) -> None:
         self.road, self.strip = road, strip
@@ -102,7 +102,7 @@ class Evaluator:
 
 
 def sample_stations(evaluator: Evaluator, breaks: Floats) -> Floats:
-    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_M of every edge."""
+    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
     s = _divide(breaks, np.ceil(np.diff(breaks) / SPACING_M - 1e-9))
     for _ in range(10):
         parts = _deviation(evaluator, s)

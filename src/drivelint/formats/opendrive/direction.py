@@ -161,10 +161,10 @@ class DrivingSideStatements:
 def _disagreements(
     said: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
-    """Report witnesses that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do then, if no side helps."""
+    """Report statements that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do if no given side helps."""
     if len({w.side for w in said}) > 1:
         first, second = said[:2]
-        # what says the same as the option is taken once the option is left out
+        # if the second statement agrees with the option, leaving out the option changes nothing
         found = advice or correction_hint(first.side, first.source if second.side != first.side else "")
         opinions = ", ".join(f"{w.text} {w.side}" for w in said)
         message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {found}."

@@ -82,7 +82,7 @@ def counter_clockwise(outline: Floats) -> Floats:
         outline = outline[:-1]
     x, y = (outline - outline[0]).T
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-    return outline if area >= -1e-6 else outline[::-1]  # a line has no sense of turning, but rounding has
+    return outline if area >= -1e-6 else outline[::-1]  # the area of a line is 0 except for rounding: keep its order
 
 
 def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:

@@ -117,7 +117,7 @@ def boundary_rows(lanelet: Lanelet) -> Rows:
     lane_no, along = lanelet.lane.number, lanelet.along
     inside = [lane for lane in lanelet.strip.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)]
     inner = max(inside, key=lambda lane: abs(lane.number)).marks if inside else lanelet.strip.centre_marks
-    # seen from a lane, the centre line's left-to-right order is its own on the left of the road
+    # the centre line's marks are named left to right; for lanes left of the road that is the order seen from the lane
     swap_inner = bool(inside) or lane_no < 0
     outer_side, inner_side = ("left", "right") if (lane_no > 0) == (along > 0) else ("right", "left")
     rows = _mark_rows(lanelet, outer_side, lanelet.lane.marks, swap=False)

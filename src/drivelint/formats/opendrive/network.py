@@ -115,7 +115,7 @@ class Road:
         return [(self.road_id, strip.section, lane.number) for strip in self.strips for lane in strip.lanes]
 
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
-        """Return the strips that hold lanes of that side, in order of station."""
+        """Return the lane sections with lanes on that side, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
     def place(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
@@ -297,7 +297,7 @@ SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 def _speeds(
     elements: Iterable[etree._Element], station: str, origin: float, quality: MapQuality, child: str | None = None
 ) -> tuple[SpeedLimit, ...]:
-    """Read limits; with `child` the station stands on an element around them, whose lack of a limit is a record too."""
+    """Read speed limits; with `child` the limit is in a child element, and an element without one is a record too."""
     speeds = []
     for element in elements:
         start = origin + number(element, station, 0.0)

@@ -59,13 +59,13 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 
 def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
-    """Build the lanes as they run: as on roads with both directions, and once more if their layout shows that this is not one."""
+    """Build the lanes as for two-way traffic; build them again if their layout shows that the directions are wrong."""
     witnesses = DrivingSideStatements.collect(net, request)
     first, noted = witnesses.two_way_direction(), len(quality.rows)
     lanes = build(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            lane.line.course(lane.z)
+            lane.line.driving_side_points(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]

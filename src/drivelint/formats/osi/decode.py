@@ -74,7 +74,7 @@ VECTORS: dict[str, dict[str, str]] = {
 """Vector of `moving_object.base` -> our column -> its coordinate."""
 _LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
 _NEVER_ZERO = frozenset({"position", "dimension"})
-"""Vectors that say nothing without any coordinate, even of a writer that leaves zeros out."""
+"""Vectors that are unknown if all coordinates are missing, even if the writer leaves zeros out."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Decoder:
     def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
         """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
         self._path, self._name, self.schema_id = path, name, schema_id
-        self.lights: Mapping[str, str] = {}  # of the head: which bulbs are one light
+        self.lights: Mapping[str, str] = {}  # bulb id -> traffic light id, from the first message
         types = parse_schema(path, name, descriptor_set)
         self._decode = message_decoder(path, types, name, FIELD_TREES[name])
         kind = self._decode([]).type
@@ -195,7 +195,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     beside.traffic_sign.extend(truth.traffic_sign)
     beside.traffic_light.extend(osi_heads.bulb_for_map(bulb, lights) for bulb in truth.traffic_light)
     beside.road_marking.extend(truth.road_marking)
-    # a map is known by the tag that it begins with, so that lanes stand before what stands beside them
+    # the map format is recognised by its first tag, so lanes must come first
     content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
     return head._replace(lanes=content)
 

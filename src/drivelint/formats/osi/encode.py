@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask, Times
 
 _OPTIONAL: Final = frozenset({"length_m", "width_m", "height_m", "z_m"})
-"""Coordinates that may be left out of a vector; without any other one the whole vector is."""
+"""Coordinates that a vector may lack; if another one is missing, the whole vector is left out."""
 _VEHICLES: Final = {
     "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
     "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",

@@ -228,7 +228,7 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
             across.append((lane, s, float(upwards @ tangent)))
     if held & {lane.lanelet_id for lane, _, _ in across}:
         across = [each for each in across if each[0].lanelet_id in held]
-    elif any(along > _ACROSS for _, _, along in across):  # its picture stands upright for whom it holds
+    elif any(along > _ACROSS for _, _, along in across):  # the symbol reads upright for the traffic that it is for
         across = [each for each in across if each[2] > 0]
     name = str(mark.id.value)
     if not across:

@@ -47,7 +47,7 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     """
     bounds = {b.id.value: b for b in truth.lane_boundary}
     directions = [lane.classification for lane in truth.lane if lane.classification.HasField(_DIRECTION)]
-    # a writer of whose lanes some say true, and none false, leaves out what is false
+    # if lanes say true or nothing, and never false, the writer leaves false out
     drops = {said.centerline_is_driving_direction for said in directions} == {True}
     found: dict[int, PhysicalLane] = {}
     for lane in truth.lane:
@@ -159,7 +159,7 @@ def _bound(centre: Floats, points: Floats) -> Floats:
 
 
 def _whole(side: Floats, centre: Floats) -> Floats:
-    """Return a side (n, 2) led on beside the centre line (m, 2) to both of its ends: what is cut off is no gap in the road.
+    """Return a side (n, 2) extended parallel to the centre line (m, 2) up to both ends: a boundary that is cut off there is no gap.
 
     esmini draws a boundary up to its last marked point, which may be metres before the lane's end.
     """

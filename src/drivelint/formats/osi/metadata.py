@@ -65,7 +65,7 @@ class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     value: str | None = None
 
 
-# planned here, under the import's lock: see ingest.mapping
+# decoders are built at import: building one later in several threads is unsafe, see formats/tables/mapping.py
 DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, Event))
 EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
 

@@ -40,7 +40,7 @@ _SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIEL
 
 
 class Declarations:
-    """Messages and enumerations as data declare them in tables of these names: name -> the words of each field or value."""
+    """Messages and enumerations declared in TOML tables `messages` and `enums`: name -> the words of each field or value."""
 
     def __init__(self, *tables: Mapping[str, Any]) -> None:
         """Take several tables together."""
@@ -55,7 +55,7 @@ class Declarations:
 def add_field(
     message: DescriptorProto, said: Sequence[str], package: str, enums: Container[str]
 ) -> descriptor_pb2.FieldDescriptorProto:
-    """Add a field to a message: `said` is its name, number and type, where `[]` repeats; types that are no values are of `package`."""
+    """Add a field to a message: `said` is its name, number and type (`[]`: repeated); a message or enumeration type is of `package`."""
     name, number, kind = said
     plain = kind.removesuffix("[]")
     added = message.field.add(name=name, number=int(number))

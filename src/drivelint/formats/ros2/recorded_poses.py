@@ -77,7 +77,7 @@ def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
 
 
 def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], **columns: Any) -> RecordedPoses:
-    """Return poses, place and turn, with their own times, all of whose other columns that are not given are not known."""
+    """Return poses (place, turn) with their own times; columns that are not given are unknown."""
     n = len(poses[0])
     unknown: dict[str, Any] = {
         **{name: np.full((n, 3), np.nan) for name in ("size", "velocity", "acceleration")},
@@ -171,7 +171,7 @@ def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times)
 
 
 def _other_frame(states: States, swapped: Vectors, along: Mask, what: str) -> list[QualityFinding]:
-    """Read velocities in the other frame where they then are what the positions do, and are not as they should be given."""
+    """Take velocities as given in the other frame if they fit the positions there, and do not in the frame that they should be in."""
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
     chosen = np.zeros(len(states.ids), np.bool_)

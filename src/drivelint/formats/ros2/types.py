@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    Wrong = Callable[[str], TraceError]
+    MakeError = Callable[[str], TraceError]
 
 NUMPY_CODES: Final = {
     "bool": "u1", "byte": "u1", "char": "u1", "uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4",
@@ -80,7 +80,7 @@ def parse(path: Path, name: str, text: bytes) -> Types:
     return types
 
 
-def _fields(body: str, wrong: Wrong) -> Iterator[Field]:
+def _fields(body: str, wrong: MakeError) -> Iterator[Field]:
     for raw in body.splitlines():
         line = raw.split("#")[0].strip()
         if not line:
@@ -97,7 +97,7 @@ def _fields(body: str, wrong: Wrong) -> Iterator[Field]:
         yield Field(match["name"], match["type"], count)
 
 
-def _resolved(kind: str, container: str, defined: set[str], wrong: Wrong) -> str:
+def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) -> str:
     """Return the full name of a member's type: another package's, the same package's, or a primitive."""
     if kind in NUMPY_CODES or kind in TEXT_TYPES:
         return kind
@@ -111,7 +111,7 @@ def _resolved(kind: str, container: str, defined: set[str], wrong: Wrong) -> str
     return full
 
 
-def _refuse_loops(name: str, types: Types, wrong: Wrong) -> None:
+def _refuse_loops(name: str, types: Types, wrong: MakeError) -> None:
     done: set[str] = set()
 
     def visit(kind: str, inside: tuple[str, ...]) -> None:

@@ -268,7 +268,7 @@ def _csv(path: Path) -> pa.Table:
 
 
 def _lines(content: bytes) -> pa.Table | None:
-    """Read a log with an element on each line as a table that quotation marks cut; None where anything looks otherwise."""
+    """Read a log with one element per line as CSV with the quotation mark as separator; None if any line looks different."""
     begin = content.find(b"<fcd-export")
     first = re.search(rb'^[ \t]*<vehicle(?: +[\w:.-]+="[^"<\n]*")+ */>(?=\r?$)', content[begin:], re.MULTILINE)
     if first is None or b"&" in content or not _is_plain(content[: content.find(b">", begin) + 1]):

@@ -207,7 +207,7 @@ def _beside(line: Floats, off: float) -> Floats:
     normal = np.column_stack([-unit[:, 1], unit[:, 0]])
     before, after = np.vstack([normal[:1], normal]), np.vstack([normal, normal[-1:]])
     between = before + after
-    # as far from both pieces that meet in a point
+    # mitre: at a corner the point keeps the distance from both segments
     size = np.maximum((between * before).sum(1), 2 / _LONGEST_MITRE**2)
     found: Floats = line + off * between / size[:, None]
     return found
@@ -225,7 +225,7 @@ def _connect(root: etree._Element, net: _Net) -> None:
         net.lanes[name].successors = tuple(dict.fromkeys(targets))
     _bend(net)
     inside = [lane for edge in net.edges if edge in net.internal for lane in net.edges[edge]]
-    for _ in range(2):  # a way through a junction has two parts where it is waited in the middle
+    for _ in range(2):  # a connection has two internal lanes where vehicles wait inside the junction
         _limits(net.lanes, follows, inside)
 
 
@@ -249,7 +249,7 @@ def _bend(net: _Net) -> None:
 
 
 def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
-    """Return a line with a point more near its first (0) or last (-1), in the direction of the lane that it joins there."""
+    """Return the line with one point added near its start (0) or end (-1), in the direction of the lane that it joins there."""
     line = (other.left + other.right) / 2
     step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
     step = step / np.hypot(*step)

@@ -58,7 +58,7 @@ def _to_centre(states: States, mapping: Mapping) -> None:
         log["z"] = log["z"] + log.get("up", zero)
     if "vx" in log:
         turning = log["yaw_rate"] if "yaw_rate" in log else _yaw_rate(states)
-        # a single sample has no rate; its lever's share is then left out
+        # the yaw rate of a single sample is unknown: its velocity is not corrected for the reference point
         turning = np.where(np.isnan(turning), 0.0, turning)
         log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
 

@@ -104,7 +104,7 @@ def _in_summary(lines: Iterable[FindingLine]) -> set[Key]:
 
 
 def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
-    """Return the moments of one drive, in time order, from its findings and near misses.
+    """Return the incidents of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
     of a second since the drive's start; `leading`: it is among those that tell what happened; `on_earth`: a finding

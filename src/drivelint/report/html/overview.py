@@ -113,12 +113,12 @@ def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
     ]
 
 
-def verdict_shares(told: Mapping[str, int]) -> list[dict[str, Any]]:
+def verdict_shares(verdicts: Mapping[str, int]) -> list[dict[str, Any]]:
     """Return each verdict with its number and its place and width in a bar, in percent."""
-    total, at, found = sum(told.values()), 0.0, []
+    total, at, found = sum(verdicts.values()), 0.0, []
     for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
-        width = 100 * told[verdict] / total if total else 0.0
-        found.append({"verdict": verdict, "n": told[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
+        width = 100 * verdicts[verdict] / total if total else 0.0
+        found.append({"verdict": verdict, "n": verdicts[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
         at += width
     return found
 
@@ -143,12 +143,12 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
 
 
 def first_page_texts(
-    rules: Sequence[Mapping[str, Any]], told: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
+    rules: Sequence[Mapping[str, Any]], summaries: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
     """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
     leading = [
-        line for story in told for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_
+        line for story in summaries for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_
     ]
     profiles = {line.row["profile"] or "" for line in lines}
     return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)

@@ -184,7 +184,7 @@ def _lines(
 
 
 def _whose(row: Row) -> tuple[Any, ...]:
-    """Return what tells a course's finding or near miss apart."""
+    """Return the key of the finding or near miss that a measure series belongs to."""
     told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
     return (row.get("finding_id"), *told)
 
@@ -224,7 +224,7 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
 def _section(
     row: Row, tracks: Sequence[Timeline], seen: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
 ) -> dict[str, Any]:
-    """Return a drive with its egos: the timeline, the moments and the parties of each."""
+    """Return a drive with the actors involved and its egos: of each ego the timeline and the incidents."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = separate_shared_rules(tracks)
     without = sorted({m["ego_id"] for m in seen} - {t.ego_id for t in tracks})

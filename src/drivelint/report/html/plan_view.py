@@ -1,4 +1,4 @@
-"""The plan view of a moment: lanes, boxes, ways, danger spaces and the least distance, as numbers for an SVG.
+"""The plan view of an incident: lanes, boxes, paths, danger spaces and the least distance, as numbers for an SVG.
 
 The road runs to the right as the ego drives it. What lies on the map is drawn in the map's units (see `road`) under one matrix, so
 that a script can move it; names and distances are in viewBox units, y down.

@@ -151,7 +151,7 @@ def _area(ring: Points) -> float:
 
 
 def _along(line: Points) -> NDArray[np.float64]:
-    """Return the way from the first point of a line to each."""
+    """Return the distance along a line from its first point to each point."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 
