@@ -106,9 +106,9 @@ lost_passable_object AS (
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
 ),
--- Steps at which an object without a position on the corridor may be the one that is passed. A vehicle that is not in plain view is not in
--- the part of the lane ahead that is in plain view. A vehicle that is certainly behind the ego is not the one that the ego goes round: that
--- one is ahead of the ego or beside it.
+-- Steps at which an object without a position on the corridor may be the one that is passed. A vehicle that is not seen cannot be in the
+-- part of the lane ahead that is in plain view. A vehicle that is certainly behind the ego is not the one that the ego goes round: that one
+-- is ahead of the ego or beside it.
 possible_pass AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
     FROM hidden h

@@ -11,5 +11,5 @@ CREATE OR REPLACE MACRO is_judged(value, t_ns, t_start_ns, t_end_ns, edge_s) AS
 
 -- A filtered value if it decides: it is above the limit as it is, or it is within the limit even if the filter flattened its peak. Else
 -- NULL.
-CREATE OR REPLACE MACRO peak_sure_at_most(value, peak, most) AS
-    CASE WHEN value > most OR value + peak <= most THEN value END;
+CREATE OR REPLACE MACRO peak_sure_at_most(value, rise, most) AS
+    CASE WHEN value > most OR value + rise <= most THEN value END;

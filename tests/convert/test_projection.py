@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyarrow as pa
@@ -13,14 +13,15 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError
 from drivelint.formats import read_trace
-from tests.convert.test_same_verdicts import TO, Target
-from tests.engine.test_common_frame import FRAMES, LOG, in_frame, judged, numbers, plain, road
+from tests.engine.frames import FRAMES, LOG, in_frame, judged, numbers, plain, road
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.drive.trace import Trace
 
+Target = Literal["mcap", "parquet"]
+TO: tuple[Target, ...] = ("mcap", "parquet")
 REFERENCE, OFFSET = FRAMES[3]
 
 

@@ -14,10 +14,19 @@
 -- near_margin = 0.5
 -- reads = ["lane_change"]
 -- requires = ["map", "registration", "ego_size"]
--- [params.window_s] default = 4.0 unit = "s" why = "our default: time for a driver's reaction and the braking that it leads to; lane_change
--- looks at the follower for the same time" [params.decel_mps2] default = 2.0 unit = "m/s2" why = "our default: more than letting off the
--- accelerator or braking in comfort" # Draft: why the follower braked is a judgement. The rule applies only where the follower was too near
--- to stop before it reached the ego's place.
+--
+-- [params.window_s]
+-- default = 4.0
+-- unit = "s"
+-- why = "our default: time for a driver's reaction and the braking that it leads to; lane_change looks at the follower for the same time"
+--
+-- [params.decel_mps2]
+-- default = 2.0
+-- unit = "m/s2"
+-- why = "our default: more than letting off the accelerator or braking in comfort"
+--
+-- # Draft: why the follower braked is a judgement. The rule applies only where the follower was too near to stop before it reached the
+-- # place of the ego.
 --
 -- [reasons.lane_change_begin_unseen]
 -- says = "the log does not show where the lane change began"
