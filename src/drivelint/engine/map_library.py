@@ -70,7 +70,7 @@ class MapLibrary:
                 "give the right --map, or --map-offset"
             )
         if environment.lanes_source == "default":
-            assert environment.lanes is not None  # noqa: S101 - a reader that guesses says what
+            assert environment.lanes is not None  # noqa: S101 - `lanes` is None only where the map gives each lane's direction
             headings = self._headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load(source, trace, voted)

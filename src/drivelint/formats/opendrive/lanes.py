@@ -192,7 +192,7 @@ def _adjoin(a: Lanelet, b: Lanelet) -> None:
 
 
 def _join_sides(road: Road, lanes: BuiltLanes) -> None:
-    """Adjoin the innermost lanes of strips that hold one side only to the lane across that they lie longest beside."""
+    """Make neighbours of the innermost lanes of one-sided lane sections: each with the lane across the centre that it adjoins longest."""
     built = [lanes.built[key] for key in road.lane_keys if key in lanes.built]
     for a in built:
         inward = "right" if (a.lane.number > 0) == (a.along > 0) else "left"
