@@ -17,6 +17,7 @@ import pytest
 import typer
 
 from drivelint import __version__, cli
+from drivelint.catalogue import load_rules
 from drivelint.drive.trace import DriveInput
 from drivelint.result.request import RunRequest
 from tests.shared_data import ROOT
@@ -324,6 +325,45 @@ def test_rules_list_takes_the_selectors_of_check(ran: Ran) -> None:
     code, _, err = ran("rules", "list", "kind:invarient")
     assert code == 2
     assert "no rule has the kind 'invarient'; did you mean 'invariant'?" in err
+
+
+@pytest.mark.parametrize("begins", ["r162", "ukhc.r162", "r162.return-gap"])
+def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
+    code, out, _ = ran("rules", "show", begins)
+    shown = [
+        line for line in out.splitlines() if line in {f"{rule.id}: {rule.title}" for rule in load_rules().values()}
+    ]
+    assert code == 0
+    assert (
+        [line.split(":")[0] for line in shown]
+        == [
+            rule_id
+            for rule_id in load_rules()
+            if begins in (rule_id[: len(begins)], rule_id.partition(".")[2][: len(begins)])
+        ]
+        != []
+    )
+    assert ran("rules", "show", "nothing-like-it")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"PK\x03\x04rest", "a zip archive: unpack it"),
+        (b"\x1f\x8b\x08rest", "compressed with gzip: unpack it"),
+        (b"\x28\xb5\x2f\xfdrest", "compressed with zstd: unpack it"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "a pointer of Git LFS"),
+    ],
+)
+@pytest.mark.parametrize("name", ["log.csv", "log.mcap", "log.osi", "log.parquet", "map.xodr"])
+def test_a_file_that_holds_the_file_is_named_as_such(
+    name: str, content: bytes, told: str, tmp_path: Path, ran: Ran
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    inputs = [TRACES[0], "--map", str(tmp_path / name)] if name == "map.xodr" else [str(tmp_path / name)]
+    code, _, err = ran("check", *inputs, *(ON_ROAD[2:] if name == "map.xodr" else ()))
+    assert code == 4
+    assert f"{name}: {told}" in err
 
 
 def test_rules_show_tells_where_a_rule_is_from(ran: Ran) -> None:

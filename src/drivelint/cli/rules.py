@@ -39,13 +39,17 @@ def list_(
 
 
 @app.command("show")
-def show(rule_id: Annotated[str, argument("ID", "The rule's id.")], rules_dir: options.RulesDirs = None) -> None:
+def show(
+    rule_id: Annotated[str, argument("ID", "The rule's id, or how it begins, with or without its pack.")],
+    rules_dir: options.RulesDirs = None,
+) -> None:
     """Show one rule: question, clause, parameters, SQL."""
     from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
 
     rules = load_rules(tuple(rules_dir or ()))
-    for rule in [rules[rule_id]] if rule_id in rules else select_rules(rules, [rule_id], []):
+    begun = [rule for rule in rules.values() if rule.id.startswith((rule_id, f"{rule.pack}.{rule_id}"))]
+    for rule in [rules[rule_id]] if rule_id in rules else begun or select_rules(rules, [rule_id], []):
         print_rich(rules_text.rule_details(rule))
         print_rich(rules_text.source(rule), soft_wrap=True)
 

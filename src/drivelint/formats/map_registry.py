@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
+from drivelint.formats.probe import wrapping
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ def read_source(path: Path) -> MapSource:
         raise _too_large(str(path), size)
     if not content:
         raise MapError(f"map {path} is empty: give the complete file")
+    if (told := wrapping(content)) is not None:
+        raise MapError(f"map {path}: {told}")
     return MapSource(path.name, content)
 
 

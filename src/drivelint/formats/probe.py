@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -12,6 +12,18 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import IngestOptions, Recording
 
 HEAD_BYTES = 4096
+WRAPPINGS: Final = {
+    b"PK\x03\x04": "a zip archive: unpack it",
+    b"\x1f\x8b": "compressed with gzip: unpack it",
+    b"\x28\xb5\x2f\xfd": "compressed with zstd: unpack it",
+    b"version https://git-lfs": "a pointer of Git LFS, not the file itself: fetch that with git lfs pull",
+}
+"""What a file begins with that holds another one -> what it is, and what to do."""
+
+
+def wrapping(head: bytes) -> str | None:
+    """Return what a file with these first bytes is, if it only holds the file that is meant, and what to do."""
+    return next((told for magic, told in WRAPPINGS.items() if head.startswith(magic)), None)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from drivelint.formats.files import identify, is_drive_folder
 from drivelint.formats.film import reader as film
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
-from drivelint.formats.probe import HEAD_BYTES, Probe, Reader
+from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table
 
@@ -85,6 +85,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
+    if (told := wrapping(head)) is not None:
+        raise TraceError(f"{path}: {told}")
     suffix = path.suffix.lower()
     if suffix == ".osi" and not osi_file.is_osi_trace(head, path.stat().st_size):
         raise TraceError(
