@@ -221,8 +221,8 @@ SELECT
     CASE
         WHEN r.has_access THEN true
         WHEN r.may_be_reached THEN NULL
-        -- An ego that soon leaves the lanes (r.ahead) does not come back over the line before that, and an ego that just came from off the
-        -- lanes (r.behind) was not on this side before: a short view is enough in these cases.
+        -- To rule out access, the ego must be seen for 30 m behind and ahead. Less is enough behind if it just came from off the lanes
+        -- (r.behind), and ahead if it soon leaves them (r.ahead): it cannot have crossed the line in between.
         WHEN (n.seen_behind_m >= 30 OR r.behind OR lo.least_before_m <= n.out_m - back_in_lane_m()) AND (n.seen_ahead_m >= 30 OR r.ahead OR lo.least_after_m <= n.out_m - back_in_lane_m()) THEN false
     END AS access
 FROM numbered_step n

@@ -7,8 +7,8 @@ WITH overtaking_excursion AS (
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
     LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = x.t_back_ns
-    -- At t0 the running chain is still the one that the ego leaves. Measured from a lane that it does not drive yet, the ego is always
-    -- outside.
+    -- Only excursions from the chain that is the running one at t0. From a chain that the ego enters later, it is outside all the time
+    -- before, which is no excursion.
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
 -- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.

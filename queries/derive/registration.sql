@@ -2,11 +2,11 @@
 -- (or on a shoulder, where some drives are for most of the time) in at least 80 % of the steps. It drives with the traffic in at least 60 %
 -- of the moving steps; steps of an overtake in the opposing lane are left out, because a short drive may be little else. Its median
 -- distance from the centre line is at most 1.2 m (half a lane: with a map shifted by one lane, 100 % of the steps are still on a lane); the
--- median is taken outside such an overtake if enough steps lie outside one. The map also fits if three of four other vehicles drive with
--- their lanes, and the ego was against its own lane for longer than an overtake takes: then the ego is on the wrong side. The ego may be
--- off the lanes or far from their middle for a while. The map still fits if the ego keeps to the middle of a lane before and after that
--- time, on a road of the same direction or on two roads that cross: the map fits there, and a log is not shifted against its map for a
--- while only.
+-- median is taken outside such an overtake if enough steps lie outside one. The map also fits if at least three quarters of the other
+-- vehicles drive with their lanes, and the ego was against its own lane for longer than an overtake takes: then the ego is on the wrong
+-- side. The ego may be off the lanes or far from their middle for a while. The map still fits if the ego keeps to the middle of a lane
+-- before and after that time, on a road of the same direction or on two roads that cross: the map fits there, and a log is not shifted
+-- against its map for a while only.
 WITH opposing_step AS (
     SELECT DISTINCT x.drive_id, x.ego_id, st.t_ns
     FROM excursion x

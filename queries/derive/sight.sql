@@ -68,7 +68,8 @@ hidden_place AS (
         JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
             AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
         UNION ALL
-        -- Nothing blocks the sight: min() ignores NULL. A left join with blocks_sight in its condition would be a nested loop.
+        -- A row with NULL for each step, for where nothing blocks the sight: min() ignores it otherwise. A left join with blocks_sight in
+        -- its condition would be a nested loop.
         SELECT drive_id, ego_id, t_ns, NULL FROM lane_place
     )
     GROUP BY drive_id, ego_id, t_ns

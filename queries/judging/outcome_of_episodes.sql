@@ -1,14 +1,14 @@
 -- One row per episode of an invariant's `_judged`.
 INSERT INTO _outcome BY NAME
 WITH _applicable_step AS (SELECT * FROM _judged WHERE applies IS DISTINCT FROM false
-), _key_with_break AS (
+), _key_summary AS (
     SELECT drive_id, ego_id, object_id, profile, label, count(*) <> max(k) - min(k) + 1 OR min(seg) <> max(seg) AS broken
     FROM _applicable_step GROUP BY ALL
 {steps_with_episode}
 ), _step_of_any_episode AS (
     SELECT * FROM _step_with_episode UNION ALL BY NAME
     SELECT l.*, 0 AS episode
-    FROM _applicable_step l SEMI JOIN (SELECT * FROM _key_with_break WHERE NOT broken) f USING (drive_id, ego_id, object_id, profile, label)
+    FROM _applicable_step l SEMI JOIN (SELECT * FROM _key_summary WHERE NOT broken) f USING (drive_id, ego_id, object_id, profile, label)
 ), _episode AS (
     SELECT drive_id, ego_id, object_id, profile, label, episode, count(*) AS n_expected, count(holds) AS n_judged,
         count(*) FILTER (NOT holds) AS n_fail, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns,

@@ -12,7 +12,7 @@ WITH _parts AS (
         amount(observed, unit) AS measured
     FROM query_table(verdict_table) n
     LEFT JOIN _worded w USING (rule_no, cause, start_ns)
-), _told AS (
+), _parts_with_told AS (
     SELECT *, CASE
         WHEN reason IS NOT NULL AND (verdict <> 'unknown' OR code <> 'applies_unknown') THEN words
         WHEN verdict = 'unknown' THEN CASE code
@@ -79,4 +79,4 @@ SELECT *, coalesce(replace(label, '_', ' ') || ': ', '')
         WHEN 'unknown' THEN code = 'only_a_bound' AND bound IS NOT NULL AND asked IS NOT NULL
         WHEN 'not_applicable' THEN false
         ELSE code <> 'nobody_there' AND sense <> 'holds' AND observed IS NOT NULL AND required IS NOT NULL END, false) AS reason_measures
-FROM _told;
+FROM _parts_with_told;

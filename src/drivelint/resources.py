@@ -21,6 +21,6 @@ def folder(name: str) -> Path:
 
 
 @cache
-def facts(module_file: str, name: str) -> dict[str, Any]:
+def toml_beside(module_file: str, name: str) -> dict[str, Any]:
     """Return what the TOML file `name` beside a module or file (its `__file__`) says."""
     return tomllib.loads((Path(module_file).parent / name).read_text(encoding="utf-8"))

@@ -35,7 +35,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id, e.speed_mps <= $v_ma
     CASE
         WHEN r.object_id IS NULL THEN NULL
         WHEN s.t_ns = r.t_ns THEN r.gap_m
-        -- After the two boxes have touched, there is no distance to restore, and the vehicle has not gone.
+        -- After the two boxes have touched, it is not known whether the distance was restored or the vehicle has gone.
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
         WHEN l.t_ns IS NULL THEN NULL
         WHEN l.object_id = s.object_id THEN l.gap_m

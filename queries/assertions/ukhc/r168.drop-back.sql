@@ -53,7 +53,7 @@ WITH lead_step AS (
 )
 SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, s.object_id,
     CASE WHEN s.cutter_id IS NULL OR NOT s.lead_is_known THEN NULL
-        -- After the two boxes have touched, there is no gap to restore, and the vehicle has not gone.
+        -- After the two boxes have touched, it is not known whether the gap was restored or the vehicle has gone.
         WHEN bool_or(coalesce(p.clearance_m <= 0, false)) OVER (PARTITION BY s.ref_id ORDER BY s.t_ns) THEN NULL
         WHEN s.ahead_id = s.cutter_id THEN s.gap_m >= $time_gap_s * stopping_factor(c.weather) * s.ego_speed_mps
         WHEN s.t_ns < s.t_last_ns OR s.t_ns <= s.in_place_ns THEN false

@@ -92,16 +92,16 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     rules = [rule for rule in found if not isinstance(rule, RuleError)]
     for error in refused:
         say(f"REFUSED {error}")
-    proofs = []
-    for proof in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
-        say(mutation.result_text(proof))
-        proofs.append(proof)
+    results = []
+    for result in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
+        say(mutation.result_text(result))
+        results.append(result)
     strange = [] if only or refused else mutation.entries_without_rule(rules)
     for line in strange:
         say(f"FAIL {line}")
-    say(mutation.summary(proofs))
-    enough = only or mutation.noticed_share(proofs) >= mutation.LEAST_NOTICED_SHARE
-    good = enough and not strange and all(proof.ok for proof in proofs)
+    say(mutation.summary(results))
+    enough = only or mutation.noticed_share(results) >= mutation.LEAST_NOTICED_SHARE
+    good = enough and not strange and all(result.ok for result in results)
     return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
 
 

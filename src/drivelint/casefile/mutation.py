@@ -83,10 +83,10 @@ def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResu
         yield from pool.imap(judge_mutants, rules)
 
 
-def noticed_share(proofs: Sequence[MutationResult]) -> float:
+def noticed_share(results: Sequence[MutationResult]) -> float:
     """Return the share of the mutants of stable rules that some case noticed."""
-    n = sum(proof.n for proof in proofs if proof.stable)
-    return sum(proof.noticed for proof in proofs if proof.stable) / n if n else 1.0
+    n = sum(result.n for result in results if result.stable)
+    return sum(result.noticed for result in results if result.stable) / n if n else 1.0
 
 
 def result_text(result: MutationResult) -> str:
@@ -102,15 +102,15 @@ def result_text(result: MutationResult) -> str:
     )
 
 
-def summary(proofs: Sequence[MutationResult]) -> str:
+def summary(results: Sequence[MutationResult]) -> str:
     """Return the counts of all results in one line."""
-    if not proofs:
+    if not results:
         return "no rule was tested"
-    stable = [proof for proof in proofs if proof.stable]
+    stable = [result for result in results if result.stable]
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"
-    n, noticed = sum(proof.n for proof in stable), sum(proof.noticed for proof in stable)
-    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({noticed_share(proofs):.1%})"
+    n, noticed = sum(result.n for result in stable), sum(result.noticed for result in stable)
+    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
 
 
 def judge_mutants(rule: Rule) -> MutationResult:

@@ -7,13 +7,13 @@ from functools import cache
 from itertools import chain
 from typing import Final
 
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 from drivelint.sql import store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
 
-_FACTS: Final = facts(__file__, "allowed.toml")
+_FACTS: Final = toml_beside(__file__, "allowed.toml")
 NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES = (
     frozenset[str](_FACTS[name]) for name in ("nodes", "sources", "expressions", "table_functions", "refused_names")
 )

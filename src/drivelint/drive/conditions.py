@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_FACTS: Final = facts(__file__, "conditions.toml")
+_FACTS: Final = toml_beside(__file__, "conditions.toml")
 DRIVE_CONDITION_VALUES: Final = {name: tuple(about["words"]) for name, about in _FACTS["condition"].items()}
 """Condition -> its words, of a drive: those by which rules are restricted, and whether the automated driver drives."""
 CONDITION_VALUES: Final = {name: words for name, words in DRIVE_CONDITION_VALUES.items() if name != "engaged"}

@@ -70,16 +70,16 @@ LARGEST_HALF_BOX_M: Final = 6.0
 
 
 def resolve(
-    states: States, step: Steps, actors: Actors, *, derived: bool, parted: SplitTracks = NO_SPLIT
+    states: States, step: Steps, actors: Actors, *, derived: bool, split: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
     """Make what contradicts the motion unknown, in place (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nobody. `parted`: what was not believed before.
+    `derived`: velocities come from the positions, and contradict nobody. `split`: what was not believed before.
     """
     if len(states) < 3:
         return []
     findings: list[QualityFinding] = []
-    places = [parted.refused] if parted.refused else []
+    places = [split.refused] if split.refused else []
     if not derived:
         frozen = _frozen(states, step)
         if frozen.any():
@@ -92,7 +92,7 @@ def resolve(
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
-        findings += _upon_others(states, step, actors, each, parted.alias)
+        findings += _upon_others(states, step, actors, each, split.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     text = COUNT_PREFIX + "the heading is turned round, the motion is not: the motion counts"

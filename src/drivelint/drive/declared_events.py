@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import spelled
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import States
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 HEADLIGHTS: Final = "headlights"
 """Name of the code in `States.codes`, which indexes `HEADLIGHT_STATES`, and of the event."""
 HEADLIGHT_STATES: Final = ("off", "on")
-_FACTS: Final = facts(__file__, "declared_events.toml")
+_FACTS: Final = toml_beside(__file__, "declared_events.toml")
 ON_OFF_EVENTS: Final[dict[str, str]] = _FACTS["on_off"]
 """Events that are on until they are declared off -> what they say."""
 EVENTS: Final[dict[str, dict[str, str]]] = {

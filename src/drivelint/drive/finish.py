@@ -53,13 +53,13 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
-    parted = jumps.NO_SPLIT
+    split = jumps.NO_SPLIT
     if not assumed:
         states, gone = jumps.without_removed_actors(states, step, kept=named)
         step = steps(states) if gone else step
-        parted = jumps.split_tracks(states, step, kept=named)
-        findings += [*gone, *parted.findings]
-    if parted.alias:
+        split = jumps.split_tracks(states, step, kept=named)
+        findings += [*gone, *split.findings]
+    if split.alias:
         states = sorted_states(states)
         step = steps(states)
     if "yaw_rad" in states.numbers:
@@ -72,14 +72,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors, varying = actor_rows.from_states(states)
         findings += varying
     else:
-        actors = actor_rows.from_table(recording.actors, states, parted.alias)
+        actors = actor_rows.from_table(recording.actors, states, split.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
-        findings += contradiction.resolve(states, step, actors, derived=derived, parted=parted)
+        findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
     states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings += [*moved, *_lights(states, egos, is_ego)]

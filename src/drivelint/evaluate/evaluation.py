@@ -131,7 +131,7 @@ class Evaluation:
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
             if self._has_near_misses(binding, "_group", "clean"):
-                self._execute(findings.settled_measure_series_sql(binding.rule), binding)
+                self._execute(findings.first_pass_measure_series_sql(binding.rule), binding)
             if self._may_stop(n_steps):
                 return
         elif self._may_stop(

@@ -35,7 +35,7 @@ def measure_series_sql(rule: Rule) -> str:
     return statement("judging/course_of_stretches", same_object=_same_object(rule, "s"), expected=_expected(rule, "j."))
 
 
-def settled_measure_series_sql(rule: Rule) -> str:
+def first_pass_measure_series_sql(rule: Rule) -> str:
     """Return the SQL of measure series around near misses for groups that the first pass settled."""
     steps_object = "coalesce(object_id, '')" if rule.per_object else "''"
     return _near(rule, statement("judging/near_groups", condition=condition_ctes(rule), object=steps_object))

@@ -94,7 +94,7 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
 
 def episodes_sql(rule: Rule) -> str:
     """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
-    broken = "SEMI JOIN (FROM _key_with_break WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
+    broken = "SEMI JOIN (FROM _key_summary WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
     numbered = _steps_with_episode(f"SELECT l.* FROM _applicable_step l {broken}")
     return rule_statement("outcome_of_episodes", rule, steps_with_episode=numbered)
 

@@ -34,27 +34,27 @@ class _Number(NamedTuple):
     judge: Callable[[float], str]
 
 
-def verdict_changes(case: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
+def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
     """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first."""
-    found = [_nearest(number, verdict) for number in _numbers(case, sandbox)]
+    found = [_nearest(number, verdict) for number in _numbers(context, sandbox)]
     return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
 
 
-def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
-    for name, param in case.rule.params.items():
-        now = case.params[name]
+def _numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
+    for name, param in context.rule.params.items():
+        now = context.params[name]
         if isinstance(now, bool) or not isinstance(now, int | float):
             continue
 
         def with_param(value: float, name: str = name) -> str:
             try:
-                return case.judge(sandbox, {**case.params, name: value})
+                return context.judge(sandbox, {**context.params, name: value})
             except DriveLintError:  # no value for this parameter, such as a window of less than nothing
                 return "error"
 
         yield _Number(name, param.why, param.unit, float(now), math.inf, with_param)
-    profile = case.target.verdict_row["profile"]
-    if not case.rule.per_profile or profile is None:
+    profile = context.target.verdict_row["profile"]
+    if not context.rule.per_profile or profile is None:
         return
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():
@@ -64,7 +64,7 @@ def _numbers(case: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
 
             def with_profile(value: float, column: str = column) -> str:
                 sandbox.set_profile(profile, column, value)
-                return case.judge(sandbox)
+                return context.judge(sandbox)
 
             most = math.pi / 2 if unit == "rad" else math.inf
             try:

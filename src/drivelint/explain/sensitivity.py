@@ -75,13 +75,13 @@ def _copy(
 
 
 def verdict_sensitivity(
-    case: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
+    context: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
 ) -> Sensitivity:
     """Return how often each verdict occurs on copies of a drive, without those that never do. `span`: what of it is in `drive`."""
     found: list[str] = []
     for batch in perturbed_copies(drive, errors):
-        with case.sandbox(batch) as sandbox:
-            found += case.verdicts_on(sandbox.judge(case.params), [copy.trace.drive_id for copy in batch])
+        with context.sandbox(batch) as sandbox:
+            found += context.verdicts_on(sandbox.judge(context.params), [copy.trace.drive_id for copy in batch])
     counts: dict[str, int] = {verdict: found.count(verdict) for verdict in _VERDICTS if verdict in found}
     start, end = span or (None, None)
     return Sensitivity(**asdict(errors), counts=counts, from_ns=start, to_ns=end)

@@ -69,9 +69,9 @@ def lacks_signal(row: Row) -> bool:
     return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 
 
-def sufficient_part(case: VerdictContext, drive: Drive, verdict: str) -> tuple[Drive, tuple[int, int] | None]:
+def sufficient_part(context: VerdictContext, drive: Drive, verdict: str) -> tuple[Drive, tuple[int, int] | None]:
     """Return the shortest tried part of a drive with the same verdict, and its interval; None for the whole drive."""
-    span = case.target.span
+    span = context.target.span
     if span is None or verdict == "not_applicable":
         return drive, None
     log = drive.trace.tables["data_log"].to_pylist()[0]
@@ -80,19 +80,19 @@ def sufficient_part(case: VerdictContext, drive: Drive, verdict: str) -> tuple[D
         if part == (log["t_start_ns"], log["t_end_ns"]):
             break
         small = crop(drive, *part)
-        with case.sandbox([small]) as sandbox:
-            judged = sandbox.judge(case.params)
-            if case.verdicts_on(judged, [sandbox.drive_id]) == [verdict] and _same_numbers(
-                case, evidence.judged_steps(case.rule, case.target, judged)
+        with context.sandbox([small]) as sandbox:
+            judged = sandbox.judge(context.params)
+            if context.verdicts_on(judged, [sandbox.drive_id]) == [verdict] and _same_numbers(
+                context, evidence.judged_steps(context.rule, context.target, judged)
             ):
                 return small, part
     return drive, None
 
 
-def _same_numbers(case: VerdictContext, series: list[Step]) -> bool:
+def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
     """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
-    row = case.target.verdict_row
-    if case.rule.sense == "holds" or row["margin"] is None:
+    row = context.target.verdict_row
+    if context.rule.sense == "holds" or row["margin"] is None:
         return True
     here = [step.margin for step in series if step.t_ns == row["t_worst_ns"] and step.margin is not None]
     return any(abs(margin - row["margin"]) < 1e-6 for margin in here)

@@ -53,18 +53,18 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
 
 
 def missing_signals(
-    cannot: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, asks: Mapping[str, str]
+    undecided: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, advice: Mapping[str, str]
 ) -> list[Missing]:
-    """Return the missing signals with the rules that need them, the most needed first. `asks`: signal -> advice of its reason."""
+    """Return the missing signals with the rules that need them, the most needed first. `advice`: signal -> advice of its reason."""
     by_signal: dict[str, list[Undecided]] = {}
-    for rule in cannot:
+    for rule in undecided:
         for signal in rule.missing:
             by_signal.setdefault(signal, []).append(rule)
     found = [
         Missing(
             signal=signal,
             reason=lacking[signal],
-            provide=how_to_provide(signal, log_format, asks.get(signal)),
+            provide=how_to_provide(signal, log_format, advice.get(signal)),
             rules=[rule.rule_id for rule in waiting],
             alone=[rule.rule_id for rule in waiting if rule.missing == [signal]],
         )

@@ -6,14 +6,14 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
 _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
-_FACTS: Final = facts(__file__, "mapping_words.toml")
+_FACTS: Final = toml_beside(__file__, "mapping_words.toml")
 _FUSED: Final[dict[str, str]] = _FACTS["fused"]
 _UNIT_WORDS: Final[dict[str, str]] = _FACTS["units"]
 _TIME, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (

@@ -14,7 +14,7 @@ INSPECT_SCHEMA: Final = 1
 """Raised when a key changes its meaning or goes; new keys do not raise it."""
 
 
-def says(meaning: str) -> Meta:
+def described(meaning: str) -> Meta:
     """Return what a key means, as the schema says it."""
     return Meta(description=meaning)
 
@@ -22,64 +22,64 @@ def says(meaning: str) -> Meta:
 class File(msgspec.Struct, frozen=True, kw_only=True):
     """The log as a file."""
 
-    name: Annotated[str, says("file or folder name, without where it lies")]
-    bytes: Annotated[int, says("size; of a folder, of its tables together")]
-    sha256: Annotated[str | None, says("hash of its content; null: not read as a drive")] = None
-    drive_id: Annotated[str | None, says("what its verdicts are filed under; null: not read as a drive")] = None
-    format: Annotated[str | None, says("osi-mcap, canonical-parquet or the mapping's name; null: not read")] = None
+    name: Annotated[str, described("file or folder name, without where it lies")]
+    bytes: Annotated[int, described("size; of a folder, of its tables together")]
+    sha256: Annotated[str | None, described("hash of its content; null: not read as a drive")] = None
+    drive_id: Annotated[str | None, described("what its verdicts are filed under; null: not read as a drive")] = None
+    format: Annotated[str | None, described("osi-mcap, canonical-parquet or the mapping's name; null: not read")] = None
 
 
 class Channel(msgspec.Struct, frozen=True, kw_only=True):
     """One channel of an MCAP file."""
 
     topic: str
-    schema: Annotated[str | None, says("name of the messages' schema")]
-    schema_encoding: Annotated[str | None, says("protobuf, ros2msg, jsonschema, ...")]
-    encoding: Annotated[str, says("of the messages: protobuf, cdr, json, ...")]
+    schema: Annotated[str | None, described("name of the messages' schema")]
+    schema_encoding: Annotated[str | None, described("protobuf, ros2msg, jsonschema, ...")]
+    encoding: Annotated[str, described("of the messages: protobuf, cdr, json, ...")]
     messages: int
-    bytes: Annotated[int, says("of all its messages, unpacked")]
-    rate_hz: Annotated[float | None, says("mean, by log time; null: fewer than two messages")]
-    read_as: Annotated[str | None, says("ground truth, map, declared events; null: not read")]
+    bytes: Annotated[int, described("of all its messages, unpacked")]
+    rate_hz: Annotated[float | None, described("mean, by log time; null: fewer than two messages")]
+    read_as: Annotated[str | None, described("ground truth, map, declared events; null: not read")]
 
 
 class Column(msgspec.Struct, frozen=True, kw_only=True):
     """One column of a table; of a wide table one for all its groups, `{k}` standing for the group's number."""
 
     name: str
-    read_as: Annotated[list[str], says("what the mapping reads from it: time, x, yaw, class, ...; empty: nothing")]
-    unit: Annotated[str | None, says("as the mapping says; null: SI, or no number")] = None
+    read_as: Annotated[list[str], described("what the mapping reads from it: time, x, yaw, class, ...; empty: nothing")]
+    unit: Annotated[str | None, described("as the mapping says; null: SI, or no number")] = None
 
 
 class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     """One table of the log."""
 
-    name: Annotated[str, says("file name")]
-    rows: Annotated[int | None, says("null: not counted")]
+    name: Annotated[str, described("file name")]
+    rows: Annotated[int | None, described("null: not counted")]
     columns: list[Column]
 
 
 class Content(msgspec.Struct, frozen=True, kw_only=True):
     """What the file holds."""
 
-    channels: Annotated[list[Channel], says("of an MCAP file, by topic")] = []
-    sheets: Annotated[list[Sheet], says("tables, of CSV and Parquet")] = []
-    mapping: Annotated[str | None, says("the mapping that a table was read through")] = None
-    notes: Annotated[list[str], says("what the reader said")] = []
+    channels: Annotated[list[Channel], described("of an MCAP file, by topic")] = []
+    sheets: Annotated[list[Sheet], described("tables, of CSV and Parquet")] = []
+    mapping: Annotated[str | None, described("the mapping that a table was read through")] = None
+    notes: Annotated[list[str], described("what the reader said")] = []
     draft_mapping: Annotated[
         str | None,
-        says("where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
+        described("where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
     ] = None
 
 
 class Clock(msgspec.Struct, frozen=True, kw_only=True):
     """The log's time stamps."""
 
-    start_ns: Annotated[int, says("the first, on the log's own clock")]
-    utc_start: Annotated[str | None, says("the same in UTC, ISO 8601; null: the log does not say")]
-    duration_s: Annotated[float, says("from the first to the last")]
-    steps: Annotated[int, says("distinct time stamps")]
-    period_s: Annotated[float | None, says("median time between them; null: there is only one")]
-    holes: Annotated[int, says("gaps of more than 2.5 periods, across which nothing is judged")]
+    start_ns: Annotated[int, described("the first, on the log's own clock")]
+    utc_start: Annotated[str | None, described("the same in UTC, ISO 8601; null: the log does not say")]
+    duration_s: Annotated[float, described("from the first to the last")]
+    steps: Annotated[int, described("distinct time stamps")]
+    period_s: Annotated[float | None, described("median time between them; null: there is only one")]
+    holes: Annotated[int, described("gaps of more than 2.5 periods, across which nothing is judged")]
     longest_hole_s: float | None = None
     first_hole_at_s: float | None = None
 
@@ -87,36 +87,36 @@ class Clock(msgspec.Struct, frozen=True, kw_only=True):
 class ClassCount(msgspec.Struct, frozen=True, kw_only=True):
     """Actors of one class."""
 
-    actor_class: Annotated[str | None, says("null: not known")]
+    actor_class: Annotated[str | None, described("null: not known")]
     n: int
-    sized: Annotated[int, says("of them with a known length and width")]
-    moving: Annotated[int, says("of them those that moved by more than 1 m")]
+    sized: Annotated[int, described("of them with a known length and width")]
+    moving: Annotated[int, described("of them those that moved by more than 1 m")]
 
 
 class Actor(msgspec.Struct, frozen=True, kw_only=True):
     """One actor and its track."""
 
     actor_id: str
-    actor_class: Annotated[str | None, says("null: not known")]
+    actor_class: Annotated[str | None, described("null: not known")]
     length_m: float | None
     width_m: float | None
     states: int
     first_at_s: float
     last_at_s: float
-    way_m: Annotated[float, says("length of its track")]
-    top_speed_mps: Annotated[float | None, says("null: no speed is known")]
+    way_m: Annotated[float, described("length of its track")]
+    top_speed_mps: Annotated[float | None, described("null: no speed is known")]
 
 
 class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
     """How an ego's track lies on the map."""
 
-    ok: Annotated[bool, says("good enough for rules that need the map")]
+    ok: Annotated[bool, described("good enough for rules that need the map")]
     reason: str
-    steps: Annotated[int, says("steps with a position")]
-    on_lane: Annotated[int, says("of them, on a lane for driving")]
-    moving: Annotated[int, says("of those, in motion and not overtaking in an opposing lane")]
-    with_direction: Annotated[int, says("of the moving ones, along the lane's direction")]
-    lateral_median_m: Annotated[float | None, says("median distance from the lane's middle; null: never on one")]
+    steps: Annotated[int, described("steps with a position")]
+    on_lane: Annotated[int, described("of them, on a lane for driving")]
+    moving: Annotated[int, described("of those, in motion and not overtaking in an opposing lane")]
+    with_direction: Annotated[int, described("of the moving ones, along the lane's direction")]
+    lateral_median_m: Annotated[float | None, described("median distance from the lane's middle; null: never on one")]
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):
@@ -124,18 +124,20 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
 
     rule_id: str
     title: str
-    missing: Annotated[list[str], says("signals and conditions; without a map only `map` for all that is of the map")]
-    breach_only: Annotated[bool, says("it can be found broken all the same, but not kept")] = False
+    missing: Annotated[
+        list[str], described("signals and conditions; without a map only `map` for all that is of the map")
+    ]
+    breach_only: Annotated[bool, described("it can be found broken all the same, but not kept")] = False
 
 
 class Missing(msgspec.Struct, frozen=True, kw_only=True):
     """A signal that some rule requires and this log and map do not give."""
 
     signal: str
-    reason: Annotated[str, says("what is wrong or missing")]
-    provide: Annotated[str, says("what to give to have it")]
-    rules: Annotated[list[str], says("rules that wait for it")]
-    alone: Annotated[list[str], says("of them those that wait for nothing else")]
+    reason: Annotated[str, described("what is wrong or missing")]
+    provide: Annotated[str, described("what to give to have it")]
+    rules: Annotated[list[str], described("rules that wait for it")]
+    alone: Annotated[list[str], described("of them those that wait for nothing else")]
 
 
 class Ego(msgspec.Struct, frozen=True, kw_only=True):
@@ -145,7 +147,7 @@ class Ego(msgspec.Struct, frozen=True, kw_only=True):
     km: float
     steps: int
     registration: MapRegistration | None
-    can: Annotated[list[str], says("rules that can be decided")]
+    can: Annotated[list[str], described("rules that can be decided")]
     cannot: list[Undecided]
     missing: list[Missing]
 
@@ -158,11 +160,11 @@ class Road(msgspec.Struct, frozen=True, kw_only=True):
     environment_id: str
     sha256: str
     format: str
-    offset_m: Annotated[tuple[float, float], says("added to its coordinates")]
+    offset_m: Annotated[tuple[float, float], described("added to its coordinates")]
     handedness: Literal["lht", "rht"]
-    handedness_source: Annotated[str, says("option, attribute, junctions, traces, default (a guess)")]
+    handedness_source: Annotated[str, described("option, attribute, junctions, traces, default (a guess)")]
     lanelets: int
-    drivable: Annotated[int, says("lanelets for motor vehicles")]
+    drivable: Annotated[int, described("lanelets for motor vehicles")]
     drivable_km: float
 
 
@@ -174,7 +176,7 @@ class Quality(msgspec.Struct, frozen=True, kw_only=True):
     check_id: str
     message: str
     n: int
-    actor_id: Annotated[str | None, says("null: the whole log, or several actors")] = None
+    actor_id: Annotated[str | None, described("null: the whole log, or several actors")] = None
     first_at_s: float | None = None
 
 
@@ -183,26 +185,26 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
 
     clock: Clock
     states: int
-    classes: Annotated[list[ClassCount], says("the most numerous first")]
-    egos: Annotated[list[Ego], says("by id; empty: the log names none and none was chosen")]
-    ego_source: Annotated[str, says("how the egos were found, or why there is none")]
-    candidates: Annotated[list[Actor], says("where there is no ego: who might be, the longest way first")]
-    supposed: Annotated[Ego | None, says("where there is no ego: what could be decided of the first candidate")]
-    road: Annotated[Road | None, says("null: no map")]
-    road_problem: Annotated[str | None, says("why a map that was given is not used")]
-    quality: Annotated[list[Quality], says("errors first")]
-    rules: Annotated[list[str], says("the rules that were asked about")]
-    selection: Annotated[list[str], says("as they were selected")]
+    classes: Annotated[list[ClassCount], described("the most numerous first")]
+    egos: Annotated[list[Ego], described("by id; empty: the log names none and none was chosen")]
+    ego_source: Annotated[str, described("how the egos were found, or why there is none")]
+    candidates: Annotated[list[Actor], described("where there is no ego: who might be, the longest way first")]
+    supposed: Annotated[Ego | None, described("where there is no ego: what could be decided of the first candidate")]
+    road: Annotated[Road | None, described("null: no map")]
+    road_problem: Annotated[str | None, described("why a map that was given is not used")]
+    quality: Annotated[list[Quality], described("errors first")]
+    rules: Annotated[list[str], described("the rules that were asked about")]
+    selection: Annotated[list[str], described("as they were selected")]
 
 
 class Inspection(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that `drivelint inspect --format json` prints."""
 
-    inspect_schema: Annotated[int, says("version of this structure")] = INSPECT_SCHEMA
+    inspect_schema: Annotated[int, described("version of this structure")] = INSPECT_SCHEMA
     file: File
     content: Content
-    problem: Annotated[str | None, says("why the file cannot be read as a drive; null: it can")] = None
-    drive: Annotated[Drive | None, says("null: it cannot be read as one")] = None
+    problem: Annotated[str | None, described("why the file cannot be read as a drive; null: it can")] = None
+    drive: Annotated[Drive | None, described("null: it cannot be read as one")] = None
 
 
 def json_schema() -> bytes:

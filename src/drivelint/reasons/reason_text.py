@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import msgspec
 
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,7 +57,7 @@ def shared_texts() -> dict[str, ReasonText]:
 
 @cache
 def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
-    raw = dict(facts(__file__, "words.toml"))
+    raw = dict(toml_beside(__file__, "words.toml"))
     values = raw.pop("values")
     return msgspec.convert(raw, dict[str, ReasonText]), values
 

@@ -8,9 +8,9 @@ from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES, DRIVE_
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
-TEXTS: Final = facts(__file__, "signals.toml")
+TEXTS: Final = toml_beside(__file__, "signals.toml")
 """`advice`: signal -> what to give; `remedies`: reason code -> what to do; `where`: format -> key -> where its logs have it."""
 ADVICE: Final[dict[str, str]] = {
     **{

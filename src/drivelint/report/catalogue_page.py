@@ -16,7 +16,7 @@ from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 from drivelint.result.counts import grouped
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of
@@ -128,7 +128,7 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
 
 def map_features() -> dict[str, Any]:
     """Return what stands in `map_features.toml`: `name_parts` of signals, and each `feature`."""
-    return facts(__file__, "map_features.toml")
+    return toml_beside(__file__, "map_features.toml")
 
 
 def _sign(kind: str, name_part: str) -> str:

@@ -98,11 +98,10 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
         label, style = "UNKNOWN", "bold yellow"
     text = Text(f"{label}  ", style)
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
-    touched = {row["drive_id"] for row in found if _is_contact(row, rules)}
-    broken = {row["drive_id"] for row in found}
-    text.append(f"{_severities(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}", "default")
-    text.append(f" in {len(broken)} of {plural(result.drives.num_rows, 'drive')}" if found else "", "default")
-    if touched:
+    in_drives = len({row["drive_id"] for row in found})
+    where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
+    text.append(f"{_severities(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
+    if touched := {row["drive_id"] for row in found if _is_contact(row, rules)}:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
         text.append(f"; {through} known or waived", "default")
@@ -240,14 +239,8 @@ def _inputs(result: Result) -> Text:
     maps = sorted({drive["map_name"] for drive in drives if drive["map_name"] is not None})
     on_map = [drive for drive in drives if drive["map_name"] is not None]
     off = sum(off_map_reason(drive) is not None for drive in on_map)
-    text = Text("map: ")
-    if not maps:
-        text.append("none", "yellow")
-    else:
-        text.append(
-            f"{listed(maps, 2)} fits {len(on_map) - off} of {plural(len(on_map), 'drive')}",
-            "yellow" if off else "default",
-        )
+    fits = f"{listed(maps, 2)} fits {len(on_map) - off} of {plural(len(on_map), 'drive')}" if maps else "none"
+    text = Text.assemble("map: ", (fits, "default" if maps and not off else "yellow"))
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     warned = [q for drive in drives for q in drive["quality"] if q["severity"] != "info"]
     told = plural(len({(q["check_id"], q["message"]) for q in warned}), "warning") if warned else "no warnings"

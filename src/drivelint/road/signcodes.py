@@ -9,9 +9,9 @@ import re
 from functools import cache
 from typing import Final
 
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
-_FACTS: Final = facts(__file__, "signnames.toml")
+_FACTS: Final = toml_beside(__file__, "signnames.toml")
 _NAMES: Final = [(re.compile(pattern), kind) for kind, pattern in _FACTS["names"].items()]
 _ARROW_LIGHTS: Final = frozenset({"1000010", "1000011", "1000012"})
 _DOTTED: Final = re.compile(r"\d\.\d{3}\.\d{3}")
@@ -30,7 +30,7 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 def codes_of(kind: str) -> dict[str, list[str]]:
     """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb, us, es; lists without one are left out."""
-    return dict(facts(__file__, "signcodes.toml").get(kind, {}))
+    return dict(toml_beside(__file__, "signcodes.toml").get(kind, {}))
 
 
 @cache
@@ -38,7 +38,7 @@ def _kinds(country: str) -> dict[str, str]:
     """Return code -> kind, of OpenDRIVE's list and of a country's."""
     return {
         code: kind
-        for kind, lists in facts(__file__, "signcodes.toml").items()
+        for kind, lists in toml_beside(__file__, "signcodes.toml").items()
         for name in ("OpenDRIVE", country)
         for code in lists.get(name, ())
     }

@@ -13,7 +13,7 @@ from google.protobuf import descriptor_pb2, duration_pb2, timestamp_pb2
 from mcap.records import Schema
 
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 _KNOWN: Final = {"Timestamp": timestamp_pb2.DESCRIPTOR, "Duration": duration_pb2.DESCRIPTOR}
 LINE_STRIP, LINE_LOOP, LINE_LIST = range(3)
@@ -25,7 +25,7 @@ INFO, WARNING, ERROR = 2, 3, 4
 def schema(name: str) -> Schema:
     """Return the MCAP schema record (still without id) of `foxglove.<name>`: a set of file descriptors, imports first."""
     files = descriptor_pb2.FileDescriptorSet()
-    _add(name, files, set(), Declarations(facts(__file__, "messages.toml")))
+    _add(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
     # a fixed order of bytes: no map fields, and the files in the order in which they are found
     return Schema(id=0, name=f"foxglove.{name}", encoding="protobuf", data=files.SerializeToString(deterministic=True))
 

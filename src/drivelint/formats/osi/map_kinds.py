@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
 def _words(table: str) -> dict[int, Any]:
-    return {int(number): word for number, word in facts(__file__, "map_kinds.toml")[table].items()}
+    return {int(number): word for number, word in toml_beside(__file__, "map_kinds.toml")[table].items()}
 
 
 LANE_KINDS: Final[dict[int, str]] = _words("lane_kinds")

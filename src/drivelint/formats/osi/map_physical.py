@@ -190,19 +190,19 @@ def _kind(said: Any) -> tuple[str, bool]:
 
 
 def lanelets(
-    plain: Mapping[int, PhysicalLane], truth: Any, through_lanes: Sequence[BoundedLane]
+    physical: Mapping[int, PhysicalLane], truth: Any, through_lanes: Sequence[BoundedLane]
 ) -> Iterable[BoundedLane]:
     """Yield the lanes, then the lanes drawn through intersections; each lane links to those that continue it."""
     bounds = {b.id.value: b for b in truth.lane_boundary}
-    linked = _linked(plain)
-    for i, lane in plain.items():
+    linked = _linked(physical)
+    for i, lane in physical.items():
         said = lane.message.classification
         kind, drivable = _kind(said)
         ids = [said.left_lane_boundary_id, said.right_lane_boundary_id]
         beside = [said.left_adjacent_lane_id, said.right_adjacent_lane_id]
         if lane.turned:
             ids, beside = ids[::-1], beside[::-1]
-        neighbours = [_neighbour(lane, side, plain) for side in beside]
+        neighbours = [_neighbour(lane, side, physical) for side in beside]
         yield BoundedLane(
             str(i), lane.left, lane.right, kind, drivable,
             junction_id=f"j{i}" if said.type == kinds.INTERSECTION else None,
@@ -217,10 +217,10 @@ def lanelets(
     yield from through_lanes
 
 
-def _linked(plain: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
+def _linked(physical: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
     """Return (a, b) where b follows a, as either of the two says: esmini names some links only at the later lane."""
     pairs = set()
-    for i, lane in plain.items():
+    for i, lane in physical.items():
         names = ["antecessor_lane_id", "successor_lane_id"]
         before, after = names[::-1] if lane.turned else names
         for pair in lane.message.classification.lane_pairing:
@@ -228,15 +228,15 @@ def _linked(plain: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
                 pairs.add((getattr(pair, before).value, i))
             if pair.HasField(after):
                 pairs.add((i, getattr(pair, after).value))
-    return sorted((a, b) for a, b in pairs if a in plain and b in plain and _follows(plain[a], plain[b]))
+    return sorted((a, b) for a, b in pairs if a in physical and b in physical and _follows(physical[a], physical[b]))
 
 
 def _neighbour(
-    lane: PhysicalLane, ids: Sequence[Any], plain: Mapping[int, PhysicalLane]
+    lane: PhysicalLane, ids: Sequence[Any], physical: Mapping[int, PhysicalLane]
 ) -> tuple[str | None, bool | None]:
     for i in ids:
-        if i.value in plain:
-            other = plain[i.value]
+        if i.value in physical:
+            other = physical[i.value]
             same = float(np.dot(*(each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)))) > 0
             return str(i.value), not same
     return None, None
@@ -252,15 +252,15 @@ def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
     return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < MAX_LINK_GAP_M)
 
 
-def intersection_lanes(truth: Any, plain: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:
+def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:
     """Return a lane through the intersection for each pair of lanes that it joins, and the two points (2, 3) between which it rises."""
     found = []
     for area in truth.lane:
-        if area.classification.type != kinds.INTERSECTION or area.id.value in plain:
+        if area.classification.type != kinds.INTERSECTION or area.id.value in physical:
             continue
         pairs = {(p.antecessor_lane_id.value, p.successor_lane_id.value) for p in area.classification.lane_pairing}
         for into, out in sorted(pairs):
-            a, b = plain.get(into), plain.get(out)
+            a, b = physical.get(into), physical.get(out)
             if a is None or b is None or not all(_kind(each.message.classification)[1] for each in (a, b)):
                 continue  # not two lanes for driving
             sides = (a.left, b.left), (a.right, b.right)

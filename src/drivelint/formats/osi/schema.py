@@ -12,7 +12,7 @@ from typing import Any, Final
 from google.protobuf import descriptor_pb2, message_factory
 
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
-from drivelint.resources import facts
+from drivelint.resources import toml_beside
 
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
@@ -28,7 +28,7 @@ VERSION: Final = (3, 7, 0)
 
 @cache
 def _declared(*parts: str) -> Declarations:
-    return Declarations(*(facts(__file__, "schema.toml")[part] for part in parts))
+    return Declarations(*(toml_beside(__file__, "schema.toml")[part] for part in parts))
 
 
 @cache

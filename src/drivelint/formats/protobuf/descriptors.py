@@ -53,10 +53,10 @@ class Declarations:
 
 
 def add_field(
-    message: DescriptorProto, said: Sequence[str], package: str, enums: Container[str]
+    message: DescriptorProto, declaration: Sequence[str], package: str, enums: Container[str]
 ) -> descriptor_pb2.FieldDescriptorProto:
-    """Add a field to a message: `said` is its name, number and type (`[]`: repeated); a message or enumeration type is of `package`."""
-    name, number, kind = said
+    """Add a field: `declaration` is its name, number and type (`[]`: repeated); a message or enumeration type is of `package`."""
+    name, number, kind = declaration
     plain = kind.removesuffix("[]")
     added = message.field.add(name=name, number=int(number))
     added.label = _FIELD.LABEL_REPEATED if kind != plain else _FIELD.LABEL_OPTIONAL
