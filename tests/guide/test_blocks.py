@@ -25,10 +25,10 @@ from drivelint.errors import TraceError
 from drivelint.formats import registry
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
+from tests.crossroads import scenes as crossroads
 from tests.guide.blocks import PAGES, Block, blocks
 from tests.scenes import derived, drive, moving, road, times
 from tests.shared_data import ROOT, shared
-from tests.test_junction_rules import scenes as crossroads
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 NAMES = [page.name for page in PAGES]
