@@ -1,4 +1,4 @@
--- The statements in this folder call these macros. Each evaluation creates them anew. No rule can call them.
+-- Each evaluation creates these macros for the statements of this folder. Rules cannot call them.
 
 -- What makes a kept row a near miss.
 CREATE OR REPLACE TEMP MACRO is_near_miss(margin, near_margin) AS round(margin, 6) < near_margin;

@@ -137,6 +137,15 @@ def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:
 def test_a_run_that_decided_nothing_is_no_pass() -> None:
     assert any(line.startswith("UNKNOWN  no findings") for line in summary(result([verdict("unknown")])))
     assert any(line.startswith("PASS  no findings") for line in summary(result([verdict("pass")])))
+    assert any(re.match(r"d1 +nothing was judged ", line) for line in summary(result([verdict("unknown")])))
+    assert any(re.match(r"d1 +no finding ", line) for line in summary(result([verdict("pass")])))
+
+
+def test_findings_that_do_not_gate_are_no_pass() -> None:
+    lines = summary(result([verdict("fail")], [finding()], fail_on="never"))
+    assert any(line.startswith("FINDINGS  1 critical finding in 1 of 1 drive") for line in lines)
+    assert any(line.startswith("exit 0: ") for line in lines)
+    assert not any(line.startswith("PASS") for line in lines)
 
 
 def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:

@@ -41,7 +41,7 @@ TRACE_TABLES = (
 """The tables of `schemas/model.sql` that a trace has, in its order."""
 
 
-# what is unknown is NaN, and so is what is worked out of it
+# NaN stands for an unknown value, and arithmetic with NaN gives NaN
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""

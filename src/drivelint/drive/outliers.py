@@ -109,7 +109,7 @@ def _stepped(moves: _Moves, told: Mask, sigma: Floats, error: Floats, beside: Ma
     same = np.sum(from_before * from_after, axis=0) > near * far / 2
     error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
     goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
-    # who is struck has another speed afterwards
+    # an impact changes an actor's speed
     goes_on &= np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     found[rows] = found[rows + 1] = True

@@ -64,7 +64,7 @@ class VerdictContext:
 
 
 def lacks_signal(row: Row) -> bool:
-    """Whether a verdict is unknown, its rule not run, for want of a signal that the rule requires: no number alters that."""
+    """Whether a verdict is unknown because a required signal is missing. The rule did not run, so no number changes that."""
     code: str = row["reason_code"]
     return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 

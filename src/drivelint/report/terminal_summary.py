@@ -94,8 +94,8 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     code = exit_status(result).code
     label, style = _LABEL.get(code, ("?", "bold yellow"))
     decided = counts.total(result.verdicts)
-    if code == ExitCode.OK and not decided["pass"] + decided["fail"]:
-        label, style = "UNKNOWN", "bold yellow"
+    if code == ExitCode.OK and (found or not decided["pass"] + decided["fail"]):
+        label, style = "FINDINGS" if found else "UNKNOWN", "bold yellow"  # findings that do not gate are no pass
     text = Text(f"{label}  ", style)
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     in_drives = len({row["drive_id"] for row in found})
@@ -138,7 +138,7 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
         if drive["status"] != "judged":
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
-        worst = _worst(mine[0], rules, starts[name]) if mine else Text("no finding", "dim")
+        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(unknown[name])
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         table.add_row(
@@ -147,6 +147,10 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
+
+
+def _without_finding(verdicts: Mapping[str, int]) -> Text:
+    return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
 
 
 def _cell(n: int, style: str) -> Text:
