@@ -63,7 +63,9 @@ CREATE TABLE finding (
     y_m DOUBLE,                       -- ego at the worst step
     lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
-    lanelet_id VARCHAR                -- ego's lanelet at the worst step
+    lanelet_id VARCHAR,               -- ego's lanelet at the worst step
+    n_copies INTEGER,                 -- copies of its stretch of the drive, with errors like the recording's, that were judged; NULL: none were
+    n_stays INTEGER                   -- in how many of them it is a finding too; NULL: as n_copies
 );
 
 -- lifetime: drive
