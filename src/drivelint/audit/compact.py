@@ -78,24 +78,21 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
     return n_packed
 
 
-def drop_unjudged(results: ResultStore) -> int:
-    """Take every drive that was refused or quarantined out of the results, so that it is judged again; return how many."""
-    n_dropped = 0
-    compact(results)
+def drop(results: ResultStore, keys: pa.Array) -> None:
+    """Take the drives with these keys out of the chunks, so that they are judged again. Not while anybody compacts."""
     with TemporaryDirectory(prefix="drivelint-compact-") as home:
-        for chunk in chunks(results):
+        for chunk in chunks(results) if len(keys) else ():
             receipts = _read(results, "receipts", chunk, Path(home))
-            kept = receipts.filter(pc.equal(receipts["status"], "judged"))
+            kept = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
             if kept.num_rows == receipts.num_rows:
                 continue
-            n_dropped += receipts.num_rows - kept.num_rows
-            if kept.num_rows:
-                rows = {table: _read(results, table, chunk, Path(home)) for table in TABLES}
-                keys = kept["key"].combine_chunks()
-                left = {name: of.filter(pc.is_in(of["key"], value_set=keys)) for name, of in rows.items()}
-                _write_chunk(results, {name: _parquet(of) for name, of in left.items()}, kept)
+            left = kept["key"].combine_chunks()
+            rows = {table: _read(results, table, chunk, Path(home)) for table in TABLES}
+            rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
+            # first the old receipts: killed in between, a drive is judged again, where it would be there twice
             results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
-    return n_dropped
+            if kept.num_rows:
+                _write_chunk(results, {table: _parquet(of) for table, of in rows.items()}, kept)
 
 
 @contextmanager
@@ -118,7 +115,7 @@ def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
             con.read_parquet(escaped(files)).create_view(table, replace=True)
         else:
             con.register("_empty", RECEIPT_SCHEMA.empty_table() if table == "receipts" else empty_rows()[table])
-            con.execute(f"CREATE TABLE _no_{table} AS FROM _empty")
+            con.execute(f"CREATE OR REPLACE TABLE _no_{table} AS FROM _empty")
             con.execute(f"CREATE OR REPLACE VIEW {table} AS FROM _no_{table}")
 
 

@@ -13,7 +13,7 @@ import msgspec
 import pyarrow as pa
 
 from drivelint.audit import sources
-from drivelint.audit.compact import compact, create_views, database, drop_unjudged, tables_digest
+from drivelint.audit.compact import compact, create_views, database, drop, tables_digest
 from drivelint.audit.driver import WINDOW, Driver, tasks
 from drivelint.audit.executors import open_executor
 from drivelint.audit.identity import OptionHashes, rule_table, run_id, versions
@@ -119,12 +119,16 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     if alone:
         if isinstance(results, LocalFolder):
             results.sweep()
-        if request.retry_errors:
-            progress.note(f"{drop_unjudged(results)} drives that could not be judged are tried again")
         compact(results)
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         n_drives = _list(con, request, id_, progress)
         create_views(con, results, Path(home))
+        if alone:
+            stale = con.execute(statement("audit/stale"), {"retry": request.retry_errors}).to_arrow_table()["key"]
+            drop(results, stale.combine_chunks())
+            create_views(con, results, Path(home))
+            if len(stale):
+                progress.note(f"{len(stale)} drives are judged again: changed since, or not judged before")
         counted = AuditSummary()
         fresh = 0
 
