@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import pyarrow.compute as pc
@@ -14,44 +13,18 @@ from drivelint import run
 from drivelint.audit import AuditRequest, JudgeSettings, audit, merge
 from drivelint.audit.ask import ask
 from drivelint.audit.driver import MOST_ATTEMPTS
-from drivelint.audit.executors import Outcome
-from drivelint.audit.worker import run_task
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Silent
 from tests.audit import fleet
+from tests.audit.here import SETTINGS, InThisProcess, judged
 from tests.audit.kills import audit_with_kills
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.audit import AuditSummary
-    from drivelint.audit.model import Task
 
 N_DRIVES = 24
-SETTINGS = JudgeSettings(rules=(fleet.RULE,), memory=200_000_000)
-
-
-@dataclass
-class InThisProcess:
-    """An executor that judges in this process, and loses the tasks that have a log of `poison`."""
-
-    poison: str = "nothing"
-    capacity: int = 2
-    tasks: list[Task] = field(default_factory=list)
-    lost: list[int] = field(default_factory=list)
-
-    def submit(self, task: Task) -> None:
-        self.tasks.append(task)
-
-    def wait(self) -> list[Outcome]:
-        task = self.tasks.pop(0)
-        if any(self.poison in drive.log for drive in task.drives):
-            self.lost.append(len(task.drives))
-            return [Outcome(task, lost="the worker died")]
-        return [Outcome(task, run_task(task))]
-
-    def close(self) -> None:
-        pass
 
 
 @pytest.fixture(scope="module")
@@ -63,11 +36,6 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
 def undisturbed(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, AuditSummary]:
     out = tmp_path_factory.mktemp("undisturbed") / "audit"
     return out, judged(drives, out)
-
-
-def judged(drives: fleet.Fleet, out: Path, executor: InThisProcess | None = None, **options: object) -> AuditSummary:
-    request = AuditRequest(sources=(str(drives.manifest),), map=drives.road, out=str(out), settings=SETTINGS, **options)  # type: ignore[arg-type]
-    return audit(request, Silent(), executor or InThisProcess())
 
 
 def asked(out: Path, query: str) -> list[dict[str, object]]:

@@ -6,11 +6,13 @@ import hashlib
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from drivelint import __version__, catalogue
+from drivelint.audit.bucket import as_url, download, look
 from drivelint.audit.model import digest
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.resources import folder
@@ -79,6 +81,10 @@ class OptionHashes:
 
 def _file_sha256(path: str) -> str:
     where = Path(path)
+    if (url := as_url(where)) is not None:
+        found = look(url)
+        with TemporaryDirectory(prefix="drivelint-map-") as home:
+            return f"unread {url}" if found is None else _sha256(download(found, Path(home)))
     try:
         if where.is_dir():
             files = sorted(file for file in where.rglob("*") if file.is_file())

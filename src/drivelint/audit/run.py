@@ -13,6 +13,7 @@ import msgspec
 import pyarrow as pa
 
 from drivelint.audit import sources
+from drivelint.audit.bucket import is_url, look
 from drivelint.audit.compact import compact, create_views, database, drop, tables_digest
 from drivelint.audit.driver import WINDOW, Driver, tasks
 from drivelint.audit.executors import open_executor
@@ -218,7 +219,7 @@ def _list(con: duckdb.DuckDBPyConnection, request: AuditRequest, id_: str, progr
         if request.shard and int(digest(drive.log)[:8], 16) % request.shard[1] != request.shard[0] - 1:
             continue
         options_id = hashes.of(drive.options)
-        size, stamp = _stamp(drive.log)
+        size, stamp = (drive.size, drive.stamp) if drive.stamp else _stamp(drive.log)
         found = drive.found(size, stamp, id_, options_id)
         some.append(
             {
@@ -272,7 +273,10 @@ def _drive_input(request: AuditRequest) -> DriveInput:
 
 
 def _stamp(log: str) -> tuple[int, str]:
-    """Return a log's size in bytes and the time of its last change; (0, "") where it cannot be looked at."""
+    """Return a log's size in bytes and the time of its last change, or its ETag; (0, "") where it cannot be looked at."""
+    if is_url(log):
+        found = look(log)
+        return (0, "") if found is None else (found.size, found.e_tag)
     path = Path(log)
     try:
         files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]

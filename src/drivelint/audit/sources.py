@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
+from drivelint.audit.bucket import download, is_url, list_objects, look
 from drivelint.audit.model import AuditDrive
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
+from drivelint.formats.files import TRACE_SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -33,13 +36,36 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     """
     logs: list[str] = []
     for source in sources:
-        if _is_manifest(Path(source)):
-            yield from _of_manifest(Path(source), options)
+        if is_url(source):
+            yield from _of_store(source, options)
+        elif _is_manifest(Path(source)):
+            yield from _of_manifest(Path(source), source, options)
         else:
             logs.append(source)
     if logs:
         for path in expand_traces(logs):
             yield AuditDrive(str(path), options)
+
+
+def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
+    """Yield the logs of a prefix, or of a manifest in the store."""
+    one = look(url) if url.lower().endswith((".parquet", ".csv")) else None
+    if one is not None:
+        with TemporaryDirectory(prefix="drivelint-manifest-") as home:
+            copy = download(one, Path(home))
+            if _is_manifest(copy):
+                yield from _of_manifest(copy, url, options)
+                return
+    found = [one] if one is not None else list_objects(url)
+    n = 0
+    for each in found:
+        if each.url.lower().endswith(tuple(TRACE_SUFFIXES)):
+            n += 1
+            yield AuditDrive(each.url, options, {}, each.size, each.e_tag)
+    if not n:
+        raise TraceError(
+            f"{url}: no log below this prefix (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the URL"
+        )
 
 
 def _is_manifest(path: Path) -> bool:
@@ -56,20 +82,20 @@ def _is_manifest(path: Path) -> bool:
     return False
 
 
-def _of_manifest(path: Path, options: DriveInput) -> Iterator[AuditDrive]:
+def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditDrive]:
     for number, row in enumerate(_rows(path), start=1):
         log = row.pop("log")
         if not log:
-            raise UsageError(f"{path}, row {number}: no log: fill the column log")
+            raise UsageError(f"{named}, row {number}: no log: fill the column log")
         own: dict[str, Any] = {}
         if place := row.pop("map", None):
-            own |= {"map": Path(_beside(path, place)), "map_dir": None}
+            own |= {"map": Path(_beside(named, place)), "map_dir": None}
         if ego := row.pop("ego", None):
             own["ego"] = ego
         if env := row.pop("environment", None):
             own["env"] = (*options.env, *(part.strip() for part in env.split(";") if part.strip()))
         tags = {name: value for name, value in sorted(row.items()) if value}
-        yield AuditDrive(_beside(path, log), replace(options, **own), tags)
+        yield AuditDrive(_beside(named, log), replace(options, **own), tags)
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
@@ -92,6 +118,10 @@ def _as_text(rows: list[dict[str, Any]]) -> Iterator[dict[str, str]]:
         yield {name: "" if value is None else str(value) for name, value in row.items()}
 
 
-def _beside(manifest: Path, place: str) -> str:
-    """Return a path of a manifest, relative to the manifest's folder; a URL stays as it is."""
-    return place if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", place) else str(manifest.parent / place)
+def _beside(manifest: str, place: str) -> str:
+    """Return a path of a manifest, relative to where the manifest is named; a URL or an absolute path stays as it is."""
+    if is_url(place):
+        return place
+    if is_url(manifest):
+        return f"{manifest.rpartition('/')[0]}/{place}"
+    return str(Path(manifest).parent / place)

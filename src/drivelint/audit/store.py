@@ -8,6 +8,7 @@ import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from drivelint.audit.bucket import Bucket, is_url
 from drivelint.errors import UsageError
 from drivelint.result.files import OutputError
 
@@ -145,7 +146,9 @@ class LocalFolder:
 
 
 def open_store(dest: str) -> ResultStore:
-    """Return the store that `--out` names. Errors: `UsageError`."""
+    """Return the store that `--out` names: an object store's for a URL, else a folder's. Errors: `UsageError`."""
+    if is_url(dest):
+        return Bucket(dest)
     return LocalFolder(Path(dest))
 
 

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -15,6 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from drivelint import catalogue
+from drivelint.audit import bucket
 from drivelint.audit.model import AuditDrive, JudgeSettings, Receipt, Task, digest
 from drivelint.audit.store import open_store
 from drivelint.engine.barrier import RefusedLog, judge_apart, refused
@@ -23,7 +25,7 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
-from drivelint.errors import DriveLintError, TraceError
+from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.audit.store import ResultStore
-    from drivelint.drive.trace import Identity
+    from drivelint.drive.trace import DriveInput, Identity
     from drivelint.engine.batch import Drive
 
 TABLES = ("verdicts", "findings", "drives")
@@ -55,11 +57,17 @@ class Judge:
         store.insert(self._con, "profile", profiles)
         self._stable = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
         self._session = JudgingSession(self._con, rules, params, None, memory=Memory(self._con, memory))
-        self._library = cache(MapLibrary)
+        self._library, self._maps = cache(MapLibrary), cache(self._map)
+        self._home = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))
+        self._folder = self._home
 
     def judge(self, task: Task) -> list[Receipt]:
         """Judge the drives of a task that have no receipt yet; write tables, then receipts; return the receipts of all."""
-        results = open_store(task.dest)
+        with TemporaryDirectory(dir=self._home) as folder:
+            self._folder = Path(folder)
+            return self._judge(task, open_store(task.dest))
+
+    def _judge(self, task: Task, results: ResultStore) -> list[Receipt]:
         receipts: list[Receipt] = []
         read: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
         for drive in task.drives:
@@ -84,18 +92,35 @@ class Judge:
 
     def _read(self, drive: AuditDrive, run_id: str, results: ResultStore) -> tuple[str, Receipt | Drive | RefusedLog]:
         """Return the drive's key, and its receipt if there is one, else the drive as it was read."""
-        path = Path(drive.log)
-        key = drive.source_id
+        path, key = Path(drive.log), drive.source_id
         try:
+            path, options = self._at_hand(drive)
             identity = identify(path)
             key = digest([run_id, drive.options_id, identity.sha256])
             if (content := results.read(receipt_name(key))) is not None:
                 return key, replace(Receipt.from_json(content), reused=True)
-            trace = read_trace(path, drive.options.ingest_options())
+            trace = read_trace(path, options.ingest_options())
             _require_unchanged(path, identity)
-            return key, drive_with_map(trace, self._library(drive.options))
+            return key, drive_with_map(trace, self._library(options))
         except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
             return key, refused(path, error)
+
+    def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
+        """Return where the log lies on this machine, and the drive's options with a map that does; both copied if they are afar."""
+        options = drive.options
+        if options.map is not None and (url := bucket.as_url(options.map)) is not None:
+            options = replace(options, map=self._maps(url))
+        if not bucket.is_url(drive.log):
+            return Path(drive.log), options
+        return bucket.download(bucket.Object(drive.log, drive.size, drive.stamp), self._folder), options
+
+    def _map(self, url: str) -> Path:
+        found = bucket.look(url)
+        if found is None:
+            raise MapError(f"map {url}: no such object: check the URL")
+        home = self._home / "maps" / digest(url)
+        home.mkdir(parents=True)
+        return bucket.download(found, home)
 
     def _judged(self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore) -> list[Receipt]:
         """Judge drives with different ids together, and write what comes out."""
