@@ -5,6 +5,7 @@ receipt per drive; a drive without a receipt has no result. Small files are pack
 """
 
 from drivelint.audit.model import JudgeSettings
-from drivelint.audit.run import AuditRequest, AuditSummary, audit, merge
+from drivelint.audit.run import AuditRequest, audit, merge
+from drivelint.audit.summary import AuditSummary
 
 __all__ = ["AuditRequest", "AuditSummary", "JudgeSettings", "audit", "merge"]

@@ -48,12 +48,13 @@ def tasks(drives: Iterable[AuditDrive], dest: str, run_id: str, settings: JudgeS
 
 @dataclass
 class Driver:
-    """Runs tasks on an executor. `tell` hears of every receipt; `busy` is called between tasks."""
+    """Runs tasks on an executor. `tell` hears of every receipt, `done` of the drives that have theirs; `busy` is called between tasks."""
 
     executor: Executor
     results: ResultStore
     tell: Callable[[Receipt], None]
     busy: Callable[[], None] = lambda: None
+    done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
         """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`."""
@@ -75,6 +76,8 @@ class Driver:
                     raise outcome.error
                 if outcome.lost is not None:
                     again.extend(self._after_loss(outcome.task, outcome.lost))
+                else:
+                    self.done(outcome.task.drives)
                 for receipt in outcome.receipts:
                     self.tell(receipt)
             self.busy()
@@ -88,6 +91,7 @@ class Driver:
             return [replace(task, attempts=attempts)]
         for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
             self.tell(receipt)
+        self.done(task.drives)
         return []
 
     def _quarantine(self, drive: AuditDrive, why: str) -> list[Receipt]:

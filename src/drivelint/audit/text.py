@@ -8,7 +8,7 @@ from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
-    from drivelint.audit.run import AuditSummary
+    from drivelint.audit.summary import AuditSummary
 
 
 def summary_text(counted: AuditSummary, out: str) -> str:

@@ -45,6 +45,23 @@ def audit(
     shard: Annotated[
         str | None, option("--shard", "I/N", "Judge the I-th of N parts; `drivelint merge DEST` packs them at the end.")
     ] = None,
+    claim: Annotated[
+        bool,
+        option(
+            "--claim",
+            None,
+            "Share the drives with other audits into DEST, as they come; `merge` packs them at the end.",
+        ),
+    ] = False,
+    lease: Annotated[
+        float,
+        option(
+            "--lease",
+            "S",
+            "With --claim: drives of an audit that shows no sign of life for so long are taken over.",
+            min=1,
+        ),
+    ] = 60.0,
     retry_errors: Annotated[
         bool, option("--retry-errors", None, "Judge drives again that could not be judged before.")
     ] = False,
@@ -79,6 +96,8 @@ def audit(
         worker_memory=None if worker_memory is None else values.parse_memory(worker_memory),
         drive_timeout_s=drive_timeout,
         shard=values.parse_shard(shard),
+        claim=claim,
+        lease_s=lease,
         retry_errors=retry_errors,
     )
     with bar(quiet) as progress:
@@ -88,7 +107,7 @@ def audit(
 
 
 def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")]) -> None:
-    """Pack the results of an audit's shards, when all of them have ended."""
+    """Pack the results of audits with --shard or --claim, when all of them have ended."""
     from drivelint.audit import merge as merged
     from drivelint.audit.text import summary_text
 
