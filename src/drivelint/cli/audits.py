@@ -65,6 +65,10 @@ def audit(
     retry_errors: Annotated[
         bool, option("--retry-errors", None, "Judge drives again that could not be judged before.")
     ] = False,
+    cluster: Annotated[
+        str | None,
+        option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge many drives, as many at a time as there are cores.
@@ -99,6 +103,7 @@ def audit(
         claim=claim,
         lease_s=lease,
         retry_errors=retry_errors,
+        cluster=cluster,
     )
     with bar(quiet) as progress:
         counted = run_interruptible(lambda: audited(request, progress))
