@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.audit.executors import ClusterError, open_executor
+from drivelint.audit.executors import ClusterError
+from drivelint.audit.executors.choice import open_executor
 from drivelint.errors import ExitCode, UsageError
 from tests.audit import fleet
 from tests.audit.clusters import dask

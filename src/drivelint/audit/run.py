@@ -13,7 +13,7 @@ from drivelint.audit import listing
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, tasks
-from drivelint.audit.executors import open_executor
+from drivelint.audit.executors.choice import open_executor
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.store import LocalFolder, open_store
