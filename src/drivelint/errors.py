@@ -22,6 +22,11 @@ class DriveLintError(Exception):
 
     exit_code: ExitCode = ExitCode.USAGE
 
+    @property
+    def is_of_the_run(self) -> bool:
+        """Whether the fault is no drive's: every other drive of the run would meet it, too."""
+        return self.exit_code == ExitCode.TEMPFAIL
+
 
 class UsageError(DriveLintError):
     """The command line, a settings file or a mapping cannot be understood."""
@@ -48,5 +53,11 @@ class MemoryShortError(DriveLintError):
 
 class TraceError(DriveLintError):
     """A log is missing, unreadable, or holds nothing that can be judged."""
+
+    exit_code = ExitCode.NOT_JUDGED
+
+
+class InternalError(DriveLintError):
+    """A fault of drivelint itself on one drive: the drive is not judged, the others are."""
 
     exit_code = ExitCode.NOT_JUDGED

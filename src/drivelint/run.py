@@ -5,27 +5,26 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import duckdb
 import pyarrow as pa
 
 from drivelint import catalogue
 from drivelint.annotate import Annotator
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.batch import Drive, RefusedLog, cut_batches, read_drives, sorted_logs
+from drivelint.engine.barrier import RefusedLog, judge_apart
+from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
-from drivelint.errors import DriveLintError, MemoryShortError, TraceError, UsageError
+from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.result import collect, evidence
-from drivelint.result.files import OutputError
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
@@ -142,30 +141,6 @@ def _judge(
                 if note not in said:
                     progress.note(f"{item.trace.path.name}: {note}")
             said.update(item.trace.notes)
-    refused += _judged(session, drives)
+    refused += judge_apart(session, drives)
     progress.advance(len(drives) + len(refused))
     return refused
-
-
-def _judged(session: JudgingSession, drives: Sequence[Drive]) -> list[RefusedLog]:
-    try:
-        session.judge(drives)
-    except OutputError:
-        raise  # the folder for the results fails, not the drive
-    except (DriveLintError, duckdb.Error) as error:
-        if len(drives) == 1:
-            return [_failed(drives[0], error)]
-        # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
-        drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
-        many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
-        pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
-        return [each for piece in pieces for each in _judged(session, piece)]
-    return []
-
-
-def _failed(drive: Drive, error: Exception) -> RefusedLog:
-    if isinstance(error, DriveLintError):
-        return RefusedLog(drive.trace.path, error)
-    if isinstance(error, duckdb.OutOfMemoryException):
-        return RefusedLog(drive.trace.path, MemoryShortError(str(drive.trace.path)))
-    return RefusedLog(drive.trace.path, TraceError(f"{drive.trace.path}: {str(error).splitlines()[0]}"))

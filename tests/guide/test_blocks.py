@@ -32,7 +32,7 @@ from tests.shared_data import ROOT, shared
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
 NAMES = [page.name for page in PAGES]
-MARKS = {"", "run", "prints", "file", "command", "workflow", "condition"}
+MARKS = {"", "run", "prints", "file", "command", "workflow", "condition", "shards"}
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,8 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
+from drivelint.cli import audits, options, results, rules, values
 from drivelint.cli import docs as docs_
-from drivelint.cli import options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
 from drivelint.cli.options import Texts, argument, option
@@ -229,6 +229,9 @@ def convert(
 app.command()(results.report)
 app.command()(results.explain)
 app.command("diff")(results.diff)
+app.command()(audits.audit)
+app.command()(audits.merge)
+app.command()(audits.sql)
 app.command("docs")(docs_.docs)
 
 

@@ -18,6 +18,7 @@ Format = Literal["text", "json"]
 """How results are printed on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
 ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
+SqlFormat = Literal["text", "csv", "json"]
 DiffFormat = Literal["text", "json", "markdown"]
 RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 FailOn = Literal["critical", "major", "minor", "never"]

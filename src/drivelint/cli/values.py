@@ -40,6 +40,16 @@ def parse_memory(text: str | None) -> int | None:
     return size
 
 
+def parse_shard(text: str | None) -> tuple[int, int] | None:
+    """Read I/N, the I-th of N parts. Errors: `UsageError`."""
+    if text is None:
+        return None
+    said = re.fullmatch(r"(\d+)/(\d+)", text.strip())
+    if said is None or not 1 <= int(said[1]) <= int(said[2]):
+        raise UsageError(f"--shard {text!r}: write which of how many parts, such as 1/3")
+    return int(said[1]), int(said[2])
+
+
 def _numbers(text: str) -> tuple[float, ...]:
     """Return the comma-separated numbers; an empty tuple if one of them is not a number."""
     try:

@@ -14,8 +14,9 @@ import pyarrow.compute as pc
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
+from drivelint.engine.barrier import RefusedLog, refused
 from drivelint.engine.earth import place_on_earth
-from drivelint.errors import DriveLintError, MapError
+from drivelint.errors import MapError
 from drivelint.formats import read_trace
 
 if TYPE_CHECKING:
@@ -74,14 +75,6 @@ class Drive:
         return max(self.n_states, sum(self.pairs_by_ego.values()))
 
 
-@dataclass(frozen=True)
-class RefusedLog:
-    """One log that cannot be judged, and why."""
-
-    path: Path
-    error: DriveLintError
-
-
 def sorted_logs(paths: Sequence[Path]) -> list[Path]:
     """Return the logs in an order that does not depend on how they were named or where they lie: by stem, then by content."""
     stems = Counter(path.stem for path in paths)
@@ -109,8 +102,8 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
 def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
     try:
         return drive_with_map(future.result(), library)
-    except DriveLintError as error:
-        return RefusedLog(path, error)
+    except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
+        return refused(path, error)
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:

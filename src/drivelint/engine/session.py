@@ -79,6 +79,10 @@ class JudgingSession:
         """Whether this very log was judged before."""
         return drive.trace.drive_id in self._seen
 
+    def forget_judged(self) -> None:
+        """Judge logs anew that were judged before: the results of these were taken out of the database."""
+        self._seen.clear()
+
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, nothing of it stays behind.
 

@@ -223,7 +223,8 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     bodies = dict(_TABLE.findall(_declarations()))
     for table in tables:
         body = bodies[table]
-        for column in types.keys() & column_comments()[table].keys() if table not in _AS_TOLD else ():
+        as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # which has the ids of more than one batch
+        for column in types.keys() & column_comments()[table].keys() if not as_text else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
 

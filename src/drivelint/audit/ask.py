@@ -1,0 +1,66 @@
+"""`drivelint sql`: one SELECT over the tables of an audit or a check. It changes nothing and opens no other file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import duckdb
+
+from drivelint.audit.compact import create_views, database, escaped
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE
+from drivelint.audit.store import LocalFolder, open_store
+from drivelint.errors import UsageError
+from drivelint.sql.store import quoted
+
+if TYPE_CHECKING:
+    from drivelint.audit.store import ResultStore
+
+
+def ask(dest: str, query: str, format_: str) -> str:
+    """Return the rows of a SELECT as text, csv or json. Errors: `UsageError` for another statement, or one that fails."""
+    with database() as con, TemporaryDirectory(prefix="drivelint-sql-") as home:
+        _open(con, dest, Path(home))
+        try:
+            statements = con.extract_statements(query)
+            if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
+                raise UsageError("drivelint sql takes one SELECT: give one, without others before or behind it")
+            if format_ == "text":
+                return f"{con.sql(query)}\n"
+            if format_ == "csv":
+                file = Path(home) / "rows.csv"
+                con.execute(f"COPY ({query.strip().rstrip(';')}) TO {quoted(file)} (FORMAT csv, HEADER)")
+                return file.read_text(encoding="utf-8")
+            rows = con.execute(statements[0]).to_arrow_table().to_pylist()
+        except duckdb.Error as error:
+            raise UsageError(f"drivelint sql: {' '.join(str(error).split())[:400]}") from error
+    return json.dumps(rows, indent=2, default=str, ensure_ascii=False) + "\n"
+
+
+def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path) -> None:
+    """Create the views of an audit, or of a check's result, and close the database off from everything else."""
+    results = open_store(dest)
+    if results.read(AUDIT_FILE) is not None:
+        create_views(con, results, home)
+        _view(con, results, "rules", RULES_FILE, home)
+    else:
+        files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
+        if "verdicts.parquet" not in files:
+            raise UsageError(
+                f"{dest}: neither an audit nor a result is here: name the folder of audit --out or check --out"
+            )
+        for file in sorted(files):
+            _view(con, results, Path(file).stem, file, home)
+    folders = [
+        str(home),
+        *([str(results.root), *escaped([str(results.root)])] if isinstance(results, LocalFolder) else []),
+    ]
+    con.execute("SET allowed_directories=?", [folders])
+    con.execute("SET enable_external_access=false")
+    con.execute("SET lock_configuration=true")
+
+
+def _view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, home: Path) -> None:
+    con.read_parquet(escaped([str(results.fetch(file, home))])).create_view(name)

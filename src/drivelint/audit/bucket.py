@@ -1,0 +1,217 @@
+"""Object stores: `s3://`, `gs://`, `az://`, for results, logs, maps and manifests. Credentials are those of the environment."""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from datetime import timedelta
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+
+import obstore
+from obstore import exceptions
+from obstore.store import from_url
+
+from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
+from drivelint.result.files import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from pathlib import Path
+
+T = TypeVar("T")
+
+SCHEMES: Final = ("s3", "gs", "az")
+_URL: Final = re.compile(rf"({'|'.join(SCHEMES)})://([^/]+)/?(.*)", re.DOTALL)
+_RETRY: Final[Any] = {
+    "max_retries": 8,
+    "retry_timeout": timedelta(seconds=120),
+    "backoff": {"init_backoff": timedelta(seconds=0.1), "max_backoff": timedelta(seconds=10), "base": 2},
+}
+"""A store that is busy is asked again, ever more slowly; after that the run ends with exit code 75."""
+_ATTEMPTS: Final = 6
+"""How often an answer that is cut off is asked for."""
+_CLIENT: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
+
+
+class StoreError(DriveLintError):
+    """An object store that does not answer, or refuses: the run can be given again."""
+
+    exit_code = ExitCode.TEMPFAIL
+
+
+class Object(NamedTuple):
+    """An object of a store: its URL, its size in bytes, and its ETag, which changes with what it holds."""
+
+    url: str
+    size: int
+    e_tag: str
+
+
+def is_url(text: str) -> bool:
+    """Whether a text names something in an object store."""
+    return _URL.fullmatch(text) is not None
+
+
+def as_url(path: Path) -> str | None:
+    """Return the URL that was given where a path is expected; None: it is a path."""
+    text = re.sub(r"^(\w+):/(?=[^/])", r"\1://", path.as_posix())
+    return text if is_url(text) else None
+
+
+@cache
+def _store(root: str) -> Any:
+    """Return the client for a bucket (`s3://name`). Errors: `UsageError` where it cannot be configured."""
+    try:
+        return from_url(root, client_options=_CLIENT, retry_config=_RETRY)
+    except (exceptions.BaseError, ValueError) as error:
+        raise UsageError(f"{root}: {_told(error)}") from error
+
+
+def _opened(url: str) -> tuple[Any, str]:
+    found = _URL.fullmatch(url)
+    if found is None:
+        raise UsageError(f"{url}: write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX or az://CONTAINER/PREFIX")
+    return _store(f"{found[1]}://{found[2]}"), found[3].strip("/")
+
+
+class Bucket:
+    """A prefix of a bucket as `ResultStore`. An object is there whole or not at all; `create` is one conditional PUT."""
+
+    def __init__(self, url: str) -> None:
+        self._client, self._prefix = _opened(url)
+        self._url = url.rstrip("/")
+
+    def create(self, name: str, content: bytes) -> bool:
+        """See `ResultStore.create`."""
+        with self._told(name):
+            try:
+                obstore.put(self._client, self._path(name), content, mode="create")
+            except (exceptions.AlreadyExistsError, exceptions.PreconditionError):
+                return False
+        return True
+
+    def write(self, name: str, content: bytes) -> None:
+        """See `ResultStore.write`."""
+        with self._told(name):
+            obstore.put(self._client, self._path(name), content)
+
+    def read(self, name: str) -> bytes | None:
+        """See `ResultStore.read`."""
+        with self._told(name):
+            try:
+                return _whole(lambda: bytes(obstore.get(self._client, self._path(name)).bytes()))
+            except FileNotFoundError:
+                return None
+
+    def names(self, prefix: str) -> Iterator[str]:
+        """See `ResultStore.names`."""
+        with self._told(prefix):
+            for about in _listed(self._client, self._path(prefix)):
+                yield about["path"].removeprefix(self._prefix).lstrip("/")
+
+    def delete(self, names: Iterable[str]) -> None:
+        """See `ResultStore.delete`."""
+        with self._told(""):
+            some = [self._path(name) for name in names]
+            for start in range(0, len(some), 1_000):
+                obstore.delete(self._client, some[start : start + 1_000])
+
+    def fetch(self, name: str, folder: Path) -> Path:
+        """See `ResultStore.fetch`."""
+        path = folder / name
+        if not path.is_file():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(self.read(name) or b"")
+        return path
+
+    def _path(self, name: str) -> str:
+        return f"{self._prefix}/{name}".strip("/")
+
+    @contextmanager
+    def _told(self, name: str) -> Iterator[None]:
+        try:
+            yield
+        except (exceptions.BaseError, OSError) as error:
+            raise OutputError(f"{self._url}/{name}: {_told(error)}: try again later") from error
+
+
+def list_objects(url: str) -> Iterator[Object]:
+    """Yield the objects below a prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
+    client, prefix = _opened(url)
+    root = "/".join(url.split("/")[:3])
+    try:
+        for about in _listed(client, prefix):
+            yield Object(f"{root}/{about['path']}", about["size"], about["e_tag"] or "")
+    except (exceptions.BaseError, OSError) as error:
+        raise StoreError(f"{url}: {_told(error)}: try again later") from error
+
+
+def look(url: str) -> Object | None:
+    """Return an object's size and ETag; None: there is none of that name. Errors: `StoreError`."""
+    client, path = _opened(url)
+    try:
+        about = obstore.head(client, path)
+    except FileNotFoundError:
+        return None
+    except (exceptions.BaseError, OSError) as error:
+        raise StoreError(f"{url}: {_told(error)}: try again later") from error
+    return Object(url, about["size"], about["e_tag"] or "")
+
+
+def download(found: Object, folder: Path) -> Path:
+    """Copy an object into a folder, under its own name; return the copy's path.
+
+    Errors: `TraceError` for an object that is gone or has changed since it was found; `StoreError`.
+    """
+    client, path = _opened(found.url)
+    copy = folder / (path.rpartition("/")[2] or "object")
+    options: Any = {"if_match": found.e_tag} if found.e_tag else {}
+
+    def write() -> None:
+        with copy.open("wb") as file:
+            for part in obstore.get(client, path, options=options).stream():
+                file.write(part)
+
+    try:
+        _whole(write)
+    except FileNotFoundError:
+        raise TraceError(f"{found.url}: no such object: check the URL") from None
+    except exceptions.PreconditionError:
+        raise TraceError(f"{found.url}: changed since it was listed: audit it again") from None
+    except (exceptions.BaseError, OSError) as error:
+        raise StoreError(f"{found.url}: {_told(error)}: try again later") from error
+    if copy.stat().st_size != found.size:
+        raise StoreError(f"{found.url}: {copy.stat().st_size} of {found.size} bytes came: try again later")
+    return copy
+
+
+def _listed(client: Any, prefix: str) -> Iterator[Any]:
+    """Yield what a store tells of each object below a prefix, page after page; a page that was cut off is asked for again."""
+    last: str | None = None
+    for attempt in range(_ATTEMPTS):
+        try:
+            for some in obstore.list(client, prefix=prefix or None, offset=last):
+                for about in some:
+                    yield about
+                    last = about["path"]
+            return  # noqa: TRY300 - the loop's end
+        except (exceptions.GenericError, OSError):
+            if attempt + 1 == _ATTEMPTS:
+                raise
+
+
+def _whole(job: Callable[[], T]) -> T:
+    """Run a job that reads an object; again if the answer was cut off, which the client does not do by itself."""
+    for _ in range(_ATTEMPTS - 1):
+        try:
+            return job()
+        except FileNotFoundError:
+            raise
+        except (exceptions.GenericError, OSError):
+            continue
+    return job()
+
+
+def _told(error: Exception) -> str:
+    return " ".join(str(error).split())[:300]

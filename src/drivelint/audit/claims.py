@@ -1,0 +1,109 @@
+"""Claims: how several audits into one place share its drives without a scheduler.
+
+Who judges a drive writes a claim with its name first, and a sign of life every few seconds. A claim of somebody without a sign of life
+for `LEASE_S` counts no more. Claims only save work: should two judge the same drive, one receipt wins.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+import uuid
+from contextlib import contextmanager
+from itertools import islice
+from typing import TYPE_CHECKING, Final
+
+from drivelint.audit.driver import TASK_DRIVES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from drivelint.audit.model import AuditDrive
+    from drivelint.audit.store import ResultStore
+
+LEASE_S: Final = 60.0
+"""Seconds without a sign of life after which claims lapse; the clocks of the machines must agree better than that."""
+
+
+class Claims:
+    """The claims of one audit among several into the same place."""
+
+    def __init__(self, results: ResultStore, lease_s: float = LEASE_S) -> None:
+        self._results = results
+        self._lease_s = lease_s
+        self._owner = uuid.uuid4().hex
+        self._stop = threading.Event()
+
+    @contextmanager
+    def alive(self) -> Iterator[None]:
+        """Give signs of life until the block ends."""
+        self._sign()
+        beat = threading.Thread(target=self._beat, daemon=True)
+        beat.start()
+        try:
+            yield
+        finally:
+            self._stop.set()
+            beat.join()
+            self._results.delete([f"claims/owners/{self._owner}.json"])
+
+    def mine(self, todo: Callable[[], Iterable[AuditDrive]]) -> Iterator[AuditDrive]:
+        """Yield the drives that this audit gets. Those of others are waited for: done, or free again when the other one is dead.
+
+        `todo`: what is to be judged by all, as often as it is asked.
+        """
+        while True:
+            n_waiting = n_taken = 0
+            left = iter(todo())
+            while some := list(islice(left, TASK_DRIVES)):
+                alive: dict[str, bool] = {}
+                for drive in some:
+                    owner = self._take(drive)
+                    if owner is None:
+                        n_taken += 1
+                        yield drive
+                    elif owner != "":
+                        if owner not in alive:
+                            alive[owner] = self._is_alive(owner)
+                        if alive[owner]:
+                            n_waiting += 1
+                        else:
+                            self._results.write(_name(drive), self._claim())
+                            n_taken += 1
+                            yield drive
+            if not n_waiting:
+                return
+            if not n_taken:
+                time.sleep(self._lease_s / 6)
+
+    def done(self, drives: Iterable[AuditDrive]) -> None:
+        """Say that drives have their results."""
+        for drive in drives:
+            self._results.write(_name(drive), b'{"owner": ""}\n')
+
+    def _take(self, drive: AuditDrive) -> str | None:
+        """Claim a drive. Return None where it is ours now, '' where it is done, else who has it."""
+        if self._results.create(_name(drive), self._claim()):
+            return None
+        there = self._results.read(_name(drive))
+        owner = "" if there is None else str(json.loads(there)["owner"])
+        return "" if owner == self._owner else owner  # our own: it is being judged
+
+    def _claim(self) -> bytes:
+        return f'{{"owner": "{self._owner}"}}\n'.encode()
+
+    def _is_alive(self, owner: str) -> bool:
+        seen = self._results.read(f"claims/owners/{owner}.json")
+        return seen is not None and time.time() - float(json.loads(seen)["at"]) < self._lease_s
+
+    def _sign(self) -> None:
+        self._results.write(f"claims/owners/{self._owner}.json", f'{{"at": {time.time()}}}\n'.encode())
+
+    def _beat(self) -> None:
+        while not self._stop.wait(self._lease_s / 6):
+            self._sign()
+
+
+def _name(drive: AuditDrive) -> str:
+    return f"claims/{drive.source_id[:2]}/{drive.source_id}.json"

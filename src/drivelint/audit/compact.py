@@ -1,0 +1,247 @@
+"""Packs the many small files of an audit into few: chunks of some thousand drives, each a file per table and its receipts.
+
+A chunk is there once its receipts are: they are written last. What a chunk holds is removed from the small files only then, so
+that an audit that is killed at any moment neither loses a drive nor has it twice.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+import duckdb
+import msgspec
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from drivelint.audit.driver import empty_rows
+from drivelint.audit.model import Receipt, digest
+from drivelint.audit.worker import TABLES, batch_name, receipt_name
+from drivelint.errors import DriveLintError, UsageError
+from drivelint.sql.statements import statement
+from drivelint.sql.store import quoted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from drivelint.audit.store import ResultStore
+
+CHUNK_DRIVES: Final = 4_000
+MEMORY: Final = "1GB"
+RECEIPT_SCHEMA: Final = pa.schema(
+    [
+        *((name, pa.string()) for name in ("key", "source_id", "batch", "status", "log")),
+        ("size", pa.int64()),
+        *((name, pa.string()) for name in ("stamp", "drive_id", "log_sha256", "map_sha256", "reason")),
+        ("lossy", pa.bool_()),
+        ("rows_sha256", pa.string()),
+        ("km", pa.float64()),
+        ("duration_s", pa.float64()),
+        ("counts", pa.map_(pa.string(), pa.int64())),
+        ("failed", pa.map_(pa.string(), pa.int64())),
+        ("unknown", pa.int64()),
+        ("tags", pa.map_(pa.string(), pa.string())),
+        ("n_in_batch", pa.int64()),
+        ("version", pa.int64()),
+    ]
+)
+_KEYS: Final = "key, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, ref_id NULLS FIRST, t_start_ns NULLS FIRST"
+_ORDER: Final = {"verdicts": _KEYS, "findings": f"{_KEYS}, finding_id", "drives": "key"}
+
+
+def chunk_name(table: str, chunk: str) -> str:
+    """Return the name of a chunk's file of a table, or of its receipts."""
+    return f"tables/{table}/{chunk}.parquet"
+
+
+def chunks(results: ResultStore) -> list[str]:
+    """Return the ids of the chunks that are whole, sorted."""
+    return sorted(Path(name).stem for name in results.names("tables/receipts"))
+
+
+def compact(results: ResultStore, *, while_judging: bool = False) -> int:
+    """Pack every receipt that is in no chunk yet, with its rows; return how many there were.
+
+    `while_judging`: workers may be writing, so only batches are packed of which all receipts are there.
+    Only one process may compact an audit at a time. Errors: `OutputError`; `DriveLintError` for results that contradict each other.
+    """
+    _remove_unfinished(results)
+    n_packed = 0
+    with database() as con, TemporaryDirectory(prefix="drivelint-compact-") as home:
+        for receipts in _loose_receipts(results, whole_batches=while_judging):
+            n_packed += _pack(results, con, receipts, Path(home))
+    if not while_judging:
+        _remove_orphans(results)
+    return n_packed
+
+
+def drop(results: ResultStore, keys: pa.Array) -> None:
+    """Take the drives with these keys out of the chunks, so that they are judged again. Not while anybody compacts."""
+    with TemporaryDirectory(prefix="drivelint-compact-") as home:
+        for chunk in chunks(results) if len(keys) else ():
+            receipts = _read(results, "receipts", chunk, Path(home))
+            kept = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
+            if kept.num_rows == receipts.num_rows:
+                continue
+            left = kept["key"].combine_chunks()
+            rows = {table: _read(results, table, chunk, Path(home)) for table in TABLES}
+            rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
+            # first the old receipts: killed in between, a drive is judged again, where it would be there twice
+            results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
+            if kept.num_rows:
+                _write_chunk(results, {table: _parquet(of) for table, of in rows.items()}, kept)
+
+
+@contextmanager
+def database() -> Iterator[duckdb.DuckDBPyConnection]:
+    """Open a database in memory that uses the disk beyond `MEMORY`."""
+    with TemporaryDirectory(prefix="drivelint-audit-") as spill, duckdb.connect() as con:
+        con.execute(f"SET memory_limit='{MEMORY}'")
+        con.execute("SET temp_directory=?", [spill])
+        con.execute("SET enable_progress_bar=false")
+        con.execute("SET python_enable_replacements=false")
+        yield con
+
+
+def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path) -> None:
+    """Create the views `verdicts`, `findings`, `drives`, `receipts` over all chunks, which must be packed. `home`: for copies."""
+    ids = chunks(results)
+    for table in (*TABLES, "receipts"):
+        files = [str(results.fetch(chunk_name(table, each), home)) for each in ids]
+        if files:
+            con.read_parquet(escaped(files)).create_view(table, replace=True)
+        else:
+            con.register("_empty", RECEIPT_SCHEMA.empty_table() if table == "receipts" else empty_rows()[table])
+            con.execute(f"CREATE OR REPLACE TABLE _no_{table} AS FROM _empty")
+            con.execute(f"CREATE OR REPLACE VIEW {table} AS FROM _no_{table}")
+
+
+def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
+    """Return a hash of all rows of the views, which does not depend on chunks, order, or where the logs lie."""
+    told: list[Any] = []
+    for table in TABLES:
+        left_out = " EXCLUDE (log)" if table == "drives" else ""
+        row = con.execute(statement("audit/digest", table=table, columns=f"*{left_out}")).fetchone()
+        told.append([str(value) for value in row or ()])
+    return digest(told)
+
+
+def _loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[list[Receipt]]:
+    """Yield the receipts that are in no chunk, those of a batch together, some thousand at a time."""
+    by_batch: dict[str, list[Receipt]] = {}
+    for name in sorted(results.names("receipts")):
+        content = results.read(name)
+        if content is None:
+            continue
+        try:
+            receipt = Receipt.from_json(content)
+        except msgspec.MsgspecError as error:
+            raise UsageError(
+                f"{name}: not a receipt of drivelint ({error}): remove it to judge the drive again"
+            ) from error
+        by_batch.setdefault(receipt.batch, []).append(receipt)
+    some: list[Receipt] = []
+    for _, receipts in sorted(by_batch.items()):
+        if whole_batches and len(receipts) < receipts[0].n_in_batch:
+            continue
+        some += receipts
+        if len(some) >= CHUNK_DRIVES:
+            yield some
+            some = []
+    if some:
+        yield some
+
+
+def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> int:
+    """Write a chunk of these receipts and their rows, then remove the small files. Return how many drives it has."""
+    known = _known(results, con, receipts, home)
+    new = [receipt for receipt in receipts if receipt.key not in known]
+    if new:
+        table = pa.Table.from_pylist([_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
+        con.register("_packed", table.select(["key", "batch"]))
+        rows = {}
+        for name in TABLES:
+            files = {each.batch: str(results.fetch(batch_name(name, each.batch), home)) for each in new}
+            con.read_parquet(escaped(files.values()), filename=True).create_view("_rows", replace=True)
+            rows[name] = home / f"{name}.parquet"
+            packed = statement("audit/packed", order=_ORDER[name])
+            written = con.execute(
+                f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
+            ).fetchone()
+            if name == "drives" and written != (len(new),):
+                raise DriveLintError(
+                    f"{len(new)} receipts have {written} rows in the table drives: judge these drives again"
+                )
+        con.unregister("_packed")
+        _write_chunk(results, {name: file.read_bytes() for name, file in rows.items()}, table)
+    results.delete(receipt_name(receipt.key) for receipt in receipts)
+    results.delete(batch_name(name, batch) for batch in {each.batch for each in receipts} for name in TABLES)
+    return len(new)
+
+
+def _known(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> set[str]:
+    """Return the keys that a chunk has already: a log that was moved, or a compaction that was killed."""
+    ids = chunks(results)
+    if not ids:
+        return set()
+    files = [str(results.fetch(chunk_name("receipts", each), home)) for each in ids]
+    con.register("_new", pa.table({"key": [r.key for r in receipts], "rows_sha256": [r.rows_sha256 for r in receipts]}))
+    con.read_parquet(escaped(files)).create_view("_old", replace=True)
+    found = con.execute(statement("audit/known")).fetchall()
+    con.unregister("_new")
+    for key, there, here in found:
+        if there != here:
+            raise DriveLintError(
+                f"two workers got different results for one key ({key}): use one machine image for all workers"
+            )
+    return {key for key, _, _ in found}
+
+
+def _write_chunk(results: ResultStore, tables: dict[str, bytes], receipts: pa.Table) -> None:
+    chunk = digest(receipts["key"].to_pylist())[:32]
+    for table, content in tables.items():
+        results.write(chunk_name(table, chunk), content)
+    results.write(chunk_name("receipts", chunk), _parquet(receipts))
+
+
+def _remove_unfinished(results: ResultStore) -> None:
+    """Remove files of chunks without receipts: their compaction was killed, and what they hold is still in small files."""
+    whole = set(chunks(results))
+    results.delete(
+        name for table in TABLES for name in list(results.names(f"tables/{table}")) if Path(name).stem not in whole
+    )
+
+
+def _remove_orphans(results: ResultStore) -> None:
+    """Remove batches without a receipt: their worker was killed, and their drives have no result."""
+    used = {
+        Receipt.from_json(content).batch
+        for name in results.names("receipts")
+        if (content := results.read(name)) is not None
+    }
+    results.delete(
+        name for table in TABLES for name in list(results.names(f"batches/{table}")) if Path(name).stem not in used
+    )
+
+
+def _read(results: ResultStore, table: str, chunk: str, home: Path) -> pa.Table:
+    return pq.read_table(results.fetch(chunk_name(table, chunk), home), partitioning=None)
+
+
+def _row(receipt: Receipt) -> dict[str, Any]:
+    told = msgspec.to_builtins(receipt)
+    return {**told, **{key: sorted(told[key].items()) for key in ("counts", "failed", "tags")}}
+
+
+def _parquet(rows: pa.Table) -> bytes:
+    sink = pa.BufferOutputStream()
+    pq.write_table(rows.combine_chunks(), sink, compression="zstd")
+    return bytes(sink.getvalue())
+
+
+def escaped(files: Iterable[str]) -> list[str]:
+    """Return paths in which DuckDB takes no character for a pattern."""
+    return [file.replace("[", "[[]").replace("*", "[*]").replace("?", "[?]") for file in files]

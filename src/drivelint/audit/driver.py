@@ -1,0 +1,128 @@
+"""The driver: cuts drives into tasks, keeps the workers busy, tries again what was lost, and quarantines what kills workers."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TYPE_CHECKING, Final
+
+from drivelint.audit.model import AuditDrive, Receipt, Task
+from drivelint.audit.worker import TABLES, rows_sha256, with_key, write_batch
+from drivelint.drive.trace import DriveInput
+from drivelint.result import collect
+from drivelint.result.schemas import TABLE_OF_FILE, empty_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    import pyarrow as pa
+
+    from drivelint.audit.executors import Executor
+    from drivelint.audit.model import JudgeSettings
+    from drivelint.audit.store import ResultStore
+
+WINDOW: Final = 4
+"""Tasks per worker that are handed over at a time: enough to keep it busy, few enough to hold in memory."""
+TASK_BYTES: Final = 8_000_000
+TASK_DRIVES: Final = 64
+"""A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
+MOST_ATTEMPTS: Final = 3
+"""A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
+
+
+def tasks(drives: Iterable[AuditDrive], dest: str, run_id: str, settings: JudgeSettings, ahead: int) -> Iterator[Task]:
+    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end."""
+    left = iter(drives)
+    while some := list(islice(left, ahead)):
+        some.sort(key=lambda drive: (-drive.size, drive.log))
+        part: list[AuditDrive] = []
+        for drive in some:
+            part.append(drive)
+            if len(part) >= TASK_DRIVES or sum(each.size for each in part) >= TASK_BYTES:
+                yield Task(tuple(part), dest, run_id, settings)
+                part = []
+        if part:
+            yield Task(tuple(part), dest, run_id, settings)
+
+
+@dataclass
+class Driver:
+    """Runs tasks on an executor. `tell` hears of every receipt, `done` of the drives that have theirs; `busy` is called between tasks."""
+
+    executor: Executor
+    results: ResultStore
+    tell: Callable[[Receipt], None]
+    busy: Callable[[], None] = lambda: None
+    done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
+
+    def run(self, todo: Iterable[Task]) -> None:
+        """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`."""
+        waiting = iter(todo)
+        again: deque[Task] = deque()
+        n_running = 0
+        while True:
+            while n_running < WINDOW * self.executor.capacity:
+                task = again.popleft() if again else next(waiting, None)
+                if task is None:
+                    break
+                self.executor.submit(task)
+                n_running += 1
+            if not n_running:
+                return
+            for outcome in self.executor.wait():
+                n_running -= 1
+                if outcome.error is not None:
+                    raise outcome.error
+                if outcome.lost is not None:
+                    again.extend(self._after_loss(outcome.task, outcome.lost))
+                else:
+                    self.done(outcome.task.drives)
+                for receipt in outcome.receipts:
+                    self.tell(receipt)
+            self.busy()
+
+    def _after_loss(self, task: Task, why: str) -> list[Task]:
+        """Return what is to be done again: the drives of a lost task one by one; a drive alone until it is quarantined."""
+        attempts = task.attempts + 1
+        if len(task.drives) > 1:
+            return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
+        if attempts < MOST_ATTEMPTS:
+            return [replace(task, attempts=attempts)]
+        for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
+            self.tell(receipt)
+        self.done(task.drives)
+        return []
+
+    def _quarantine(self, drive: AuditDrive, why: str) -> list[Receipt]:
+        """Write the receipt of a drive that cannot be judged without losing the worker. Its key is not of its content."""
+        key = drive.source_id
+        name = drive.log.rpartition("/")[2]
+        about = collect.unjudged_drive(name.rpartition(".")[0] or name, name, f"{drive.log}: {why}")
+        rows = {table: with_key(empty_table(TABLE_OF_FILE[table]), key, None) for table in TABLES[:2]}
+        rows["drives"] = with_key(about, key, drive)
+        receipt = Receipt(
+            key=key,
+            source_id=key,
+            batch="",
+            status="quarantined",
+            log=drive.log,
+            size=drive.size,
+            stamp=drive.stamp,
+            drive_id=about["drive_id"][0].as_py(),
+            log_sha256=None,
+            map_sha256=None,
+            reason=why,
+            rows_sha256=rows_sha256(rows),
+            tags=drive.tags,
+        )
+        return write_batch(self.results, rows, [receipt])
+
+
+def empty_rows() -> dict[str, pa.Table]:
+    """Return the tables of an audit without rows."""
+    nobody = AuditDrive("", DriveInput())
+    return {
+        table: with_key(empty_table(TABLE_OF_FILE[table]), "", nobody if table == "drives" else None)
+        for table in TABLES
+    }

@@ -1,0 +1,83 @@
+"""Tasks on a Dask cluster, whose workers have one thread each and lie where logs, map and results can be reached."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.audit.executors import ClusterError, Outcome
+from drivelint.audit.worker import run_task
+
+if TYPE_CHECKING:
+    from drivelint.audit.model import Task
+
+distributed: Any = import_module("distributed")  # not typed
+_LOOK_S: Final = 5.0
+"""Seconds after which a wait looks whether the scheduler is still there."""
+_GONE: Final = frozenset({"cancelled", "lost"})
+
+
+class DaskCluster:
+    """A Dask scheduler at an address, with TLS for `tls://` as Dask's own configuration says.
+
+    A task whose worker dies is lost once the scheduler has tried it as often as its `allowed-failures` say: set them to 0, as the
+    driver tries again, each drive alone. Errors: `ClusterError` where no scheduler answers, has no workers, or they have threads.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            self._client = distributed.Client(address, timeout=30)
+            workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        except (OSError, TimeoutError, ValueError) as error:
+            raise ClusterError(f"--cluster {address}: no Dask scheduler answers: {error}") from error
+        if not workers:
+            raise ClusterError(f"--cluster {address}: the scheduler has no workers: start some")
+        if any(worker["nthreads"] != 1 for worker in workers.values()):
+            raise ClusterError(f"--cluster {address}: a worker has several threads: start workers with --nthreads 1")
+        self._address = address
+        self._capacity = len(workers)
+        self._running: dict[Any, Task] = {}
+
+    @property
+    def capacity(self) -> int:
+        """See `Executor.capacity`."""
+        return self._capacity
+
+    def submit(self, task: Task) -> None:
+        """See `Executor.submit`."""
+        self._running[self._client.submit(run_task, task, pure=False)] = task
+
+    def wait(self) -> list[Outcome]:
+        """See `Executor.wait`."""
+        while self._running:
+            try:
+                ended = distributed.wait(list(self._running), timeout=_LOOK_S, return_when="FIRST_COMPLETED").done
+            except TimeoutError:
+                ended = set()
+            except Exception as error:
+                raise self._gone(str(error)) from error
+            if self._client.status != "running" or any(future.status in _GONE for future in ended):
+                raise self._gone("its tasks were cancelled")
+            if ended:
+                return [_outcome(future, self._running.pop(future)) for future in ended]
+        return []
+
+    def close(self) -> None:
+        """See `Executor.close`. The workers are the cluster's and stay."""
+        for future in self._running:
+            future.cancel()
+        self._client.close(timeout=5)
+
+    def _gone(self, why: str) -> ClusterError:
+        return ClusterError(
+            f"--cluster {self._address}: the scheduler is gone ({why}): start it and give the same command"
+        )
+
+
+def _outcome(future: Any, task: Task) -> Outcome:
+    try:
+        return Outcome(task, future.result())
+    except distributed.KilledWorker as error:
+        return Outcome(task, lost=f"the worker died ({error.last_worker.address if error.last_worker else 'unknown'})")
+    except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
+        return Outcome(task, error=error)

@@ -1,0 +1,93 @@
+"""A pool of processes on this machine: one warm worker per core, with a limit of memory and of time for each task."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from concurrent.futures import FIRST_COMPLETED, wait
+from concurrent.futures import TimeoutError as TookTooLongError
+from typing import TYPE_CHECKING
+
+from pebble import ProcessExpired, ProcessPool
+
+from drivelint.audit.executors import Outcome
+from drivelint.audit.worker import run_task
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+    from drivelint.audit.model import Receipt, Task
+
+TASKS_PER_WORKER = 500
+"""After so many tasks a worker is replaced, so that nothing that a library keeps can add up."""
+
+
+class LocalPool:
+    """Processes that are started anew where one dies; `memory` in bytes is the most that one may take, `timeout_s` a task's time."""
+
+    def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
+        self._workers = workers or _cores()
+        self._timeout_s = timeout_s
+        self._pool = ProcessPool(
+            max_workers=self._workers,
+            max_tasks=TASKS_PER_WORKER,
+            initializer=_begin,
+            initargs=(memory, os.getpid()),
+            context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
+        )
+        self._running: dict[Future[list[Receipt]], Task] = {}
+
+    @property
+    def capacity(self) -> int:
+        """See `Executor.capacity`."""
+        return self._workers
+
+    def submit(self, task: Task) -> None:
+        """See `Executor.submit`."""
+        limit = None if self._timeout_s is None else self._timeout_s * len(task.drives)
+        self._running[self._pool.schedule(run_task, args=[task], timeout=limit)] = task
+
+    def wait(self) -> list[Outcome]:
+        """See `Executor.wait`."""
+        ended = wait(self._running, return_when=FIRST_COMPLETED).done if self._running else ()
+        return [_outcome(future, self._running.pop(future)) for future in ended]
+
+    def close(self) -> None:
+        """See `Executor.close`."""
+        self._pool.stop()  # type: ignore[no-untyped-call]
+        self._pool.join()
+
+
+def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
+    try:
+        return Outcome(task, future.result())
+    except ProcessExpired as error:
+        return Outcome(task, lost=f"the worker died (exit code {error.exitcode})")
+    except TookTooLongError:
+        return Outcome(task, lost="the worker took too long")
+    except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
+        return Outcome(task, error=error)
+
+
+def _begin(memory: int | None, parent: int) -> None:
+    """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        import ctypes
+        import resource
+
+        if memory is not None:
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
+        if os.getppid() != parent:
+            os._exit(1)
+    except (ImportError, OSError, AttributeError):  # not Linux
+        return
+
+
+def _cores() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not Linux
+        return os.cpu_count() or 1

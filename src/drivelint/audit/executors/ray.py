@@ -1,0 +1,72 @@
+"""Tasks on a Ray cluster, whose workers lie where logs, map and results can be reached."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.audit.executors import ClusterError, Outcome
+from drivelint.audit.worker import run_task
+
+if TYPE_CHECKING:
+    from drivelint.audit.model import Task
+
+ray: Any = import_module("ray")  # typed in part, and not installed where the types are checked
+exceptions: Any = import_module("ray.exceptions")
+_LOST: Final = (
+    exceptions.WorkerCrashedError,
+    exceptions.NodeDiedError,
+    exceptions.OutOfMemoryError,
+    exceptions.LocalRayletDiedError,
+    exceptions.ObjectLostError,
+)
+
+
+class RayCluster:
+    """A Ray cluster at an address (`ray://...`, or `auto` for the one of this machine). A task takes one CPU.
+
+    Errors: `ClusterError` where none answers.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            ray.init(address=address, log_to_driver=False, logging_level="ERROR")
+            self._capacity = max(1, int(ray.cluster_resources().get("CPU", 1)))
+        except (ConnectionError, OSError, TimeoutError, RuntimeError) as error:
+            raise ClusterError(f"--cluster {address}: no Ray cluster answers: {error}") from error
+        self._run = ray.remote(run_task).options(num_cpus=1, max_retries=0)
+        self._running: dict[Any, Task] = {}
+
+    @property
+    def capacity(self) -> int:
+        """See `Executor.capacity`."""
+        return self._capacity
+
+    def submit(self, task: Task) -> None:
+        """See `Executor.submit`."""
+        self._running[self._run.remote(task)] = task
+
+    def wait(self) -> list[Outcome]:
+        """See `Executor.wait`."""
+        if not self._running:
+            return []
+        try:
+            ended, _ = ray.wait(list(self._running), num_returns=1)
+        except (exceptions.RaySystemError, ConnectionError) as error:
+            raise ClusterError(f"the Ray cluster is gone ({error}): start it and give the same command") from error
+        return [_outcome(future, self._running.pop(future)) for future in ended]
+
+    def close(self) -> None:
+        """See `Executor.close`. The cluster stays."""
+        for future in self._running:
+            ray.cancel(future, force=True)
+        ray.shutdown()
+
+
+def _outcome(future: Any, task: Task) -> Outcome:
+    try:
+        return Outcome(task, ray.get(future))
+    except _LOST as error:
+        return Outcome(task, lost=f"the worker died ({type(error).__name__})")
+    except exceptions.RayTaskError as error:
+        return Outcome(task, error=error.cause if isinstance(error.cause, Exception) else error)

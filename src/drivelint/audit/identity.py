@@ -1,0 +1,99 @@
+"""What decides a result besides the log: its hash keys the results of an audit by content."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from drivelint import __version__, catalogue
+from drivelint.audit.bucket import as_url, download, look
+from drivelint.audit.model import digest
+from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
+from drivelint.resources import folder
+from drivelint.result import collect
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from drivelint.audit.model import JudgeSettings
+    from drivelint.drive.trace import DriveInput
+
+_LIBRARIES = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy")
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of drivelint and of the libraries on which a verdict's bytes may depend, and the hash of its own SQL."""
+    return {"drivelint": __version__, **{name: version(name) for name in _LIBRARIES}, "queries": _queries_sha256()}
+
+
+@cache
+def _queries_sha256() -> str:
+    whole = hashlib.sha256()
+    for root in (folder("queries"), folder("schemas")):
+        for file in sorted(path for path in root.rglob("*") if path.suffix in {".sql", ".toml"}):
+            whole.update(f"{file.relative_to(root).as_posix()}\0".encode() + file.read_bytes())
+    return whole.hexdigest()
+
+
+def rule_table(settings: JudgeSettings) -> pa.Table:
+    """Return the table `rule` of the selected rules. Errors: `UsageError`, `RuleError` for what was asked."""
+    rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
+    params = catalogue.parse_params(rules, settings.params)
+    return collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
+
+
+def run_id(settings: JudgeSettings) -> str:
+    """Return the hash of rules, their parameters, profiles, and versions. Errors: as `rule_table`."""
+    rules = rule_table(settings).select(["rule_id", "rule_version", "params", "profiles"]).to_pylist()
+    profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles).to_pylist()
+    return digest([versions(), rules, profiles])
+
+
+class OptionHashes:
+    """Hashes the options of drives; a map or mapping that many drives have is read once."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, str] = {}
+        self._file = cache(_file_sha256)
+
+    def of(self, options: DriveInput) -> str:
+        """Return the hash of a drive's options and of what its map and mapping hold.
+
+        A map that cannot be read counts by its name: the drive is refused, until the map is there.
+        """
+        told: dict[str, Any] = msgspec.to_builtins(options, enc_hook=str)
+        name = digest(told)
+        if name not in self._known:
+            for key in ("map", "map_dir"):
+                if told[key] is not None:
+                    told[key] = self._file(told[key])
+            if told["mapping"] is not None and Path(told["mapping"]).is_file():
+                told["mapping"] = self._file(told["mapping"])
+            self._known[name] = digest(told)
+        return self._known[name]
+
+
+def _file_sha256(path: str) -> str:
+    where = Path(path)
+    if (url := as_url(where)) is not None:
+        found = look(url)
+        with TemporaryDirectory(prefix="drivelint-map-") as home:
+            return f"unread {url}" if found is None else _sha256(download(found, Path(home)))
+    try:
+        if where.is_dir():
+            files = sorted(file for file in where.rglob("*") if file.is_file())
+            return digest([[file.relative_to(where).as_posix(), _sha256(file)] for file in files])
+        return _sha256(where)
+    except OSError:
+        return f"unread {path}"
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,94 @@
+"""The drives of the sources as a table of the database, which is held against the receipts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+import pyarrow as pa
+
+from drivelint.audit import sources
+from drivelint.audit.bucket import is_url, look
+from drivelint.audit.identity import OptionHashes
+from drivelint.audit.model import AuditDrive, digest
+from drivelint.drive.trace import DriveInput
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import duckdb
+
+_AT_ONCE: Final = 20_000
+
+
+def fill(
+    con: duckdb.DuckDBPyConnection,
+    named: Sequence[str],
+    options: DriveInput,
+    run_id: str,
+    shard: tuple[int, int] | None,
+) -> int:
+    """Fill the table `_listed` with the drives of the sources; return how many there are."""
+    con.execute(statement("audit/listed"))
+    hashes = OptionHashes()
+    some: list[dict[str, Any]] = []
+    for drive in sources.drives(named, options):
+        if shard and int(digest(drive.log)[:8], 16) % shard[1] != shard[0] - 1:
+            continue
+        options_id = hashes.of(drive.options)
+        size, stamp = (drive.size, drive.stamp) if drive.stamp else _stamp(drive.log)
+        found = drive.found(size, stamp, run_id, options_id)
+        some.append(
+            {
+                "source_id": found.source_id,
+                "log": found.log,
+                "size": size,
+                "stamp": stamp,
+                "options_id": options_id,
+                "options": msgspec.json.encode(drive.options, enc_hook=str).decode(),
+                "tags": sorted(drive.tags.items()),
+            }
+        )
+        if len(some) >= _AT_ONCE:
+            _insert(con, some)
+            some = []
+    if some:
+        _insert(con, some)
+    (n,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
+    return int(n)
+
+
+def _insert(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -> None:
+    text = ("source_id", "log", "stamp", "options_id", "options")
+    schema = pa.schema(
+        [(name, pa.string()) for name in text] + [("size", pa.int64()), ("tags", pa.map_(pa.string(), pa.string()))]
+    )
+    con.register("_some", pa.Table.from_pylist(rows, schema=schema))
+    con.execute("INSERT INTO _listed BY NAME FROM _some")
+    con.unregister("_some")
+
+
+def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
+    """Yield the listed drives that have no receipt, in the order of their logs."""
+    rows = con.cursor().execute(statement("audit/todo"))
+    for batch in rows.to_arrow_reader(1_000):
+        for row in batch.to_pylist():
+            options = msgspec.json.decode(row["options"], type=DriveInput, dec_hook=lambda kind, value: kind(value))
+            tags = dict(row["tags"])
+            yield AuditDrive(row["log"], options, tags, row["size"], row["stamp"], row["source_id"], row["options_id"])
+
+
+def _stamp(log: str) -> tuple[int, str]:
+    """Return a log's size in bytes and the time of its last change, or its ETag; (0, "") where it cannot be looked at."""
+    if is_url(log):
+        found = look(log)
+        return (0, "") if found is None else (found.size, found.e_tag)
+    path = Path(log)
+    try:
+        files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
+        about = [(file.stat().st_size, file.stat().st_mtime_ns) for file in files]
+    except OSError:
+        return 0, ""
+    return sum(size for size, _ in about), str(max((changed for _, changed in about), default=0))

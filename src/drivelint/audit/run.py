@@ -1,0 +1,190 @@
+"""One run of an audit: finds what has no result yet, has it judged, packs the results and sums them up."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.audit import listing
+from drivelint.audit.claims import LEASE_S, Claims
+from drivelint.audit.compact import compact, create_views, database, drop
+from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, tasks
+from drivelint.audit.executors.choice import open_executor
+from drivelint.audit.identity import rule_table, run_id, versions
+from drivelint.audit.model import JudgeSettings
+from drivelint.audit.store import LocalFolder, open_store
+from drivelint.audit.summary import AuditSummary, summed
+from drivelint.drive.trace import DriveInput
+from drivelint.errors import UsageError
+from drivelint.result.files import parquet_bytes
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+    from drivelint.audit.executors import Executor
+    from drivelint.audit.model import Receipt
+    from drivelint.audit.store import ResultStore
+    from drivelint.report.progress import Progress
+
+AUDIT_FILE: Final = "audit.json"
+SUMMARY_FILE: Final = "summary.json"
+RULES_FILE: Final = "rules.parquet"
+RECEIPTS_PER_COMPACTION: Final = 4_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class AuditRequest(DriveInput):
+    """The options of `audit`, under the names that they have there.
+
+    `shard`: (i, n) judges the i-th of n parts of the source, counted from 1; `claim`: several audits into one place share its
+    drives. Both leave the packing to `merge`.
+    `worker_memory` in bytes, `drive_timeout_s`: what one worker may take.
+    """
+
+    sources: tuple[str, ...]
+    out: str
+    settings: JudgeSettings = field(default_factory=JudgeSettings)
+    fail_on: str = "critical"
+    strict: bool = False
+    workers: int | None = None
+    worker_memory: int | None = None
+    drive_timeout_s: float | None = None
+    shard: tuple[int, int] | None = None
+    claim: bool = False
+    lease_s: float = LEASE_S
+    retry_errors: bool = False
+    cluster: str | None = None
+
+
+def audit(request: AuditRequest, progress: Progress, executor: Executor | None = None) -> AuditSummary:
+    """Judge every drive of the sources that has no result yet, and return what all drives of the sources come to.
+
+    Errors: `UsageError`, `RuleError`, `TraceError` for what was asked; `OutputError` where results cannot be written. Whatever ends
+    it, what was judged stays, and the same command goes on with the rest.
+    """
+    id_ = run_id(request.settings)
+    results = open_store(request.out)
+    _begin(request, results, id_)
+    alone = request.shard is None and not request.claim
+    if alone:
+        if isinstance(results, LocalFolder):
+            results.sweep()
+        compact(results)
+    with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
+        progress.stage("listing", None)
+        n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
+        create_views(con, results, Path(home))
+        if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
+            create_views(con, results, Path(home))
+            progress.note(f"{n_stale} drives are judged again: changed since, or not judged before")
+        (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
+        progress.stage("auditing", n_drives)
+        progress.advance(n_known)
+        counted = _judge(request, con, results, progress, id_=id_, executor=executor)
+        if not alone:
+            return counted
+        return _close(con, results, Path(home), n_known + counted.reused)
+
+
+def _judge(
+    request: AuditRequest,
+    con: duckdb.DuckDBPyConnection,
+    results: ResultStore,
+    progress: Progress,
+    *,
+    id_: str,
+    executor: Executor | None,
+) -> AuditSummary:
+    """Have the listed drives judged that have no receipt; return what those come to."""
+    counted, fresh = AuditSummary(), 0
+    claims = Claims(results, request.lease_s) if request.claim else None
+
+    def tell(receipt: Receipt) -> None:
+        nonlocal fresh
+        fresh += not receipt.reused
+        counted.count(receipt)
+        progress.advance()
+        if receipt.status != "judged":
+            progress.note(f"not judged: {receipt.reason}")
+
+    def busy() -> None:
+        nonlocal fresh
+        if request.shard is None and claims is None and fresh >= RECEIPTS_PER_COMPACTION:
+            compact(results, while_judging=True)
+            fresh = 0
+
+    workers = executor or open_executor(
+        request.cluster, workers=request.workers, memory=request.worker_memory, timeout_s=request.drive_timeout_s
+    )
+    try:
+        with claims.alive() if claims else nullcontext():
+            ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
+            todo = claims.mine(lambda: listing.todo(con)) if claims else listing.todo(con)
+            given = tasks(todo, request.out, id_, request.settings, ahead)
+            Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None).run(given)
+    finally:
+        workers.close()
+    return counted
+
+
+def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
+    """Take out the results of logs that have changed, with `retry` also those of drives that were not judged; return how many."""
+    stale = con.execute(statement("audit/stale"), {"retry": retry}).to_arrow_table()["key"].combine_chunks()
+    drop(results, stale)
+    return len(stale)
+
+
+def _close(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int) -> AuditSummary:
+    """Pack everything, write the summary last, and return it."""
+    compact(results)
+    create_views(con, results, home)
+    counted = summed(con, n_reused)
+    results.write(SUMMARY_FILE, (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode())
+    return counted
+
+
+def merge(out: str, progress: Progress) -> AuditSummary:
+    """Pack the results of shards and claims, when none of them runs any more, and sum them up.
+
+    Errors: `UsageError`, `OutputError`.
+    """
+    results = open_store(out)
+    if results.read(AUDIT_FILE) is None:
+        raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
+    progress.stage("packing", None)
+    if isinstance(results, LocalFolder):
+        results.sweep()
+    results.delete(list(results.names("claims")))
+    with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
+        return _close(con, results, Path(home), 0)
+
+
+def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:
+    """Write down what decides the results, or make sure that the audit that is there has the same.
+
+    Errors: `UsageError` for an audit by other rules, parameters or versions.
+    """
+    told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings), "fail_on": request.fail_on}
+    content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
+    if results.create(AUDIT_FILE, content):
+        results.write(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
+        return
+    there = json.loads(results.read(AUDIT_FILE) or b"{}")
+    if there.get("run_id") != id_:
+        changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
+        why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
+        raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
+    results.delete([SUMMARY_FILE])  # it is not of what is there from now on
+
+
+def _plain(settings: JudgeSettings) -> dict[str, Any]:
+    return {key: value for key, value in vars(settings).items() if key != "memory"}
+
+
+def _drive_input(request: AuditRequest) -> DriveInput:
+    return DriveInput(**{each.name: getattr(request, each.name) for each in fields(DriveInput)})

@@ -1,0 +1,127 @@
+"""What is to be audited: the rows of a manifest, or the logs of files, globs and folders, one after the other."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
+
+from drivelint.audit.bucket import download, is_url, list_objects, look
+from drivelint.audit.model import AuditDrive
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats import expand_traces
+from drivelint.formats.files import TRACE_SUFFIXES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from drivelint.drive.trace import DriveInput
+
+OPTION_COLUMNS: Final = ("log", "map", "ego", "environment")
+"""Columns of a manifest that are no tags: the log, its map, its ego, and what holds in the drive (`weather=rain;light=night`)."""
+_ROWS: Final = 10_000
+
+
+def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
+    """Yield the drives that sources name. `options` hold for each, unless the manifest says otherwise.
+
+    A source that is one Parquet or CSV file with a column `log` is a manifest; it is read in pieces, so that its length does not
+    matter. Paths in it are relative to it. Any other source is what `check` takes.
+    Errors: `UsageError` for a manifest that cannot be understood, `TraceError` for a source that is missing.
+    """
+    logs: list[str] = []
+    for source in sources:
+        if is_url(source):
+            yield from _of_store(source, options)
+        elif _is_manifest(Path(source)):
+            yield from _of_manifest(Path(source), source, options)
+        else:
+            logs.append(source)
+    if logs:
+        for path in expand_traces(logs):
+            yield AuditDrive(str(path), options)
+
+
+def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
+    """Yield the logs of a prefix, or of a manifest in the store."""
+    one = look(url) if url.lower().endswith((".parquet", ".csv")) else None
+    if one is not None:
+        with TemporaryDirectory(prefix="drivelint-manifest-") as home:
+            copy = download(one, Path(home))
+            if _is_manifest(copy):
+                yield from _of_manifest(copy, url, options)
+                return
+    found = [one] if one is not None else list_objects(url)
+    n = 0
+    for each in found:
+        if each.url.lower().endswith(tuple(TRACE_SUFFIXES)):
+            n += 1
+            yield AuditDrive(each.url, options, {}, each.size, each.e_tag)
+    if not n:
+        raise TraceError(
+            f"{url}: no log below this prefix (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the URL"
+        )
+
+
+def _is_manifest(path: Path) -> bool:
+    if not path.is_file():
+        return False
+    try:
+        if path.suffix.lower() == ".parquet":
+            return "log" in pq.read_schema(path).names
+        if path.suffix.lower() == ".csv":
+            with path.open(encoding="utf-8-sig", errors="replace") as file:
+                return "log" in re.split(r"[,\r\n]", file.readline(65536).replace('"', ""))
+    except (OSError, ValueError) as error:
+        raise TraceError(f"{path}: cannot be read: {error}") from error
+    return False
+
+
+def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditDrive]:
+    for number, row in enumerate(_rows(path), start=1):
+        log = row.pop("log")
+        if not log:
+            raise UsageError(f"{named}, row {number}: no log: fill the column log")
+        own: dict[str, Any] = {}
+        if place := row.pop("map", None):
+            own |= {"map": Path(_beside(named, place)), "map_dir": None}
+        if ego := row.pop("ego", None):
+            own["ego"] = ego
+        if env := row.pop("environment", None):
+            own["env"] = (*options.env, *(part.strip() for part in env.split(";") if part.strip()))
+        tags = {name: value for name, value in sorted(row.items()) if value}
+        yield AuditDrive(_beside(named, log), replace(options, **own), tags)
+
+
+def _rows(path: Path) -> Iterator[dict[str, str]]:
+    """Yield the rows of a manifest as text, empty for what is not there."""
+    try:
+        if path.suffix.lower() == ".parquet":
+            with pq.ParquetFile(path) as file:
+                for batch in file.iter_batches(_ROWS):
+                    yield from _as_text(batch.to_pylist())
+        else:
+            with pa_csv.open_csv(path) as reader:
+                for batch in reader:
+                    yield from _as_text(batch.to_pylist())
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: not a manifest that can be read: {error}") from error
+
+
+def _as_text(rows: list[dict[str, Any]]) -> Iterator[dict[str, str]]:
+    for row in rows:
+        yield {name: "" if value is None else str(value) for name, value in row.items()}
+
+
+def _beside(manifest: str, place: str) -> str:
+    """Return a path of a manifest, relative to where the manifest is named; a URL or an absolute path stays as it is."""
+    if is_url(place):
+        return place
+    if is_url(manifest):
+        return f"{manifest.rpartition('/')[0]}/{place}"
+    return str(Path(manifest).parent / place)

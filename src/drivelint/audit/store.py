@@ -1,0 +1,165 @@
+"""Where an audit's results lie: a folder, or a prefix in an object store. Whatever is there under its name is whole."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from drivelint.audit.bucket import Bucket, is_url
+from drivelint.errors import UsageError
+from drivelint.result.files import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+
+class ResultStore(Protocol):
+    """Files by name, `/` between folders. Errors of every method: `OutputError` (exit 75) where the store fails."""
+
+    def create(self, name: str, content: bytes) -> bool:
+        """Write a file unless there is one of that name already; return whether it was written. Of several writers one wins."""
+        ...
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write a file, in place of one of that name."""
+        ...
+
+    def read(self, name: str) -> bytes | None:
+        """Return what a file holds; None: there is none."""
+        ...
+
+    def names(self, prefix: str) -> Iterator[str]:
+        """Yield the names of all files below a folder, in no order."""
+        ...
+
+    def delete(self, names: Iterable[str]) -> None:
+        """Remove files; those that are gone already do not matter."""
+        ...
+
+    def fetch(self, name: str, folder: Path) -> Path:
+        """Return a local path of a file: its own, or that of a copy in `folder`."""
+        ...
+
+
+class LocalFolder:
+    """A folder on a disk of this machine, or on a shared one. Files are synced before they get their name."""
+
+    def __init__(self, root: Path) -> None:
+        if root.exists() and not root.is_dir():
+            raise UsageError(f"--out {root}: is a file: give a folder for the results")
+        self.root = root
+
+    def create(self, name: str, content: bytes) -> bool:
+        """See `ResultStore.create`."""
+        path = self.root / name
+        try:
+            temporary = self._staged(path, content)
+            try:
+                os.link(temporary, path)  # unlike a rename, this fails where the name is taken
+            except FileExistsError:
+                return False
+            finally:
+                temporary.unlink(missing_ok=True)
+            _sync_folder(path.parent)
+        except OSError as error:
+            raise self._failed(error) from error
+        return True
+
+    def write(self, name: str, content: bytes) -> None:
+        """See `ResultStore.write`."""
+        path = self.root / name
+        try:
+            self._staged(path, content).replace(path)
+            _sync_folder(path.parent)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def read(self, name: str) -> bytes | None:
+        """See `ResultStore.read`."""
+        try:
+            return (self.root / name).read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def names(self, prefix: str) -> Iterator[str]:
+        """See `ResultStore.names`. A file that was never finished is removed where its writer is long gone."""
+        todo = [self.root / prefix]
+        while todo:
+            try:
+                entries = list(os.scandir(todo.pop()))
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                raise self._failed(error) from error
+            for entry in entries:
+                if entry.is_dir():
+                    todo.append(Path(entry.path))
+                elif not entry.name.startswith("."):
+                    yield Path(entry.path).relative_to(self.root).as_posix()
+
+    def delete(self, names: Iterable[str]) -> None:
+        """See `ResultStore.delete`."""
+        try:
+            for name in names:
+                (self.root / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def fetch(self, name: str, folder: Path) -> Path:  # noqa: ARG002 - as in `ResultStore`
+        """See `ResultStore.fetch`."""
+        return self.root / name
+
+    def adopt(self, name: str, finished: Path) -> None:
+        """Take over a finished file of this disk under a name."""
+        path = self.root / name
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
+            shutil.move(finished, temporary)
+            _sync_file(temporary)
+            temporary.replace(path)
+            _sync_folder(path.parent)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def sweep(self) -> None:
+        """Remove what killed writers left unfinished. Only while nobody writes."""
+        for file in self.root.rglob(".*.tmp"):
+            file.unlink(missing_ok=True)
+
+    def _staged(self, path: Path, content: bytes) -> Path:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
+        temporary.write_bytes(content)
+        _sync_file(temporary)
+        return temporary
+
+    def _failed(self, error: OSError) -> OutputError:
+        return OutputError(
+            f"{self.root}: cannot write the results: {error.strerror or error}: free the disk or choose another --out"
+        )
+
+
+def open_store(dest: str) -> ResultStore:
+    """Return the store that `--out` names: an object store's for a URL, else a folder's. Errors: `UsageError`."""
+    if is_url(dest):
+        return Bucket(dest)
+    return LocalFolder(Path(dest))
+
+
+def _sync_file(path: Path) -> None:
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+
+
+def _sync_folder(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

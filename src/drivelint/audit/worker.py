@@ -1,0 +1,270 @@
+"""A worker: judges the drives of a task in a database that stays open from task to task, and writes their results and receipts."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from contextlib import ExitStack
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from drivelint import catalogue
+from drivelint.audit import bucket
+from drivelint.audit.model import AuditDrive, JudgeSettings, Receipt, Task, digest
+from drivelint.audit.store import open_store
+from drivelint.engine.barrier import RefusedLog, judge_apart, refused
+from drivelint.engine.batch import drive_with_map
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import JudgingSession
+from drivelint.errors import DriveLintError, MapError, TraceError
+from drivelint.formats import read_trace
+from drivelint.formats.files import identify
+from drivelint.result import collect
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.audit.store import ResultStore
+    from drivelint.drive.trace import DriveInput, Identity
+    from drivelint.engine.batch import Drive
+
+TABLES = ("verdicts", "findings", "drives")
+"""The tables of an audit: those of a check, with `key`, and `log` and `tags` in `drives`."""
+_KEPT = frozenset({"profile", "environment", "map_quality"})
+
+
+class Judge:
+    """A database with rules and maps that judges task after task. One thread: a machine has one worker per core."""
+
+    def __init__(self, settings: JudgeSettings) -> None:
+        self._stack = ExitStack()
+        memory = DEFAULT_MEMORY if settings.memory is None else settings.memory
+        self._con = self._stack.enter_context(store.workspace(memory))
+        self._con.execute("SET threads=1")
+        rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
+        params = catalogue.parse_params(rules, settings.params)
+        profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
+        store.insert(self._con, "profile", profiles)
+        self._stable = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
+        self._session = JudgingSession(self._con, rules, params, None, memory=Memory(self._con, memory))
+        self._library, self._maps = cache(MapLibrary), cache(self._map)
+        self._home = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))
+        self._folder = self._home
+
+    def judge(self, task: Task) -> list[Receipt]:
+        """Judge the drives of a task that have no receipt yet; write tables, then receipts; return the receipts of all."""
+        with TemporaryDirectory(dir=self._home) as folder:
+            self._folder = Path(folder)
+            return self._judge(task, open_store(task.dest))
+
+    def _judge(self, task: Task, results: ResultStore) -> list[Receipt]:
+        receipts: list[Receipt] = []
+        read: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
+        for drive in task.drives:
+            key, found = self._read(drive, task.run_id, results)
+            if isinstance(found, Receipt):
+                receipts.append(found)
+            elif key in read:  # the same log twice in one task is judged once
+                continue
+            else:
+                read[key] = drive, found
+        # drives of one content judged with other options have one id: they cannot be judged together
+        while read:
+            ids: set[str] = set()
+            part: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
+            for key, (_, found) in list(read.items()):
+                name = found.path.name if isinstance(found, RefusedLog) else found.trace.drive_id
+                if name not in ids:
+                    ids.add(name)
+                    part[key] = read.pop(key)
+            receipts += self._judged(part, results)
+        return receipts
+
+    def _read(self, drive: AuditDrive, run_id: str, results: ResultStore) -> tuple[str, Receipt | Drive | RefusedLog]:
+        """Return the drive's key, and its receipt if there is one, else the drive as it was read."""
+        path, key = Path(drive.log), drive.source_id
+        try:
+            path, options = self._at_hand(drive)
+            identity = identify(path)
+            key = digest([run_id, drive.options_id, identity.sha256])
+            if (content := results.read(receipt_name(key))) is not None:
+                return key, replace(Receipt.from_json(content), reused=True)
+            trace = read_trace(path, options.ingest_options())
+            _require_unchanged(path, identity)
+            return key, drive_with_map(trace, self._library(options))
+        except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
+            return key, refused(path, error)
+
+    def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
+        """Return where the log lies on this machine, and the drive's options with a map that does; both copied if they are afar."""
+        options = drive.options
+        if options.map is not None and (url := bucket.as_url(options.map)) is not None:
+            options = replace(options, map=self._maps(url))
+        if not bucket.is_url(drive.log):
+            return Path(drive.log), options
+        return bucket.download(bucket.Object(drive.log, drive.size, drive.stamp), self._folder), options
+
+    def _map(self, url: str) -> Path:
+        found = bucket.look(url)
+        if found is None:
+            raise MapError(f"map {url}: no such object: check the URL")
+        home = self._home / "maps" / digest(url)
+        home.mkdir(parents=True)
+        return bucket.download(found, home)
+
+    def _judged(self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore) -> list[Receipt]:
+        """Judge drives with different ids together, and write what comes out."""
+        for table in store.tables_of_lifetime("run"):
+            if table not in _KEPT:
+                store.recreate_empty(self._con, [table])
+        self._session.forget_judged()
+        drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
+        failed = {each.path: each for each in judge_apart(self._session, drives)} if drives else {}
+        told = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}
+        judged = collect.drives(self._con)
+        rows: dict[str, list[pa.Table]] = {table: [] for table in TABLES}
+        receipts: list[Receipt] = []
+        for key, (drive, as_read) in sorted(part.items()):
+            found = as_read if isinstance(as_read, RefusedLog) else failed.get(as_read.trace.path, as_read)
+            if isinstance(found, RefusedLog):
+                path = found.path
+                one = {
+                    "verdicts": told["verdicts"].slice(0, 0),
+                    "findings": told["findings"].slice(0, 0),
+                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error)),
+                }
+            else:
+                name = found.trace.drive_id
+                one = {table: of.filter(pc.equal(of["drive_id"], name)) for table, of in told.items()}
+                one["drives"] = judged.filter(pc.equal(judged["drive_id"], name))
+            marked = {table: with_key(one[table], key, drive if table == "drives" else None) for table in TABLES}
+            for table, of in marked.items():
+                rows[table].append(of)
+            receipts.append(self._receipt(key, drive, marked))
+        return write_batch(results, {table: pa.concat_tables(of) for table, of in rows.items()}, receipts)
+
+    def _receipt(self, key: str, drive: AuditDrive, rows: Mapping[str, pa.Table]) -> Receipt:
+        (about,) = rows["drives"].to_pylist()
+        verdicts = rows["verdicts"]
+        stable = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=self._stable))
+        return Receipt(
+            key=key,
+            source_id=drive.source_id,
+            batch="",
+            status="judged" if about["status"] == "judged" else "refused",
+            log=drive.log,
+            size=drive.size,
+            stamp=drive.stamp,
+            drive_id=about["drive_id"],
+            log_sha256=about["sha256"],
+            map_sha256=about["map_sha256"],
+            reason=about["status_reason"],
+            lossy=about["lossy"],
+            rows_sha256=rows_sha256(rows),
+            km=about["km"],
+            duration_s=about["duration_s"] or 0.0,
+            counts=_counts(verdicts, "verdict"),
+            failed=_counts(stable.filter(pc.equal(stable["verdict"], "fail")), "severity"),
+            unknown=_counts(stable, "verdict").get("unknown", 0),
+            tags=drive.tags,
+        )
+
+    def close(self) -> None:
+        """Close the database."""
+        self._stack.close()
+
+
+_warm: dict[JudgeSettings, Judge] = {}
+
+
+def run_task(task: Task) -> list[Receipt]:
+    """Judge a task in this process, whose database stays for the next one. Errors: `OutputError`, `UsageError`, `RuleError`."""
+    if task.settings not in _warm:
+        for judge in _warm.values():
+            judge.close()
+        _warm.clear()
+        _warm[task.settings] = Judge(task.settings)
+    try:
+        return _warm[task.settings].judge(task)
+    except BaseException:
+        _warm.pop(task.settings).close()  # whatever state it is in
+        raise
+
+
+def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
+    """Return rows of a table of a check as those of an audit: `key` first; with a drive, also its log and tags."""
+    own = [pa.field("key", pa.string(), nullable=False)]
+    made = rows.add_column(0, own[0], pa.repeat(pa.scalar(key, pa.string()), rows.num_rows))
+    if drive is not None:
+        made = made.append_column("log", pa.repeat(pa.scalar(drive.log, pa.string()), rows.num_rows))
+        tags = pa.array([sorted(drive.tags.items())] * rows.num_rows, pa.map_(pa.string(), pa.string()))
+        made = made.append_column("tags", tags)
+    return made
+
+
+def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
+    """Return the hash of a drive's rows in all tables, but of where its log lies and its tags, which are not of its content."""
+    whole = hashlib.sha256()
+    for table in TABLES:
+        kept = [name for name in rows[table].column_names if name not in {"log", "tags"}]
+        whole.update(_parquet(rows[table].select(kept)))
+    return whole.hexdigest()
+
+
+def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Sequence[Receipt]) -> list[Receipt]:
+    """Write one file per table, then the receipt of each drive, and return the receipts that count.
+
+    Where another worker was first, its receipt counts. Errors: `OutputError`; `DriveLintError` where its rows are others.
+    """
+    batch = digest(sorted(receipt.key for receipt in receipts))[:32]
+    for table in TABLES:
+        results.write(batch_name(table, batch), _parquet(rows[table]))
+    counted: list[Receipt] = []
+    for receipt in receipts:
+        own = replace(receipt, batch=batch, n_in_batch=len(receipts))
+        if results.create(receipt_name(own.key), own.to_json()):
+            counted.append(own)
+            continue
+        there = Receipt.from_json(results.read(receipt_name(own.key)) or b"")
+        if there.rows_sha256 != own.rows_sha256:
+            raise DriveLintError(
+                f"{own.log}: two workers got different results for one key ({own.key}): use one machine image for all workers"
+            )
+        counted.append(replace(there, reused=True))
+    return counted
+
+
+def batch_name(table: str, batch: str) -> str:
+    """Return the name of a batch's file of a table."""
+    return f"batches/{table}/{batch}.parquet"
+
+
+def receipt_name(key: str) -> str:
+    """Return the name of a receipt."""
+    return f"receipts/{key[:2]}/{key}.json"
+
+
+def _require_unchanged(path: Path, identity: Identity) -> None:
+    if identify(path).sha256 != identity.sha256:
+        raise TraceError(f"{path}: changed while it was read: audit it again when it is whole")
+
+
+def _parquet(rows: pa.Table) -> bytes:
+    sink = io.BytesIO()
+    pq.write_table(rows.combine_chunks(), sink, compression="zstd")
+    return sink.getvalue()
+
+
+def _counts(rows: pa.Table, column: str) -> dict[str, int]:
+    counted = rows.group_by(column).aggregate([([], "count_all")]).to_pylist()
+    return {row[column]: row["count_all"] for row in sorted(counted, key=lambda row: str(row[column]))}

@@ -1,0 +1,132 @@
+"""`drivelint audit`, `merge` and `sql`: many drives, and the folders that `audit --out` wrote."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from drivelint.cli import options, values
+from drivelint.cli.console import progress as bar
+from drivelint.cli.console import run_interruptible
+from drivelint.cli.options import Texts, argument, option
+
+
+@options.takes_drive_input
+def audit(
+    *,
+    sources: Annotated[
+        list[str], argument("SOURCE", "Recorded drives: files, globs, folders, or a manifest (Parquet or CSV) of them.")
+    ],
+    drive: options.DriveInputValues,
+    out: Annotated[str, option("--out", "DEST", "Folder for the results, which the same command goes on with.")],
+    rules: Annotated[
+        Texts, option("--rules", "SEL", "Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")
+    ] = None,
+    ignore: Annotated[Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.")] = None,
+    profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
+    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    rules_dir: options.RulesDirs = None,
+    fail_on: Annotated[
+        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
+    ] = "critical",
+    strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
+    workers: Annotated[
+        int | None, option("--workers", "N", "Processes that judge. Default: one per core.", min=1)
+    ] = None,
+    memory: options.MemorySize = None,
+    worker_memory: Annotated[
+        str | None,
+        option("--worker-memory", "SIZE", "Address space of one worker; a drive that needs more is quarantined."),
+    ] = None,
+    drive_timeout: Annotated[
+        float, option("--drive-timeout", "S", "Seconds for a drive; one that takes longer is quarantined.", min=1)
+    ] = 1800.0,
+    shard: Annotated[
+        str | None, option("--shard", "I/N", "Judge the I-th of N parts; `drivelint merge DEST` packs them at the end.")
+    ] = None,
+    claim: Annotated[
+        bool,
+        option(
+            "--claim",
+            None,
+            "Share the drives with other audits into DEST, as they come; `merge` packs them at the end.",
+        ),
+    ] = False,
+    lease: Annotated[
+        float,
+        option(
+            "--lease",
+            "S",
+            "With --claim: drives of an audit that shows no sign of life for so long are taken over.",
+            min=1,
+        ),
+    ] = 60.0,
+    retry_errors: Annotated[
+        bool, option("--retry-errors", None, "Judge drives again that could not be judged before.")
+    ] = False,
+    cluster: Annotated[
+        str | None,
+        option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Judge many drives, as many at a time as there are cores.
+
+    Results are kept as they come: an audit that was interrupted goes on where it was when the same command is given again.
+    A manifest has a column log, may have map, ego and environment (weather=rain;light=night), and any others, which are tags.
+
+    Exit codes: as those of check; drives that cannot be judged, or kill their worker, make 4.
+    """
+    from drivelint.audit import AuditRequest, JudgeSettings
+    from drivelint.audit import audit as audited
+    from drivelint.audit.text import summary_text
+
+    request = AuditRequest(
+        sources=tuple(sources),
+        **drive,
+        out=out,
+        settings=JudgeSettings(
+            rules=tuple(rules or ()),
+            ignore=tuple(ignore or ()),
+            profiles=tuple(profile or ()),
+            params=tuple(param or ()),
+            rules_dirs=tuple(rules_dir or ()),
+            memory=values.parse_memory(memory),
+        ),
+        fail_on=fail_on,
+        strict=strict,
+        workers=workers,
+        worker_memory=None if worker_memory is None else values.parse_memory(worker_memory),
+        drive_timeout_s=drive_timeout,
+        shard=values.parse_shard(shard),
+        claim=claim,
+        lease_s=lease,
+        retry_errors=retry_errors,
+        cluster=cluster,
+    )
+    with bar(quiet) as progress:
+        counted = run_interruptible(lambda: audited(request, progress))
+    typer.echo(summary_text(counted, out))
+    raise typer.Exit(int(counted.exit_code(fail_on, strict=strict)))
+
+
+def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")]) -> None:
+    """Pack the results of audits with --shard or --claim, when all of them have ended."""
+    from drivelint.audit import merge as merged
+    from drivelint.audit.text import summary_text
+
+    with bar(False) as progress:
+        counted = run_interruptible(lambda: merged(dest, progress))
+    typer.echo(summary_text(counted, dest))
+
+
+def sql(
+    dest: Annotated[str, argument("DEST", "What audit --out or check --out wrote.")],
+    query: Annotated[str, argument("QUERY", "One SELECT over verdicts, findings, drives, rules and receipts.")],
+    format_: Annotated[options.SqlFormat, option("--format", None, "What is printed on stdout.")] = "text",
+) -> None:
+    """Ask the tables of an audit or a check in SQL. Nothing is changed."""
+    from drivelint.audit.ask import ask
+
+    typer.echo(ask(dest, query, format_), nl=False)

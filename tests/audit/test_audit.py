@@ -1,0 +1,210 @@
+"""`drivelint audit`: the rows of `check`, kept, resumed, and the same whoever judged them."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint import run
+from drivelint.audit import AuditRequest, JudgeSettings, audit, merge
+from drivelint.audit.ask import ask
+from drivelint.audit.driver import MOST_ATTEMPTS
+from drivelint.errors import ExitCode, UsageError
+from drivelint.report.progress import Silent
+from tests.audit import fleet
+from tests.audit.here import SETTINGS, InThisProcess, judged
+from tests.audit.kills import audit_with_kills
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.audit import AuditSummary
+
+N_DRIVES = 24
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
+
+
+@pytest.fixture(scope="module")
+def undisturbed(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, AuditSummary]:
+    out = tmp_path_factory.mktemp("undisturbed") / "audit"
+    return out, judged(drives, out)
+
+
+def asked(out: Path, query: str) -> list[dict[str, object]]:
+    found: list[dict[str, object]] = json.loads(ask(str(out), query, "json"))
+    return found
+
+
+def test_the_planted_contacts_and_only_they_are_found(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary]
+) -> None:
+    out, counted = undisturbed
+    found = asked(out, "SELECT DISTINCT d.file_name AS name FROM findings f JOIN drives d USING (key)")
+    assert {row["name"] for row in found} == drives.planted
+    assert (counted.n_drives, counted.judged, counted.reused) == (N_DRIVES, N_DRIVES, 0)
+    assert counted.failed == {"critical": len(drives.planted)}
+    assert counted.exit_code("critical", strict=False) == ExitCode.FAILED
+
+
+def test_the_rows_are_those_of_check(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
+) -> None:
+    logs = (str(drives.manifest.parent / "logs"),)
+    result = run.check(run.CheckOptions(traces=logs, map=drives.road, rules=(fleet.RULE,), annotate=False), Silent())
+    out, _ = undisturbed
+    for table, rows in (("verdicts", result.verdicts), ("findings", result.findings), ("drives", result.drives)):
+        (file,) = (out / "tables" / table).iterdir()
+        own = pq.read_table(file).select(rows.column_names)
+        names = ["drive_id"] if table == "drives" else ["drive_id", "rule_id", "occurrence"]
+        order = [(name, "ascending") for name in names]
+        assert own.sort_by(order).to_pylist() == rows.sort_by(order).to_pylist()
+
+
+def test_tags_of_the_manifest_are_in_the_table_of_drives(undisturbed: tuple[Path, AuditSummary]) -> None:
+    found = asked(undisturbed[0], "SELECT tags['release'] AS r, count(*) AS n FROM drives GROUP BY ALL ORDER BY ALL")
+    assert found == [{"r": "v0", "n": N_DRIVES // 2}, {"r": "v1", "n": N_DRIVES // 2}]
+
+
+def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary]) -> None:
+    out, first = undisturbed
+    executor = InThisProcess()
+    again = judged(drives, out, executor)
+    assert (again.reused, again.digest) == (N_DRIVES, first.digest)
+    assert not executor.tasks
+
+
+def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 4)
+    judged(few, tmp_path / "out")
+    log = next((tmp_path / "fleet" / "logs").iterdir())
+    rows = pq.read_table(log)
+    pq.write_table(rows.slice(0, rows.num_rows - 1), log)
+    again = judged(few, tmp_path / "out")
+    assert (again.reused, again.n_drives) == (3, 4)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_processes_give_the_same_tables(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, workers: int
+) -> None:
+    request = AuditRequest(
+        sources=(str(drives.manifest),), map=drives.road, out=str(tmp_path / "out"), settings=SETTINGS, workers=workers
+    )
+    assert audit(request, Silent()).digest == undisturbed[1].digest
+
+
+def test_shards_give_the_same_tables(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
+) -> None:
+    parts = [judged(drives, tmp_path / "out", shard=(n, 3)) for n in (1, 2, 3)]
+    assert sum(part.n_drives for part in parts) == N_DRIVES
+    assert all(0 < part.n_drives < N_DRIVES for part in parts)
+    assert {part.digest for part in parts} == {None}
+    assert merge(str(tmp_path / "out"), Silent()).digest == undisturbed[1].digest
+
+
+def test_kills_lose_nothing_and_double_nothing(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
+) -> None:
+    command = drives.command(tmp_path / "out", "--memory", "200MB")
+    code, killed = audit_with_kills(command, n_kills=4, seconds=5.0)
+    assert killed > 0
+    assert code == ExitCode.FAILED
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert (summary["n_drives"], summary["quarantined"]) == (N_DRIVES, 0)
+    assert summary["digest"] == undisturbed[1].digest
+    left = [path for path in (tmp_path / "out").rglob("*") if path.is_file() and path.parent.parent.name != "tables"]
+    assert {path.name for path in left} == {"audit.json", "rules.parquet", "summary.json"}
+
+
+def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged(
+    drives: fleet.Fleet, tmp_path: Path
+) -> None:
+    executor = InThisProcess(poison="drive-00003")
+    counted = judged(drives, tmp_path / "out", executor)
+    assert (counted.judged, counted.quarantined) == (N_DRIVES - 1, 1)
+    assert len(executor.lost) == MOST_ATTEMPTS
+    assert executor.lost[1:] == [1] * (MOST_ATTEMPTS - 1)
+    (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
+    assert row["status"] == "not_judged"
+    assert "3 workers were lost over it: the worker died" in str(row["status_reason"])
+    assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
+
+
+def test_a_drive_that_takes_too_long_is_quarantined(drives: fleet.Fleet, tmp_path: Path) -> None:
+    one = drives.manifest.parent / "logs" / "drive-00000.parquet"
+    request = AuditRequest(
+        sources=(str(one),),
+        map=drives.road,
+        out=str(tmp_path / "out"),
+        settings=SETTINGS,
+        workers=1,
+        drive_timeout_s=0.01,
+    )
+    counted = audit(request, Silent())
+    assert (counted.n_drives, counted.quarantined) == (1, 1)
+
+
+def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 4)
+    log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"
+    whole = log.read_bytes()
+    log.write_bytes(whole[: len(whole) // 2])
+    first = judged(few, tmp_path / "out")
+    assert (first.judged, first.refused) == (3, 1)
+    assert judged(few, tmp_path / "out").reused == 4
+    again = judged(few, tmp_path / "out", retry_errors=True)
+    assert (again.refused, again.reused) == (1, 3)
+    log.write_bytes(whole)
+    mended = judged(few, tmp_path / "out", retry_errors=True)
+    assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
+
+
+def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 3)
+    logs = sorted((tmp_path / "fleet" / "logs").iterdir())
+    logs[1].write_bytes(logs[0].read_bytes())
+    counted = judged(few, tmp_path / "out")
+    assert counted.n_drives == 2
+
+
+def test_other_rules_are_refused_in_the_same_folder(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary]
+) -> None:
+    request = AuditRequest(
+        sources=(str(drives.manifest),),
+        map=drives.road,
+        out=str(undisturbed[0]),
+        settings=JudgeSettings(rules=("rss",)),
+    )
+    with pytest.raises(UsageError, match="other rules, parameters or profiles"):
+        audit(request, Silent(), InThisProcess())
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "SELECT 1; SELECT 2",
+        "CREATE TABLE x (a INT)",
+        "FROM '/etc/hostname'",
+        "SELECT * FROM read_text('/etc/hostname')",
+    ],
+)
+def test_sql_reads_nothing_else_and_changes_nothing(undisturbed: tuple[Path, AuditSummary], query: str) -> None:
+    with pytest.raises(UsageError):
+        ask(str(undisturbed[0]), query, "json")
+
+
+def test_two_logs_of_one_drive_have_rows_of_their_own_key(undisturbed: tuple[Path, AuditSummary]) -> None:
+    out, _ = undisturbed
+    (file,) = (out / "tables" / "drives").iterdir()
+    keys = pq.read_table(file)["key"]
+    assert pc.count_distinct(keys).as_py() == len(keys) == N_DRIVES

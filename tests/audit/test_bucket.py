@@ -1,0 +1,94 @@
+"""Audits whose logs, map, manifest and results lie in an object store, also in one that fails now and then."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import obstore
+import pytest
+
+from drivelint.audit import bucket
+from drivelint.errors import TraceError
+from tests.audit import fleet
+from tests.audit.faulty import faults, s3
+from tests.audit.here import judged
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+N_DRIVES = 12
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
+
+
+@pytest.fixture(scope="module")
+def server(drives: fleet.Fleet) -> Iterator[str]:
+    with s3() as url, pytest.MonkeyPatch.context() as patch:
+        _use(patch, url)
+        home = drives.manifest.parent
+        for file in sorted(path for path in home.rglob("*") if path.is_file()):
+            obstore.put(bucket._store("s3://fleet"), f"data/{file.relative_to(home).as_posix()}", file.read_bytes())
+        yield url
+
+
+def _use(patch: pytest.MonkeyPatch, url: str) -> None:
+    """Make an S3 server that of the environment, as a user would."""
+    for name, value in (
+        ("AWS_ENDPOINT_URL", url),
+        ("AWS_ACCESS_KEY_ID", "test"),
+        ("AWS_SECRET_ACCESS_KEY", "test"),
+        ("AWS_DEFAULT_REGION", "us-east-1"),
+    ):
+        patch.setenv(name, value)
+    bucket._store.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
+    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
+
+
+def test_logs_map_manifest_and_results_in_a_bucket_give_the_tables_of_a_folder(
+    drives: fleet.Fleet, digest: str | None, server: str
+) -> None:
+    counted = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    assert (counted.judged, counted.digest) == (N_DRIVES, digest)
+    again = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    assert (again.reused, again.digest) == (N_DRIVES, digest)
+
+
+def test_a_store_that_fails_now_and_then_gives_the_same_tables(
+    drives: fleet.Fleet, digest: str | None, server: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with faults(server, 0.2) as (url, counted):
+        _use(monkeypatch, url)
+        got = judged(drives, "s3://fleet/faulty", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    _use(monkeypatch, server)
+    assert all(counted.values()), counted
+    assert (got.judged, got.digest) == (N_DRIVES, digest)
+
+
+def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:
+    counted = judged(drives, "s3://fleet/prefix", sources="s3://fleet/data/logs/", road="s3://fleet/data/ring.xodr")
+    assert counted.judged == N_DRIVES
+
+
+def test_a_log_that_changes_between_listing_and_reading_is_refused(server: str, tmp_path: Path) -> None:
+    found = bucket.look("s3://fleet/data/logs/drive-00000.parquet")
+    assert found is not None
+    with pytest.raises(TraceError, match="changed since it was listed"):
+        bucket.download(found._replace(e_tag='"other"'), tmp_path)
+
+
+def test_two_writers_of_one_receipt_have_one_winner(server: str) -> None:
+    results = bucket.Bucket("s3://fleet/race")
+    assert results.create("receipts/a.json", b"1")
+    assert not results.create("receipts/a.json", b"2")
+    assert results.read("receipts/a.json") == b"1"
+    assert list(results.names("receipts")) == ["receipts/a.json"]
+    results.delete(["receipts/a.json"])
+    assert results.read("receipts/a.json") is None

@@ -1,0 +1,89 @@
+"""Audits on Dask and Ray: the tables of one process, also when a worker or the scheduler dies."""
+
+from __future__ import annotations
+
+import importlib.util
+import signal
+import subprocess
+import sys
+import threading
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.audit.executors import ClusterError
+from drivelint.audit.executors.choice import open_executor
+from drivelint.errors import ExitCode, UsageError
+from tests.audit import fleet
+from tests.audit.clusters import dask
+from tests.audit.here import judged
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+N_DRIVES = 16
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
+
+
+@pytest.fixture(scope="module")
+def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
+    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
+
+
+def _on(address: str) -> object:
+    return open_executor(address, workers=None, memory=None, timeout_s=None)
+
+
+def test_dask_with_a_killed_worker_gives_the_same_tables(
+    drives: fleet.Fleet, digest: str | None, tmp_path: Path
+) -> None:
+    with dask(tmp_path, 2) as cluster:
+        victim = threading.Timer(2.0, cluster.workers[0].send_signal, [signal.SIGKILL])
+        victim.start()
+        counted = judged(drives, tmp_path / "out", _on(cluster.address))  # type: ignore[arg-type]
+        victim.join()
+        assert cluster.workers[0].wait(timeout=10) == -signal.SIGKILL
+    assert (counted.n_drives, counted.quarantined, counted.digest) == (N_DRIVES, 0, digest)
+
+
+def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
+    drives: fleet.Fleet, digest: str | None, tmp_path: Path
+) -> None:
+    with dask(tmp_path, 1) as cluster:
+        command = drives.command(tmp_path / "out", "--cluster", cluster.address, "--memory", "200MB")
+        running = subprocess.Popen([sys.executable, "-m", "drivelint", *command], stderr=subprocess.PIPE)
+        time.sleep(3.0)
+        cluster.scheduler.send_signal(signal.SIGKILL)
+        said = running.communicate(timeout=120)[1].decode()
+    assert running.returncode == ExitCode.TEMPFAIL, said
+    assert "scheduler" in said
+    assert "Traceback" not in said
+    assert judged(drives, tmp_path / "out").digest == digest
+
+
+def test_workers_with_threads_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ClusterError, match="no Dask scheduler answers"):
+        _on("tcp://127.0.0.1:9")
+    with pytest.raises(UsageError, match="give the address of a Dask scheduler"):
+        _on("http://127.0.0.1")
+
+
+@pytest.mark.skipif(importlib.util.find_spec("ray") is None, reason="Ray is not installed")
+def test_ray_with_a_killed_node_gives_the_same_tables(drives: fleet.Fleet, digest: str | None, tmp_path: Path) -> None:
+    utils = importlib.import_module("ray.cluster_utils")
+    cluster = utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 1})
+    node = cluster.add_node(num_cpus=1)
+    try:
+        executor = _on(cluster.address)
+        victim = threading.Timer(3.0, cluster.remove_node, [node], {"allow_graceful": False})
+        victim.start()
+        counted = judged(drives, tmp_path / "out", executor)  # type: ignore[arg-type]
+        victim.join()
+    finally:
+        cluster.shutdown()
+    assert (counted.n_drives, counted.quarantined, counted.digest) == (N_DRIVES, 0, digest)
