@@ -10,7 +10,8 @@ import pyarrow as pa
 from drivelint import catalogue
 from drivelint.annotate import Annotator
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.barrier import RefusedLog, judge_apart
+from drivelint.engine.apart import judge_apart
+from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory

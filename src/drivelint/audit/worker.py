@@ -19,7 +19,8 @@ from drivelint import catalogue
 from drivelint.audit import bucket
 from drivelint.audit.model import AuditDrive, JudgeSettings, Receipt, Task, digest
 from drivelint.audit.store import open_store
-from drivelint.engine.barrier import RefusedLog, judge_apart, refused
+from drivelint.engine.apart import judge_apart
+from drivelint.engine.barrier import RefusedLog, refused
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory

@@ -1,4 +1,4 @@
-"""Keeps a fault to the drive that has it: a drive that cannot be read or judged is refused, and the others are judged."""
+"""Tells a fault of one drive, which is refused, from a fault of the whole run."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ import duckdb
 from drivelint.errors import DriveLintError, InternalError, MemoryShortError, TraceError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
-
-    from drivelint.engine.batch import Drive
-    from drivelint.engine.session import JudgingSession
 
 
 @dataclass(frozen=True)
@@ -24,26 +20,6 @@ class RefusedLog:
 
     path: Path
     error: DriveLintError
-
-
-def judge_apart(session: JudgingSession, drives: Sequence[Drive]) -> list[RefusedLog]:
-    """Judge a batch; if it fails, drive by drive, so that one bad drive harms no other. Return what could not be judged.
-
-    Errors: those whose fault is no drive's, such as a folder that cannot be written (`exit_code` 75).
-    """
-    try:
-        session.judge(drives)
-    except Exception as error:
-        if isinstance(error, DriveLintError) and error.is_of_the_run:
-            raise
-        if len(drives) == 1:
-            return [refused(drives[0].trace.path, error)]
-        # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
-        drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
-        many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
-        pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
-        return [each for piece in pieces for each in judge_apart(session, piece)]
-    return []
 
 
 def refused(path: Path, error: BaseException) -> RefusedLog:
