@@ -1,0 +1,36 @@
+"""Keeps a fault to the drive that has it: a drive that cannot be judged is refused, and the others are judged."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import duckdb
+
+from drivelint.engine.barrier import RefusedLog, refused
+from drivelint.errors import DriveLintError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.engine.batch import Drive
+    from drivelint.engine.session import JudgingSession
+
+
+def judge_apart(session: JudgingSession, drives: Sequence[Drive]) -> list[RefusedLog]:
+    """Judge a batch; if it fails, drive by drive, so that one bad drive harms no other. Return what could not be judged.
+
+    Errors: those whose fault is no drive's, such as a folder that cannot be written (`exit_code` 75).
+    """
+    try:
+        session.judge(drives)
+    except Exception as error:
+        if isinstance(error, DriveLintError) and error.is_of_the_run:
+            raise
+        if len(drives) == 1:
+            return [refused(drives[0].trace.path, error)]
+        # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
+        drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
+        many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
+        pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
+        return [each for piece in pieces for each in judge_apart(session, piece)]
+    return []
