@@ -1,9 +1,9 @@
 -- The actors, and the lanes, around every moment.
 INSERT INTO scene BY NAME
 WITH state AS (
-    SELECT drive_id, ego_id, t_ns, ego_id AS actor_id, x_m, y_m, yaw_rad FROM ego_state
+    SELECT drive_id, ego_id, t_ns, ego_id AS actor_id, x_m, y_m, yaw_rad, speed_mps, accel_mps2, d_m FROM ego_state
     UNION ALL
-    SELECT drive_id, ego_id, t_ns, object_id, x_m, y_m, yaw_rad FROM pair
+    SELECT drive_id, ego_id, t_ns, object_id, x_m, y_m, yaw_rad, speed_mps, accel_mps2, d_m FROM pair
 ),
 present AS (
     SELECT m.drive_id, m.ego_id, m.t_ns, m.ego_id AS actor_id, a.actor_class, e.length_m, e.width_m, e.x_m, e.y_m, e.yaw_rad, e.speed_mps
@@ -18,7 +18,10 @@ present AS (
 ),
 way AS (
     SELECT a.drive_id, a.ego_id, a.at_ns AS t_ns, s.actor_id,
-        list({'t_ns': a.t_ns, 'x_m': round(s.x_m, 2), 'y_m': round(s.y_m, 2), 'yaw_rad': round(s.yaw_rad, 3)} ORDER BY a.t_ns) AS path
+        list({
+            't_ns': a.t_ns, 'x_m': round(s.x_m, 2), 'y_m': round(s.y_m, 2), 'yaw_rad': round(s.yaw_rad, 3),
+            'speed_mps': round(s.speed_mps, 3), 'accel_mps2': round(s.accel_mps2, 2), 'd_m': round(s.d_m, 2)
+        } ORDER BY a.t_ns) AS path
     FROM _around a
     JOIN present p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.at_ns  -- the others are not drawn
     JOIN state s ON s.drive_id = a.drive_id AND s.ego_id = a.ego_id AND s.t_ns = a.t_ns AND s.actor_id = p.actor_id

@@ -123,15 +123,18 @@ def test_the_headline() -> None:
         (found,) = re.findall(r"<h1>(.*?)</h1>", page(run), re.DOTALL)
         return re.sub(r"<[^>]+>", "", found).strip()
 
-    assert headline(result([verdict("pass")])) == "No finding"
-    assert headline(result([verdict("pass"), verdict("unknown")])) == "No finding, as far as it could be judged"
+    assert headline(result([verdict("pass")])) == "PASS No finding"
+    assert headline(result([verdict("pass"), verdict("unknown")])) == "PASS No finding, as far as it could be judged"
     lost = [drive("d2", status="not_judged", status_reason="broken")]
-    assert headline(result([verdict("pass")], drives=[drive(), *lost])) == "No finding, as far as it could be judged"
+    assert (
+        headline(result([verdict("pass")], drives=[drive(), *lost]))
+        == "NOT JUDGED No finding, as far as it could be judged"
+    )
     mostly = [verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)]
-    assert headline(result(mostly)) == "Most could not be judged; no finding in the rest"
+    assert headline(result(mostly)) == "PASS Most could not be judged; no finding in the rest"
     assert "1 of the rules could not be judged" in Parsed(page(result(mostly))).text
-    assert headline(result([], drives=lost)) == "Nothing was judged"
-    assert headline(result([verdict("fail")], [finding()])) == "1 finding in 1 of 1 drive"
+    assert headline(result([], drives=lost)) == "NOT JUDGED Nothing was judged"
+    assert headline(result([verdict("fail")], [finding()])) == "FAIL 1 critical finding in 1 of 1 drive"
 
 
 def test_a_crowd_is_cut_to_the_worst_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -359,6 +362,6 @@ def test_a_folder_without_a_result_is_one_clear_error(tmp_path: Path) -> None:
 
 def test_a_finding_has_its_time_in_utc_where_the_log_has_one() -> None:
     text = page(result([verdict("fail")], [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)]))
-    assert Parsed(text).all("datetime") == ["2023-11-14T22:13:28.250Z"]
+    assert Parsed(text).all("datetime") == ["2023-11-14T22:13:28.250Z"] * 2  # of the worst moment, and in its drive
     assert ">2023-11-14T22:13:28.250Z<" in text
     assert "<time" not in page(result([verdict("fail")], [finding()]))

@@ -61,10 +61,12 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     assert min(told["new"], told["known"], told["waived"]) > 0
     text = page(gated)
     parsed = Parsed(text)
-    first, _, rest = text.partition('id="findings"')
-    for kind, n in told.items():
-        assert rest.count(f'class="stands st-{kind}"') == 2 * n, "once in the table, once at its moment"
-    assert 'class="stands st-new"' in first, "what happened"
+    for part in ("findings", "drives"):
+        section = text.partition(f'id="{part}"')[2].partition("</section>")[0]
+        for kind, n in told.items():
+            assert section.count(f'class="stands st-{kind}"') == n, "once in the table, once at its moment"
+    assert 'class="stands st-new"' in text.partition('id="worst"')[2].partition("</section>")[0]
+    assert 'class="stands st-new"' in text.partition('id="story"')[2].partition("</section>")[0]
     assert f"{told['new']} new, {told['known']} known, {told['waived']} waived." in parsed.text
     assert f"{told['new']} of them new" in parsed.text
     assert "waived until 2027-01-31 by jo@example.org: a prop of the track" in parsed.text
@@ -96,7 +98,7 @@ def test_without_an_earlier_result_and_waivers_the_page_says_nothing_of_them() -
 def test_with_waivers_alone_nothing_is_called_new() -> None:
     run = GateInputs(TODAY, None, "", WAIVERS).apply_to(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
-    assert "1 finding in 1 of 1 drive, 1 of them not waived" in parsed.text
+    assert "1 critical finding in 1 of 1 drive, 1 of them not waived" in parsed.text
     assert '"stands st-new"' not in page(run)
     assert "New, and known before" not in parsed.text
     assert "1 not waived, 0 waived" in parsed.text

@@ -35,8 +35,8 @@
 -- unit = "m/s"
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
--- [reasons.oncoming_hindered]
--- says = "an oncoming vehicle came {pet_s:.1f} s after the ego, or braked with {decel_mps2:.1f} m/s2"
+-- [reasons.oncoming_braked]
+-- says = "{object_id} braked with {decel_mps2:.1f} m/s2"
 --
 -- [reasons.came_by]
 -- says = "{object_id} came by with {room_m:.2f} m between"
@@ -127,7 +127,12 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
     END AS holds,
     CASE
         WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
-            THEN why('oncoming_hindered', {'pet_s': min(c.pet_s), 'decel_mps2': coalesce(max(c.decel_mps2), 0)})
+            -- The object of the rule is the standing vehicle: the reason names the oncoming one.
+            THEN coalesce(
+                min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
+                    FILTER (c.pet_s < $pet_s).words,
+                min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2})})
+                    FILTER (c.decel_mps2 > $decel_mps2).words)
         WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN why('came_by', m.least)
         WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN why('return_unseen')

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from drivelint.report import html, junit, markdown, sarif, summary, xqar
@@ -31,7 +32,7 @@ def write(result: Result, out: Path) -> None:
     Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
     """
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
-    contents["report.html"] = html.render(result)
+    contents["report.html"] = html.render(replace(result, folder=out))
     contents["junit.xml"] = junit.render(result)
     moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
     moved |= {name: None for name, _ in REPORT_FORMATS.values() if name not in contents}  # of an earlier result

@@ -11,15 +11,17 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import listed, plural
+from drivelint.phrases import plural
+from drivelint.report.inputs import input_notes
+from drivelint.report.outcome import LABELS, by_severity, outcome_label
+from drivelint.report.worst_first import is_contact, worst_first
 from drivelint.result import counts
-from drivelint.result.model import exit_status, off_map_reason
+from drivelint.result.model import exit_status
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Iterable, Mapping
 
     from rich.console import JustifyMethod, RenderableType
 
@@ -32,13 +34,12 @@ MOST_REASONS: Final = 3
 
 STYLE: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT: Final = {"critical": "crit", "major": "maj", "minor": "min"}
-_LABEL: Final = {
-    ExitCode.OK: ("PASS", "bold green"),
-    ExitCode.FAILED: ("FAIL", "bold red"),
-    ExitCode.USAGE: ("ERROR", "bold magenta"),
-    ExitCode.LOSSY: ("LOSSY", "bold yellow"),
-    ExitCode.NOT_JUDGED: ("NOT JUDGED", "bold yellow"),
+_STYLE_OF: Final = {
+    "PASS": "bold green",
+    "FAIL": "bold red",
+    "ERROR": "bold magenta",
 }
+_CAREFUL: Final = "bold yellow"
 
 
 def render(result: Result, out: str | None, width: int = 120) -> Group:
@@ -50,28 +51,12 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     if gate is not None:
         rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    found = sorted(rows.to_pylist(), key=lambda row: _badness(row, rules))
+    found = worst_first(rows, rules).to_pylist()
     drives = _drives(result, found, rules, width)
     parts: list[RenderableType] = [_head(result), Text(), _verdict(result, found, rules), Text(), drives, Text()]
     if found:
         parts += [_broken(found), Text()]
     return Group(*parts, *_lines(result), Text(), *_end(result, found, out))
-
-
-def _badness(row: Row, rules: dict[str, Any]) -> tuple[Any, ...]:
-    """Order findings: severity, contacts first, the least margin, then the time."""
-    margin = row["margin"]
-    return (
-        counts.SEVERITIES.index(row["severity"]),
-        not _is_contact(row, rules),
-        0.0 if margin is None else margin,
-        row["t_worst_ns"] or 0,
-        row["finding_id"],
-    )
-
-
-def _is_contact(row: Row, rules: dict[str, Any]) -> bool:
-    return "contact" in rules[row["rule_id"]]["tags"]
 
 
 def _head(result: Result) -> Text:
@@ -84,24 +69,15 @@ def _head(result: Result) -> Text:
     )
 
 
-def _severities(rows: list[Row]) -> str:
-    n = {severity: sum(row["severity"] == severity for row in rows) for severity in counts.SEVERITIES}
-    return ", ".join(f"{n[severity]} {severity}" for severity in counts.SEVERITIES if n[severity])
-
-
 def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something."""
-    code = exit_status(result).code
-    label, style = _LABEL.get(code, ("?", "bold yellow"))
-    decided = counts.total(result.verdicts)
-    if code == ExitCode.OK and (found or not decided["pass"] + decided["fail"]):
-        label, style = "FINDINGS" if found else "UNKNOWN", "bold yellow"  # findings that do not gate are no pass
-    text = Text(f"{label}  ", style)
+    label = outcome_label(result, len(found))
+    text = Text(f"{label}  ", _STYLE_OF.get(label, _CAREFUL))
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     in_drives = len({row["drive_id"] for row in found})
     where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
-    text.append(f"{_severities(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
-    if touched := {row["drive_id"] for row in found if _is_contact(row, rules)}:
+    text.append(f"{by_severity(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
+    if touched := {row["drive_id"] for row in found if is_contact(row, rules)}:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
         text.append(f"; {through} known or waived", "default")
@@ -159,7 +135,7 @@ def _cell(n: int, style: str) -> Text:
 
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end."""
-    contact = _is_contact(row, rules)
+    contact = is_contact(row, rules)
     parts = []
     if row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
@@ -205,58 +181,41 @@ def _lines(result: Result) -> list[Text]:
 
 
 def _unknown(result: Result) -> list[Text]:
-    """Return unknown verdicts by what is missing: signals that no log has in one line, then the most frequent other reasons."""
+    """Return unknown verdicts that do not want for a signal, by their reasons, the most frequent first."""
     rows = (
         counts.undecided(result.verdicts)
         .select(["verdict", "reason_code", "cause_code", "rule_id", "reason"])
         .to_pylist()
     )
-    signals, others = (
-        [row for row in rows if row["reason_code"].startswith("missing_") is missing] for missing in (True, False)
-    )
+    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
 
     def rules(these: list[Row]) -> int:
         return len({row["rule_id"] for row in these})
 
-    def by_rules(key: Callable[[Row], Any], these: list[Row]) -> list[tuple[Any, list[Row]]]:
-        groups = counts.grouped(these, key)
-        return sorted(groups.items(), key=lambda group: (-rules(group[1]), -len(group[1]), group[0]))
-
+    groups = counts.grouped(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    order = sorted(groups.items(), key=lambda group: (-rules(group[1]), -len(group[1]), group[0]))
     lines = []
-    if signals:
-        missing = by_rules(lambda row: row["reason_code"].removeprefix("missing_").removeprefix("mode_"), signals)
-        names = [f"{name.replace('_', ' ')} ({plural(rules(these), 'rule')})" for name, these in missing]
-        lines.append(Text(f"unknown (not logged or not in the map): {listed(names)}", "yellow"))
-    groups = by_rules(lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""), others)
-    for _, these in groups[:MOST_REASONS]:
+    for _, these in order[:MOST_REASONS]:
         times = f", {len(these)} times" if len(these) > 1 else ""
         words = f"{these[0]['verdict']} ({plural(rules(these), 'rule')}{times}): {these[0]['reason']}"
         lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
-    if len(groups) > MOST_REASONS:
-        lines.append(Text(f"... {plural(len(groups) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
+    if len(order) > MOST_REASONS:
+        lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
 
 
 def _inputs(result: Result) -> Text:
-    """Return which map the drives were judged on, how many it fits, and whether the logs are whole."""
-    drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-    maps = sorted({drive["map_name"] for drive in drives if drive["map_name"] is not None})
-    on_map = [drive for drive in drives if drive["map_name"] is not None]
-    off = sum(off_map_reason(drive) is not None for drive in on_map)
-    fits = f"{listed(maps, 2)} fits {len(on_map) - off} of {plural(len(on_map), 'drive')}" if maps else "none"
-    text = Text.assemble("map: ", (fits, "default" if maps and not off else "yellow"))
-    lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
-    warned = [q for drive in drives for q in drive["quality"] if q["severity"] != "info"]
-    told = plural(len({(q["check_id"], q["message"]) for q in warned}), "warning") if warned else "no warnings"
-    text.append(f"    data: {told}", "yellow" if warned else "default")
-    if lossy:
-        text.append(f"; parts lost in {listed(lossy, 2)}", "bold yellow")
-    return text
+    """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged."""
+    line = Text()
+    for note in input_notes(result):
+        line.append(f"{' | ' if line else ''}{note.label}: ", "default")
+        line.append(note.words, "yellow" if note.is_warning else "default")
+    return line
 
 
 def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
     end = exit_status(result)
-    style = _LABEL.get(end.code, ("", "bold yellow"))[1]
+    style = _STYLE_OF.get(LABELS.get(end.code, ""), _CAREFUL)
     lines = [Text(f"exit {int(end.code)}: {end.why}", style)]
     gate = result.gate
     if gate is not None and gate.baseline is not None:

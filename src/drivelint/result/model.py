@@ -41,6 +41,7 @@ class Result:
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
+    `folder`: where its files lie or will lie, or None.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -60,6 +61,7 @@ class Result:
     strict: bool = False
     gate: Gate | None = None
     asked: RunRequest | None = None
+    folder: Path | None = None
 
     def __post_init__(self) -> None:
         for name, table in TABLE_OF_FILE.items():

@@ -47,7 +47,7 @@ def _environment() -> Environment:
     )
     style, script = (
         "\n".join((_TEMPLATES / name).read_text(encoding="utf-8").strip() for name in names)
-        for names in (("report.css", "charts.css", "narrow.css"), ("report.js", "replay.js"))
+        for names in (("report.css", "charts.css", "narrow.css", "first.css"), ("tables.js", "report.js", "replay.js"))
     )
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours

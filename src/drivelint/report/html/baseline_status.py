@@ -26,6 +26,11 @@ class BaselineStatus(NamedTuple):
     why: str
 
     @property
+    def is_gating(self) -> bool:
+        """Whether neither the baseline nor a waiver lets it through."""
+        return self.kind in {"new", "open"}
+
+    @property
     def filter_key(self) -> str:
         """The key by which the page filters findings; no pack has this name."""
         return f"gate-{self.kind}"

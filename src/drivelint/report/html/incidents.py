@@ -6,10 +6,13 @@ from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.report.html.anchors import anchor
+from drivelint.report.html.contact import before_contact
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
+from drivelint.report.worst_first import CONTACT
+from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import measure, non_breaking, number, seconds, utc_at
 
@@ -45,6 +48,7 @@ class FindingLine(NamedTuple):
     told: str
     course: dict[str, Any] | None
     standing: BaselineStatus | None
+    sure: dict[str, str] | None
 
 
 def finding_line(
@@ -63,6 +67,9 @@ def finding_line(
     required = number(row["required"], unit)
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
+    sure = how_sure(row) if kind == "fail" else None
+    found = [status.filter_key] if status else []
+    found += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
     place = anchor("finding", row["finding_id"]) if linked and kind == "fail" else ""
     return FindingLine(
         row,
@@ -70,7 +77,7 @@ def finding_line(
         kind,
         anchor=place,
         href=f"#{place or anchor('moment', *incident_key(row))}" if linked else "",
-        keys=" ".join((kind, row["severity"], rule["pack"], *([status.filter_key] if status else []))),
+        keys=" ".join((kind, row["severity"], rule["pack"], *found)),
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
         required=required,
@@ -78,6 +85,7 @@ def finding_line(
         told=_told(row, rule, required) if sense else row["reason"],
         course=None if steps is None else margin_series(steps, row["t_worst_ns"], unit, start_ns),
         standing=status,
+        sure=sure,
     )
 
 
@@ -88,44 +96,66 @@ def _told(row: Row, rule: Row, required: str) -> str:
     return said if row["reason_measures"] else f"{said} ({row['reason']})"
 
 
+def how_sure(finding: Row) -> dict[str, str]:
+    """Return whether a finding is sure or possible (`kind`, '' if no copies of it were judged), of how many copies, and why."""
+    said = certainty(finding)
+    if said is None:
+        return {"kind": "", "label": "not tested", "why": "no copies with errors like the recording's were judged"}
+    of = f"{finding['n_stays']} of {finding['n_copies']}"
+    only = "only " if said == POSSIBLE else ""
+    why = f"in {only}{of} copies of the drive with errors like the recording's it is a finding too"
+    return {"kind": said, "label": f"{said}, {of}", "why": why}
+
+
 def incident_key(row: Row) -> Key:
     """Return the key (drive, ego, time) of the incident that a finding or near miss belongs to."""
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def _in_summary(lines: Iterable[FindingLine]) -> set[Key]:
-    """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first."""
+def _in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
+    """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first; 0 is the worst."""
     first: dict[str, tuple[int, float, Key]] = {}
     for row in (line.row for line in lines if line.kind == "fail"):
         ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
         worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
         first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
-    return set(list(dict.fromkeys(at for _, _, at in sorted(first.values())))[:MAX_INCIDENTS_IN_SUMMARY])
+    order = list(dict.fromkeys(at for _, _, at in sorted(first.values())))
+    return {at: n for n, at in enumerate(order[:MAX_INCIDENTS_IN_SUMMARY])}
 
 
 def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
     """Return the incidents of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
-    of a second since the drive's start; `leading`: it is among those that tell what happened; `on_earth`: a finding
-    whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say. `drive`: its row.
+    of a second since the drive's start; `leading`: it is among those that tell what happened, `rank` (0: the worst) of these;
+    `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
+    `drive`: its row.
     """
     groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
-        _moment(at, found, drive) | {"plan": pictures.get(at), "leading": at in leading}
+        _moment(at, found, drive) | {"plan": pictures.get(at), "leading": at in leading, "rank": leading.get(at)}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
 
 def plan_views(
-    lines: Iterable[FindingLine], scenes: Mapping[Key, Row], spaces: Mapping[Key, list[Row]], road: Road, *, most: int
+    lines: Iterable[FindingLine],
+    scenes: Mapping[Key, Row],
+    spaces: Mapping[Key, list[Row]],
+    road: Road,
+    starts: Mapping[str, int],
+    *,
+    most: int,
 ) -> dict[Key, dict[str, Any]]:
-    """Return the plan views of the first `most` incidents of `lines`."""
+    """Return the plan views of the first `most` incidents of `lines`. `before`: of a contact the speeds before it, in words."""
     told = grouped(lines, lambda line: incident_key(line.row))
     drawn: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
         about = any(_SPACES in line.rule["tags"] for line in found)
-        drawn[at] = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
+        contact = next((line.row for line in found if line.kind == "fail" and CONTACT in line.rule["tags"]), None)
+        before = None if contact is None else before_contact(scenes[at], contact, starts.get(at[0], 0))
+        picture = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
+        drawn[at] = picture | {"before": before["words"] if before else ""}
     return drawn
 
 

@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.svg import Axis, axis_around, num
+from drivelint.report.html.svg import Axis, axis_that_decides, num
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
@@ -48,12 +48,14 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
 
 
 def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, Any]:
-    """Return lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends."""
+    """Return lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends; `cut`: how far values go that it cuts off."""
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
-    y = axis_around(values, _BOTTOM, _TOP)
     seen = row["observed"][worst]
+    limits = [v for v, kept in zip(row["required"], row["holds"], strict=True) if kept is False]
+    deciding = [v for v in (seen, row["required"][worst], *limits) if v is not None]
+    y, cut = axis_that_decides(values, deciding, _BOTTOM, _TOP)
     return {
         "observed": _line(t, row["observed"], x, y),
         "required": _line(t, row["required"], x, y),
@@ -62,6 +64,7 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, A
         "t_ticks": x.ticks(6),
         "v_ticks": y.ticks(4),
         "unit": unit or "",
+        "cut": " and ".join(number(v, unit) for v in cut),
         "t0": round(t[0] * 100),
         "t1": round(t[-1] * 100),
         "words": _words(row, t, unit),

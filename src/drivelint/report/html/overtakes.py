@@ -37,6 +37,8 @@ _PLOT_W, _PLOT_H = 560, 400
 _LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
+FAR_M: Final = 2000.0
+"""A safe distance ahead beyond this is of an ego hardly faster than whom it passes: the number says no more than that."""
 _BARS_W, _BARS_H = 560, 230
 _BINS: Final = 12
 _PREFERRED: Final = "nominal"
@@ -60,7 +62,7 @@ def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> dict[st
 
 
 def _least_spare(row: Row) -> tuple[float, str, str, int]:
-    spare = [p["spare_m"] for p in row["profiles"] if p["spare_m"] is not None]
+    spare = [max(p["spare_m"], -FAR_M) for p in row["profiles"] if p["spare_m"] is not None]
     return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
 
 
@@ -71,7 +73,7 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any
     return {
         "row": row,
         "time": seconds(row["t0_ns"], start_ns),
-        "cells": [cells.get(profile, _NOT_COMPUTED) for profile in profiles],
+        "cells": [_cell(cells.get(profile, _NOT_COMPUTED)) for profile in profiles],
         "stages": stages,
         "rows": [_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
         if stages
@@ -81,6 +83,11 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any
         ),
         "bounds": _bounds(row["stretches"], clock),
     }
+
+
+def _cell(p: Row) -> Row:
+    """Return what a profile asks for, `is_far` if that is further than makes sense to tell."""
+    return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > FAR_M}
 
 
 def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
@@ -130,7 +137,12 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
 
 def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
     """Return the areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
-    known = [(row, p) for row in records for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None]
+    known = [
+        (row, p)
+        for row in records
+        for p in row["profiles"]
+        if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= FAR_M
+    ]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
         return None

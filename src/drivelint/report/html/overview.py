@@ -6,53 +6,66 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
+from drivelint.phrases import plural
+from drivelint.report.html.contact import before_contact
+from drivelint.report.html.incidents import incident_key
+from drivelint.report.outcome import by_severity, outcome_label
+from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
+from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.text import measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine
+    from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _NAMED: Final = 4
+_LONG_KM: Final = 100.0
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
 
 
-def headline(result: Result) -> tuple[str, str]:
-    """Return the outcome (fail, unknown or pass) and the sentence at the top of the page."""
-    told, n = counts.total(result.verdicts), result.findings.num_rows
+def headline(result: Result, rules: Mapping[str, Row]) -> tuple[str, str, str]:
+    """Return the outcome (fail, unknown or pass), the word for it, and the sentence at the top of the page."""
+    told, findings = counts.total(result.verdicts), result.findings
     judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
     open_ = told["unknown"] + told["error"]
-    if n:
-        drives, all_ = len(pc.unique(result.findings["drive_id"])), result.drives.num_rows
-        said = f"{n} {'finding' if n == 1 else 'findings'} in {drives} of {all_} {'drive' if all_ == 1 else 'drives'}"
-        return "fail", said + _of_these(result)
+    names = findings["finding_id"].to_pylist()
+    label = outcome_label(result, sum(result.gate is None or result.gate.is_gating(name) for name in names))
+    if rows := findings.select(["severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist():
+        drives = plural(result.drives.num_rows, "drive")
+        noun = "finding" if len(rows) == 1 else "findings"
+        said = f"{by_severity(rows)} {noun} in {len({row['drive_id'] for row in rows})} of {drives}"
+        touched = {row["drive_id"] for row in rows if is_contact(row, rules)}
+        said += f"; contact in {len(touched)}" if touched else ""
+        possible = sum(certainty(row) == POSSIBLE for row in rows)
+        return "fail", label, said + _of_these(result) + (f"; {possible} only possible" if possible else "")
     if not judged or not result.verdicts.num_rows:
-        return "unknown", "Nothing was judged"
+        return "unknown", label, "Nothing was judged"
     if not told["pass"] and open_:
-        return "unknown", "Nothing could be decided"
+        return "unknown", label, "Nothing could be decided"
     if open_ > told["pass"]:
-        return "unknown", "Most could not be judged; no finding in the rest"
+        return "unknown", label, "Most could not be judged; no finding in the rest"
     if open_ or judged < result.drives.num_rows:
-        return "unknown", "No finding, as far as it could be judged"
-    return "pass", "No finding"
+        return "unknown", label, "No finding, as far as it could be judged"
+    return "pass", label, "No finding"
 
 
-def contacts(result: Result, lines: Sequence[FindingLine]) -> dict[str, Any] | None:
+def contacts(
+    result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row], scenes: Mapping[Key, Row]
+) -> dict[str, Any] | None:
     """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named.
+    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named;
+    `sure`: no contact is only possible.
     """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
-    tagged = {row["rule_id"] for row in result.rules.select(["rule_id", "tags"]).to_pylist() if _CONTACT in row["tags"]}
     ordered = result.findings.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist()
-    touches = [row for row in ordered if row["rule_id"] in tagged]
+    touches = [row for row in ordered if is_contact(row, rules)]
     met = counts.grouped(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
@@ -61,10 +74,17 @@ def contacts(result: Result, lines: Sequence[FindingLine]) -> dict[str, Any] | N
         # a centimetre may be the recorder's error
         depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
         deep = f", {measure(max(depths), 'm')} deep" if depths else ""
+        scene = scenes.get(incident_key(first))
+        before = None if scene is None else before_contact(scene, first, starts[first["drive_id"]] or 0)
+        speed = f", closing at {before['closing']:.1f}\u00a0m/s" if before and before["closing"] is not None else ""
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
-        said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{deep}{where}"
-        named.append((said, hrefs.get(first["finding_id"], "")))
-    return {"named": named[:_NAMED], "n_more": len(named[_NAMED:])} if named else None
+        said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{speed}{deep}{where}"
+        doubt = all(certainty(row) == POSSIBLE for row in found)
+        named.append((f"possibly {said}" if doubt else said, hrefs.get(first["finding_id"], ""), doubt))
+    if not named:
+        return None
+    sure = not all(doubt for *_, doubt in named)
+    return {"named": [each[:2] for each in named[:_NAMED]], "n_more": len(named[_NAMED:]), "sure": sure}
 
 
 def _of_these(result: Result) -> str:
@@ -77,15 +97,40 @@ def _of_these(result: Result) -> str:
     return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
+def rates(result: Result) -> dict[str, Any]:
+    """Return the findings by severity: their number, the drives that have them, and how many per 100 km and per hour of driving.
+
+    `per`: whether the drives are long enough together for that (100 km, 1 hour).
+    """
+    km, hours = (float(pc.sum(result.drives[name]).as_py() or 0.0) for name in ("km", "duration_s"))
+    hours /= 3600
+    found = counts.grouped(result.findings.select(["severity", "drive_id"]).to_pylist(), lambda row: row["severity"])
+    rows = [
+        {
+            "severity": severity,
+            "n": len(found[severity]),
+            "n_drives": len({row["drive_id"] for row in found[severity]}),
+            "per_100_km": 100 * len(found[severity]) / km if km else None,
+            "per_hour": len(found[severity]) / hours if hours else None,
+        }
+        for severity in counts.SEVERITIES
+        if severity in found
+    ]
+    return {"rows": rows, "per": km >= _LONG_KM and hours >= 1}
+
+
 def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine]) -> list[dict[str, Any]]:
     """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page."""
     columns = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    verdicts = counts.verdicts_by(result.verdicts, "rule_id")
     shown = counts.grouped(lines, lambda line: line.row["rule_id"])
     found = [
         {
             "rule": rules[rule_id],
             "n": len(rows),
             "n_drives": len({row["drive_id"] for row in rows}),
+            "n_fail": verdicts[rule_id]["fail"],
+            "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
             "worst": min(shown.get(rule_id, []), key=_margin, default=None),
         }
         for rule_id, rows in counts.grouped(columns, lambda row: row["rule_id"]).items()

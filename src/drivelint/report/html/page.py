@@ -13,7 +13,7 @@ from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
-from drivelint.report.html.overtakes import overtake_views, overtaking_opportunities
+from drivelint.report.html.overtakes import FAR_M, overtake_views, overtaking_opportunities
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
@@ -25,6 +25,9 @@ from drivelint.report.html.reasons import (
 from drivelint.report.html.replay import replays
 from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
+from drivelint.report.html.worst_moment import Evidence, finding_key, worst_moment
+from drivelint.report.inputs import input_notes
+from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
 from drivelint.result.counts import grouped
 from drivelint.result.model import exit_status
@@ -38,14 +41,14 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-MAX_FINDINGS: Final = 1000
+MAX_FINDINGS: Final = 600
 """Findings in the page: the worst; the Parquet files hold them all."""
-MAX_NEAR_MISSES: Final = 300
+MAX_NEAR_MISSES: Final = 150
 """Near misses in the page."""
-MAX_PICTURES: Final = 250
-MAX_CHARTS: Final = 250
+MAX_PICTURES: Final = 150
+MAX_CHARTS: Final = 150
 """Findings and near misses with their measure over time and the steps behind it, the worst first."""
-MAX_DRIVES: Final = 100
+MAX_DRIVES: Final = 60
 """Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
 MAX_UNFOLDED_DRIVES: Final = 3
 """Up to so many drives are shown unfolded."""
@@ -68,15 +71,17 @@ def content(result: Result) -> dict[str, Any]:
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
     told = counts.verdicts_by(result.verdicts, "drive_id")
-    rows = _worst_rows(result)
+    by_drive = counts.grouped(result.findings.select(["drive_id", "severity"]).to_pylist(), lambda row: row["drive_id"])
+    rows = _worst_rows(result, rules)
     shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
-    lines = _lines(result, rows, rules, starts, shown=shown)
+    courses = {finding_key(row): row for row in result.courses.to_pylist()}
+    lines = _lines(result, rows, rules, starts, courses, shown=shown)
     failed = [line for line in lines if line.kind == "fail"]
     moment: Callable[[Row], Key] = itemgetter("drive_id", "ego_id", "t_ns")
     scenes = {moment(row): row for row in result.scenes.to_pylist()}
     spaces = grouped(result.spaces.to_pylist(), moment)
     road = Road(result.lanes)
-    drawn = plan_views(lines, scenes, spaces, road, most=MAX_PICTURES)
+    drawn = plan_views(lines, scenes, spaces, road, starts, most=MAX_PICTURES)
     listed = grouped(lines, lambda line: line.row["drive_id"])
     anchors = {line.anchor: line.standing.filter_key if line.standing else "" for line in failed}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
@@ -95,11 +100,17 @@ def content(result: Result) -> dict[str, Any]:
     broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
     return {
         "outcome": exit_status(result),
-        "headline": overview.headline(result),
-        "contacts": overview.contacts(result, failed),
+        "headline": overview.headline(result, rules),
+        "inputs": input_notes(result),
+        "worst": worst_moment(
+            lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
+        ),
+        "rates": overview.rates(result),
+        "contacts": overview.contacts(result, failed, rules, scenes),
         "not_decided": len(pc.unique(counts.undecided(result.verdicts)["rule_id"])),
         "counts": overview.verdict_shares(totals),
         "names": _NAMES,
+        "severities": list(counts.SEVERITIES),
         "passes": totals["pass"],
         "n_findings": result.findings.num_rows,
         "n_overtakes": result.overtakes.num_rows,
@@ -109,7 +120,7 @@ def content(result: Result) -> dict[str, Any]:
         "broken": broken,
         "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
         "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
-        "notes": notes_on_logs(drives),
+        "notes": notes_on_logs([row for row in drives if row["status"] == "judged"]),
         "packs": overview.verdicts_by_pack(result),
         "stories": told_of,
         "findings": failed,
@@ -123,6 +134,10 @@ def content(result: Result) -> dict[str, Any]:
                 **row,
                 "href": "#" + anchor("drive", row["drive_id"]) if row["drive_id"] in shown else "",
                 "verdicts": told[row["drive_id"]],
+                "findings": [
+                    sum(f["severity"] == severity for f in by_drive.get(row["drive_id"], []))
+                    for severity in counts.SEVERITIES
+                ],
                 "near": sum(line.kind == "near" for line in listed.get(row["drive_id"], [])),
                 "warnings": sum(check["severity"] != "info" for check in row["quality"]),
             }
@@ -134,6 +149,7 @@ def content(result: Result) -> dict[str, Any]:
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
+        "far_m": FAR_M,
         "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
@@ -143,20 +159,12 @@ def content(result: Result) -> dict[str, Any]:
     }
 
 
-def _worst_rows(result: Result) -> list[tuple[str, Row]]:
+def _worst_rows(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row]]:
     """Return the findings (`fail`), then the near misses (`near`) that the page shows, the worst first."""
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
-    failed = _worst_first(result.findings, MAX_FINDINGS)
-    close = _worst_first(result.verdicts.filter(near), MAX_NEAR_MISSES)
+    failed = worst_first(result.findings, rules).slice(0, MAX_FINDINGS).to_pylist()
+    close = worst_first(result.verdicts.filter(near), rules).slice(0, MAX_NEAR_MISSES).to_pylist()
     return [*(("fail", row) for row in failed), *(("near", row) for row in close)]
-
-
-def _worst_first(rows: pa.Table, most: int) -> list[Row]:
-    """Return the rows to show, in the order of severity, drive and time."""
-    weight = pc.index_in(rows["severity"], value_set=pa.array(counts.SEVERITIES))
-    names = ("weight", "drive_id", "ego_id", "t_worst_ns", "rule_id", "profile", "object_id")
-    ordered = rows.append_column("weight", weight).sort_by([(name, "ascending") for name in names])
-    return list(ordered.slice(0, most).to_pylist())
 
 
 def _lines(
@@ -164,11 +172,11 @@ def _lines(
     rows: Sequence[tuple[str, Row]],
     rules: Mapping[str, Row],
     starts: Mapping[str, int],
+    courses: Mapping[tuple[Any, ...], Row],
     *,
     shown: set[str],
 ) -> list[FindingLine]:
     """Return the rows with their words, those of drives in `shown` with links."""
-    courses = {_whose(row): row for row in result.courses.to_pylist()}
     return [
         finding_line(
             row,
@@ -176,17 +184,11 @@ def _lines(
             rules[row["rule_id"]],
             starts.get(row["drive_id"], 0),
             linked=row["drive_id"] in shown,
-            steps=courses.get(_whose(row)) if n < MAX_CHARTS else None,
+            steps=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
         )
         for n, (kind, row) in enumerate(rows)
     ]
-
-
-def _whose(row: Row) -> tuple[Any, ...]:
-    """Return the key of the finding or near miss that a measure series belongs to."""
-    told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
-    return (row.get("finding_id"), *told)
 
 
 def _with_section(drives: Sequence[Row], worst: Iterable[str], told: Mapping[str, Mapping[str, int]]) -> set[str]:
@@ -216,6 +218,9 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
         "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
         "pack": [(p, p) for p in sorted({rule["pack"] for rule in rules.values()})],
+        "sure": sorted(
+            {(f"sure-{line.sure['kind']}", line.sure["kind"]) for line in lines if line.sure and line.sure["kind"]}
+        ),
         "standing": sorted({(line.standing.filter_key, line.standing.label) for line in lines if line.standing}),
         "drive": [(d, d) for d in drives] if len(drives) > 1 else [],
     }

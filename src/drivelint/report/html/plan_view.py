@@ -79,7 +79,7 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
     around = [s for s in spaces if s["actor_id"] in {ego["actor_id"], *concerned}]
     rings = [(s["actor_id"], np.column_stack([s["x_m"], s["y_m"]])) for s in around]
     lanes = road.lanes_of(scene["environment_id"])
-    shown = [_corners(a) for a in (ego, *met)] + [ring for _, ring in rings]
+    shown = [corners(a) for a in (ego, *met)] + [ring for _, ring in rings]
     heading = lanes.road_heading(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
     view = _fit(ego, heading, np.concatenate(shown))
     texts, gaps, told = _distances(ego, met, view)
@@ -134,12 +134,12 @@ def _outline(actor: Row) -> Points:
     return np.array([(hl, hw), (-hl, hw), (-hl, -hw), (hl, -hw)])
 
 
-def _corners(actor: Row) -> Points:
+def corners(actor: Row) -> Points:
     """Return the corners of a box in map metres; shape (4, 2)."""
     yaw = actor["yaw_rad"] or 0.0
     c, s = math.cos(yaw), math.sin(yaw)
-    corners: Points = _outline(actor) @ np.array([[c, s], [-s, c]]) + (actor["x_m"], actor["y_m"])
-    return corners
+    turned: Points = _outline(actor) @ np.array([[c, s], [-s, c]]) + (actor["x_m"], actor["y_m"])
+    return turned
 
 
 def _kind(actor_id: str, ego: Row, concerned: Collection[str]) -> str:
@@ -205,7 +205,7 @@ def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str
     """Return labels, lines and words of the least distances from the ego's box to those concerned."""
     texts, lines, told = [], [], []
     for actor in met:
-        a, b = _corners(ego), _corners(actor)
+        a, b = corners(ego), corners(actor)
         nearest = shapely.get_coordinates(shapely.shortest_line(shapely.polygons(a), shapely.polygons(b)))
         far = float(np.hypot(*(nearest[1] - nearest[0])))
         if far < _TOUCH_M:
@@ -229,10 +229,10 @@ def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str
 
 def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
     """Return an actor's name, on the side of its box that faces away from whom it met."""
-    box = view(_corners(actor))
+    box = view(corners(actor))
     middle = box.mean(axis=0)
     partner = met[0] if actor is ego and met else ego
-    lower = middle[1] - view(_corners(partner)).mean(axis=0)[1]
+    lower = middle[1] - view(corners(partner)).mean(axis=0)[1]
     below = actor is not partner and (lower > 1 or (abs(lower) <= 1 and actor is not ego))
     y = box[:, 1].max() + 14 if below else box[:, 1].min() - 6
     return {

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import numpy as np
     from numpy.typing import NDArray
+
+_MOST_AROUND: Final = 6.0
+"""An axis is cut if it is longer than this many times the distance between the values that decide."""
+_AROUND: Final = 1.5
+"""A cut axis goes so many times this distance beyond them."""
+_LEAST_CORE: Final = 0.01
 
 
 def num(value: float) -> str:
@@ -63,6 +69,24 @@ def axis_around(values: Iterable[float], start: float, end: float, room: float =
     low, high = min(found), max(found)
     pad = (high - low) * room or max(abs(high) * 0.1, 0.5)
     return Axis(low - pad, high + pad, start, end)
+
+
+def axis_that_decides(
+    values: Iterable[float], deciding: Iterable[float], start: float, end: float
+) -> tuple[Axis, list[float]]:
+    """Return an axis on which the distance between the `deciding` values is seen, and the ends of the values that it cuts off.
+
+    It shows all values, unless they reach so far that the deciding ones would lie on each other.
+    """
+    found, core = list(values), list(deciding)
+    whole = axis_around([*found, *core], start, end)
+    if not core:
+        return whole, []
+    span = max(max(core) - min(core), _LEAST_CORE * (whole.high - whole.low))
+    if whole.high - whole.low <= _MOST_AROUND * span:
+        return whole, []
+    low, high = max(whole.low, min(core) - _AROUND * span), min(whole.high, max(core) + _AROUND * span)
+    return Axis(low, high, start, end), [v for v in (min(found), max(found)) if not low <= v <= high]
 
 
 def round_step(value: float) -> float:

@@ -27,9 +27,9 @@
   };
 
   const start = (scene) => {
-    const drive = scene.closest(".drive");
+    const drive = scene.closest(".drive") || [...document.querySelectorAll(".drive")].find((d) => d.dataset.drive === scene.dataset.of);
     const picture = scene.querySelector("svg.plan");
-    const data = picture && tracks(drive);
+    const data = picture && drive && tracks(drive);
     const own = data && data.a[scene.dataset.ego];
     if (!own || own[0].length < 2) return;
     const moment = Number(scene.dataset.t);
@@ -45,7 +45,8 @@
     const map = cam.querySelector("g").transform.baseVal.consolidate().matrix;
     const bodies = [...picture.querySelectorAll("use[data-actor]")].map((g) => ({ g, home: g.getAttribute("transform"), who: g.dataset.actor }));
     const labels = [...picture.querySelectorAll("text[data-actor]")];
-    const charts = [...scene.parentElement.querySelectorAll(".chart")];
+    const charts = [...scene.parentElement.querySelectorAll(".chart")].map((c) => [c, 42, 370]);
+    charts.push(...[...scene.querySelectorAll(".strips")].map((c) => [c, 46, 546]));
     const width = 600;
     const view = ([x, y]) => [map.a * x / 10 + map.c * y / 10 + map.e, map.b * x / 10 + map.d * y / 10 + map.f];
     range.min = inside[0];
@@ -84,10 +85,10 @@
           return path;
         }));
       }
-      for (const chart of charts) {
+      for (const [chart, left, across] of charts) {
         const [from, to] = [Number(chart.dataset.from), Number(chart.dataset.to)];
         const cursor = chart.querySelector(".cursor");
-        const x = 42 + 370 * (at - from) / (to - from);
+        const x = left + across * (at - from) / (to - from);
         cursor.setAttribute("visibility", !here && at >= from && at <= to ? "visible" : "hidden");
         cursor.setAttribute("transform", `translate(${x.toFixed(1)},0)`);
       }
@@ -129,4 +130,5 @@
     if (event.target.open && event.target.matches(".drive, .ego, .moment")) wake(event.target);
   }, true);
   for (const details of document.querySelectorAll(".moment[open]")) wake(details);
+  for (const scene of document.querySelectorAll(".hero .scene")) start(scene);
 })();

@@ -1,4 +1,3 @@
-"use strict";
 const reveal = () => {
   let name = location.hash.slice(1);
   try { name = decodeURIComponent(name); } catch { return; }
@@ -22,6 +21,8 @@ reveal();
   const text = form.elements.text;
   const selects = [...form.querySelectorAll("select")];
   const output = form.querySelector("output");
+  const table = document.getElementById("findings-table");
+  let sorted = "";
   const words = new Map();
   const said = (e) => {
     if (!words.has(e)) {
@@ -47,22 +48,48 @@ reveal();
     for (const d of drives) d.hidden = Boolean(drive) && d.dataset.drive !== drive;
     output.textContent = shown === rows.length ? `${shown} shown` : `${shown} of ${rows.length} shown`;
   };
+  // what is chosen lives in the address, behind "#?": a link to it shows the same
+  const remember = () => {
+    const chosen = new URLSearchParams();
+    for (const field of [text, ...selects]) if (field.value) chosen.set(field.name, field.value);
+    if (sorted) chosen.set("sort", sorted);
+    history.replaceState(null, "", `${location.pathname}${location.search}${chosen.size ? `#?${chosen}` : ""}`);
+  };
+  const recall = () => {
+    if (!location.hash.startsWith("#?")) return;
+    const chosen = new URLSearchParams(location.hash.slice(2));
+    for (const field of [text, ...selects]) field.value = chosen.get(field.name) || "";
+    for (const field of selects) if (field.selectedIndex < 0) field.value = "";
+    sorted = chosen.get("sort") || "";
+    if (table && sorted) table.dispatchEvent(new CustomEvent("sort-table", { bubbles: true, detail: sorted }));
+    apply();
+    document.getElementById("findings").scrollIntoView();
+  };
+  const changed = () => { apply(); remember(); };
   form.hidden = false;
-  form.addEventListener("input", apply);
-  form.addEventListener("change", apply);
+  form.addEventListener("input", changed);
+  form.addEventListener("change", changed);
   form.addEventListener("submit", (event) => event.preventDefault());
-  form.addEventListener("reset", () => setTimeout(apply));
+  form.addEventListener("reset", () => setTimeout(() => { sorted = ""; changed(); }));
+  if (table) table.addEventListener("sorted", (event) => { sorted = event.detail; remember(); });
+  addEventListener("hashchange", recall);
   apply();
+  recall();
 })();
 
 (() => {
-  // the printed page is the incident report: the drives with findings, and in them the moments that tell what happened
+  // the printed page is the incident report: a page for each drive with findings, and on it the moments that tell what happened
   const most = 12;
+  const fewer = 8;
   let opened = [];
   addEventListener("beforeprint", () => {
-    const drives = [...document.querySelectorAll(".drive.telling")].slice(0, most);
-    const inside = drives.flatMap((d) => [...d.querySelectorAll(".ego.telling, .moment.leading, .quality")]);
-    opened = [...drives, ...inside, ...document.querySelectorAll(".overtake")].filter((e) => !e.open);
+    const telling = [...document.querySelectorAll(".drive.telling")];
+    const drives = telling.slice(0, telling.length > most ? fewer : most);
+    const moments = drives.length > 3 ? 1 : 6;
+    document.body.classList.toggle("compact", drives.length > 3);
+    const inside = drives.flatMap((d) => [...d.querySelectorAll(".ego.telling, .moment.leading")]);
+    opened = [...drives, ...inside, ...(document.querySelectorAll(".overtake").length > 4 ? [] : document.querySelectorAll(".overtake"))]
+      .filter((e) => !e.open && !(Number(e.dataset.rank) >= moments));
     for (const e of opened) e.open = true;
   });
   addEventListener("afterprint", () => {

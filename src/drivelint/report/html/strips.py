@@ -1,0 +1,175 @@
+"""Strips under the plan view of the worst moment: what was recorded around it, on one time axis, one strip per quantity."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.report.html.plan_view import corners
+from drivelint.report.html.svg import Axis, axis_that_decides, num
+from drivelint.result.text import number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.result.text import Row
+
+WIDTH: Final = 600
+LEFT, RIGHT = 46.0, WIDTH - 8.0
+_HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the words over it, of the time axis
+_HOLE_NS: Final = 1_000_000_000
+_LEAST: Final = 3
+"""Fewer values are not worth a strip."""
+
+
+class Series(NamedTuple):
+    """One line of a strip; `kind`: ego, met or limit. A value of None breaks it."""
+
+    kind: str
+    name: str
+    t_ns: Sequence[int]
+    values: Sequence[float | None]
+
+
+def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, start_ns: int) -> dict[str, Any] | None:
+    """Return the strips of a row of the table `scene` for a finding at its moment; None: the ego's way is not known.
+
+    `course`: the finding's row of the table `course`; `observes`: what its rule measures. Numbers in the viewBox of a drawing 600 wide.
+    """
+    ego = scene["actors"][0]
+    way = ego["path"] or []
+    met = next((a for a in scene["actors"][1:] if a["actor_id"] == finding["object_id"] and a["path"]), None)
+    if len(way) < _LEAST:
+        return None
+    t = [point["t_ns"] for point in way]
+    x = Axis(t[0], t[-1], LEFT, RIGHT)
+    who = ([("met", met)] if met else []) + [("ego", ego)]  # drawn in this order
+    drawn: list[tuple[str, str, list[Series]]] = [
+        (title, unit, [_series(kind, actor, column) for kind, actor in who])
+        for title, unit, column in (
+            ("speed", "m/s", "speed_mps"),
+            ("acceleration", "m/s2", "accel_mps2"),
+            ("offset from the lane's centre line, left positive", "m", "d_m"),
+        )
+    ]
+    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST
+    is_gap = measured and finding["unit"] == "m"
+    if met and not is_gap and (gap := _gap(ego, met)) is not None:
+        drawn.append(("distance from box to box", "m", [gap]))
+    if measured and course is not None:
+        lines = [
+            Series("limit", "required", course["t_ns"], course["required"]),
+            Series("ego", "observed", course["t_ns"], course["observed"]),
+        ]
+        drawn.append((observes or "what the rule measures", finding["unit"] or "", lines))
+    kept = [each for each in drawn if any(sum(v is not None for v in line.values) >= _LEAST for line in each[2])]
+    found = [
+        _strip(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
+        for n, each in enumerate(kept)
+    ]
+    height = len(found) * (_HEIGHT + _HEAD) + _FOOT
+    return {
+        "height": num(height),
+        "bottom": num(height - _FOOT),
+        "strips": found,
+        "t_ticks": _seconds(x, start_ns).ticks(9),
+        "at": num(x.at(finding["t_worst_ns"])),
+        "t0": round((t[0] - start_ns) / 1e7),
+        "t1": round((t[-1] - start_ns) / 1e7),
+        "words": "; ".join(f"{each['title']} {each['range']}" for each in found),
+        "met": met["actor_id"] if met else None,
+        "ego": ego["actor_id"],
+    }
+
+
+def _seconds(x: Axis, start_ns: int) -> Axis:
+    return Axis((x.low - start_ns) / 1e9, (x.high - start_ns) / 1e9, x.start, x.end)
+
+
+def _series(kind: str, actor: Row, column: str) -> Series:
+    name = f"{'ego' if kind == 'ego' else 'object'} {actor['actor_id']}"
+    return Series(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
+
+
+def _gap(ego: Row, met: Row) -> Series | None:
+    """Return the distance between two boxes at the times that both ways have; None: a size is not known."""
+    if any(actor[side] is None for actor in (ego, met) for side in ("length_m", "width_m")):
+        return None
+    ways = [{point["t_ns"]: actor | point for point in actor["path"]} for actor in (ego, met)]
+    t = sorted(ways[0].keys() & ways[1].keys())
+    a, b = (shapely.polygons(np.array([corners(way[at]) for at in t])) if t else np.array([]) for way in ways)
+    return Series("ego", "distance", t, shapely.distance(a, b).tolist())
+
+
+def _strip(
+    n: int, title: str, unit: str, lines: Sequence[Series], worst_ns: int, *, x: Axis, course: Row | None
+) -> dict[str, Any]:
+    """Return one strip: its frame, the axis of values, the lines, and how far values go that it cuts off."""
+    top = n * (_HEIGHT + _HEAD) + _HEAD
+    inside = [v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _in(x, t)]
+    inside = inside or [v for line in lines for v in line.values if v is not None]
+    y, cut = axis_that_decides(inside, _deciding(lines, course, worst_ns), top + _HEIGHT, top)
+    return {
+        "title": title,
+        "unit": unit,
+        "top": num(top),
+        "label_y": num(top - 5),
+        "height": num(_HEIGHT),
+        "bottom": num(top + _HEIGHT),
+        "zero": num(y.at(0.0)) if y.low < 0 < y.high else "",
+        "ticks": y.ticks(4),
+        "lines": [(line.kind, _path(line, x, y)) for line in lines],
+        "at_worst": _at_worst(lines, worst_ns),
+        "cut": f"cut: goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else "",
+        "range": f"from {number(min(inside), unit)} to {number(max(inside), unit)}",
+        "spans": [] if course is None else _failing(course, x),
+    }
+
+
+def _in(x: Axis, t_ns: int) -> bool:
+    return x.low <= t_ns <= x.high
+
+
+def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> list[float]:
+    """Return the values that decide whether a rule was kept: those at the worst step, and what was required where it was not."""
+    if course is None:
+        return []
+    at = min(range(len(course["t_ns"])), key=lambda i: abs(course["t_ns"][i] - worst_ns))
+    limits = [value for value, kept in zip(course["required"], course["holds"], strict=True) if kept is False]
+    return [value for value in (*(line.values[at] for line in lines), *limits) if value is not None]
+
+
+def _at_worst(lines: Sequence[Series], worst_ns: int) -> str:
+    """Return the values at the worst step, in words; their unit stands beside the strip's title."""
+    told = []
+    for line in lines:
+        value = dict(zip(line.t_ns, line.values, strict=True)).get(worst_ns)
+        if value is not None:
+            told.append(f"{line.name} {number(value)}")
+    return ", ".join(reversed(told))
+
+
+def _failing(course: Row, x: Axis) -> list[tuple[str, str]]:
+    """Return the stretches of steps at which the rule was not kept: place and width."""
+    runs: list[list[int]] = []
+    for t, kept in zip(course["t_ns"], course["holds"], strict=True):
+        if kept is False and runs and t - runs[-1][1] <= _HOLE_NS and runs[-1][2]:
+            runs[-1][1] = t
+        elif kept is False:
+            runs.append([t, t, 1])
+        elif runs:
+            runs[-1][2] = 0
+    spans = [(max(x.at(a), LEFT), min(x.at(b), RIGHT)) for a, b, _ in runs if a <= x.high and b >= x.low]
+    return [(num(a), num(max(b - a, 2.0))) for a, b in spans]
+
+
+def _path(line: Series, x: Axis, y: Axis) -> str:
+    """Return the path through the values, broken where there is none and where a second is missing."""
+    parts, last = [], None
+    for t, value in zip(line.t_ns, line.values, strict=True):
+        if value is not None:
+            parts.append(f"{'M' if last is None or t - last > _HOLE_NS else 'L'}{num(x.at(t))},{num(y.at(value))}")
+        last = t if value is not None else None
+    return "".join(parts)

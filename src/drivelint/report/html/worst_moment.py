@@ -1,0 +1,88 @@
+"""The worst moment of a result, which the page shows first: how bad, how sure, the picture, the strips, and where the evidence is."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from urllib.parse import quote
+
+from drivelint.report.html.contact import before_contact
+from drivelint.report.html.incidents import incident_key
+from drivelint.report.html.replay import centiseconds
+from drivelint.report.html.strips import strips
+from drivelint.report.worst_first import CONTACT
+from drivelint.result.text import utc_at
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.report.html.incidents import FindingLine, Key
+    from drivelint.result.text import Row
+
+_ALSO: Final = 4
+
+
+class Evidence(NamedTuple):
+    """What was recorded around the findings: scenes and their plan views by moment, courses by finding."""
+
+    scenes: Mapping[Key, Row]
+    pictures: Mapping[Key, Mapping[str, Any]]
+    courses: Mapping[tuple[Any, ...], Row]
+
+
+def worst_moment(
+    lines: Sequence[FindingLine], evidence: Evidence, drives: Mapping[str, Row], folder: Path | None
+) -> dict[str, Any] | None:
+    """Return the worst moment with everything that the page shows of it; None: there is none.
+
+    `lines`: sorted worst first, findings before near misses. What a baseline or a waiver lets through is only shown if all is let through.
+    `is_new`: others are worse and let through.
+    """
+    if not lines:
+        return None
+    line = next((each for each in lines if each.standing is None or each.standing.is_gating), lines[0])
+    if line.kind == "near":
+        line = lines[0]
+    row, at = line.row, incident_key(line.row)
+    drive, scene = drives[row["drive_id"]], evidence.scenes.get(at)
+    start_ns = drive["t_start_ns"] or 0
+    along = [each for each in lines if incident_key(each.row) == at and each.rule["rule_id"] != row["rule_id"]]
+    touched = line.kind == "fail" and CONTACT in line.rule["tags"]
+    return {
+        "line": line,
+        "is_new": line is not lines[0],
+        "drive": drive,
+        "t": centiseconds(row["t_worst_ns"], start_ns),
+        "t_utc": utc_at(row["t_worst_ns"], drive),
+        "plan": evidence.pictures.get(at),
+        "strips": None
+        if scene is None
+        else strips(scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns),
+        "before": before_contact(scene, row, start_ns) if touched and scene is not None else None,
+        "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
+        "also": list(dict.fromkeys(each.rule["title"] for each in along))[:_ALSO],
+        "explain": ["drivelint explain", shlex.quote(_name(row)), "--in ."],
+        "files": _files(row, folder),
+    }
+
+
+def finding_key(row: Row) -> tuple[Any, ...]:
+    """Return the key of the finding or near miss that a row of the table `course` belongs to."""
+    told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
+    return (row.get("finding_id"), *told)
+
+
+def _name(row: Row) -> str:
+    """Return the name by which `explain` knows a finding or near miss."""
+    return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
+
+
+def _files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
+    """Return what lies beside the page about a finding: words and link."""
+    if folder is None:
+        return []
+    beside = [("log with the verdicts in it, for a viewer", f"annotated/{row['drive_id']}.mcap")]
+    if "finding_id" in row:
+        beside.append(("incident sheet, two pages to file", f"incidents/{row['finding_id']}.html"))
+    return [(words, quote(name)) for words, name in beside if (folder / name).is_file()]

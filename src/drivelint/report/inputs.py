@@ -1,0 +1,96 @@
+"""What a run was given, in one line for every report: whether the map fits, whether the logs are whole, what was not judged."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.phrases import listed, plural
+from drivelint.result import counts
+from drivelint.result.model import MISFITS, off_map_reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
+
+_ASSUMED: Final = "assumed_motion"
+"""Id of the quality note on a log whose mapping assumes values that it does not have."""
+_NAMED: Final = 2
+_MISSING: Final = "missing_"
+
+
+class InputNote(NamedTuple):
+    """A part of the line: `label: words`; `is_warning`: a verdict may be wrong or absent because of it."""
+
+    label: str
+    words: str
+    is_warning: bool
+
+
+def input_notes(result: Result) -> list[InputNote]:
+    """Return the parts of the line: map, log, not judged."""
+    drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
+    return [_map(drives), _log(drives), _not_judged(result, result.drives.num_rows - len(drives))]
+
+
+def _map(drives: Sequence[Row]) -> InputNote:
+    """Return which maps the drives were judged on, and how many drives and egos they fit."""
+    on_map = [drive for drive in drives if drive["map_name"] is not None]
+    if not on_map:
+        return InputNote("map", "none", is_warning=bool(drives))
+    reasons = [reason for drive in on_map if (reason := off_map_reason(drive)) is not None]
+    n = plural(len(on_map), "drive")
+    words = (
+        f"{listed(sorted({drive['map_name'] for drive in on_map}), _NAMED)} fits {len(on_map) - len(reasons)} of {n}"
+    )
+    off_egos, egos = sum(map(_egos_off_the_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
+    if reasons:
+        words += f" ({reasons[0]})"
+    elif off_egos:
+        words += f", but not {off_egos} of {egos} egos"
+    if bare := len(drives) - len(on_map):
+        words += f"; {plural(bare, 'drive')} without a map"
+    return InputNote("map", words, is_warning=bool(off_egos or reasons or bare))
+
+
+def _egos_off_the_map(drive: Row) -> int:
+    egos = {ego["ego_id"] for ego in drive["exposure"]}
+    return len(egos & {gap["ego_id"] for gap in drive["not_judged"] if gap["reason_code"] in MISFITS})
+
+
+def _log(drives: Sequence[Row]) -> InputNote:
+    """Return whether the logs are complete: what was lost of them, what their mappings assume, and the number of warnings."""
+    lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
+    checks = [check for drive in drives for check in drive["quality"]]
+    assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == _ASSUMED})
+    warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
+    parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
+    parts += assumed
+    if not parts:
+        parts = ["complete"] if drives else ["none"]
+    parts += [plural(len(warned), "warning")] if warned else []
+    return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned))
+
+
+def _not_judged(result: Result, drives: int) -> InputNote:
+    """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
+    rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id"]).to_pylist()
+    signals = [row for row in rows if row["reason_code"].startswith(_MISSING)]
+    missing = counts.grouped(signals, lambda row: signal_name(row["reason_code"]))
+    order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
+    parts = [plural(drives, "drive")] if drives else []
+    if order:
+        parts.append(listed([f"{name} ({plural(_n_rules(found), 'rule')})" for name, found in order]))
+    if others := len(rows) - len(signals):
+        parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
+    return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
+
+
+def signal_name(reason_code: str) -> str:
+    """Return what is missing, in words, from a reason code that begins with `missing_`."""
+    return reason_code.removeprefix(_MISSING).removeprefix("mode_").replace("_", " ")
+
+
+def _n_rules(rows: Iterable[Row]) -> int:
+    return len({row["rule_id"] for row in rows})

@@ -1,0 +1,40 @@
+"""The order in which reports show findings: severity, contacts first, the least margin, then the time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.result.counts import SEVERITIES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.result.text import Row
+
+CONTACT: Final = "contact"
+"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+_ORDER: Final = (
+    "severity_no", "no_contact", "margin_or_0", "t_worst_ns", "drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence",
+)  # fmt: skip
+
+
+def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
+    """Return findings, or verdicts, in this order. `rules`: rule_id -> row of the table `rule`."""
+    contacts = pa.array([rule_id for rule_id, rule in rules.items() if CONTACT in rule["tags"]], pa.string())
+    keys = {
+        "severity_no": pc.index_in(rows["severity"], value_set=pa.array(SEVERITIES)),
+        "no_contact": pc.cast(pc.invert(pc.is_in(rows["rule_id"], value_set=contacts)), pa.int8()),
+        "margin_or_0": pc.fill_null(rows["margin"], 0.0),
+    }
+    keyed = rows
+    for name, values in keys.items():
+        keyed = keyed.append_column(name, values)
+    return keyed.sort_by([(name, "ascending") for name in _ORDER]).drop_columns(list(keys))
+
+
+def is_contact(row: Row, rules: Mapping[str, Row]) -> bool:
+    """Whether a finding of this rule says that the ego touched something."""
+    return CONTACT in rules[row["rule_id"]]["tags"]

@@ -1,0 +1,238 @@
+"""The page's first screen: the line on map and logs, the worst moment with its strips, how sure it is, and what lies beside it."""
+
+from __future__ import annotations
+
+import html
+import io
+import re
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from rich.console import Console
+
+from drivelint.gate import GateInputs
+from drivelint.report import terminal
+from drivelint.report.html.contact import before_contact
+from drivelint.report.html.strips import LEFT, RIGHT, strips
+from drivelint.report.html.svg import axis_that_decides
+from drivelint.report.outputs import write
+from drivelint.result.model import Result
+from tests.report.pages import Parsed, page
+from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
+from tests.result import fixture_result
+
+EGO = [{"ego_id": "1", "km": 0.1, "hours": 0.1, "engaged_km": 0.0, "engaged_hours": 0.0, "n_steps": 250}]
+OFF = {"ego_id": "1", "signal": "registration", "reason_code": "seldom_on_lane", "reason": "27 of 181 steps on a lane"}
+ASSUMED = {
+    "check_id": "assumed_motion", "severity": "warning", "actor_id": None, "n": 1, "t_first_ns": None,
+    "message": "mapping 'film' assumes speeds; only distances are measured",
+}  # fmt: skip
+CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
+
+
+@pytest.fixture(scope="module")
+def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
+
+
+def plain(markup: str) -> str:
+    return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", markup)).replace("\u00a0", " ").split())
+
+
+def section(text: str, name: str) -> str:
+    return text.partition(f'id="{name}"')[2].partition("</section>")[0]
+
+
+@pytest.mark.parametrize(
+    ("run", "line"),
+    [
+        (result([verdict("pass")]), "map: road.xodr fits 1 of 1 drive | log: complete | not judged: nothing"),
+        (
+            result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),
+            "map: road.xodr fits 0 of 1 drive (27 of 181 steps on a lane) | log: complete | not judged: registration (1 rule)",
+        ),
+        (
+            result(
+                [verdict("pass"), verdict("unknown", reason_code="log_hole")],
+                drives=[drive(lossy=True, quality=[ASSUMED], map_name=None), drive("d2", status="not_judged", status_reason="x")],
+            ),
+            "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning | not judged: 1 drive; 1 verdict",
+        ),
+        (
+            result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
+            "map: road.xodr fits 1 of 1 drive, but not 1 of 2 egos | log: complete | not judged: nothing",
+        ),
+    ],
+)  # fmt: skip
+def test_page_and_terminal_say_the_same_of_map_and_logs(run: Result, line: str) -> None:
+    console = Console(file=io.StringIO(), width=300, force_terminal=False)
+    console.print(terminal.render(run, "out", 300))
+    assert line in console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    (told,) = re.findall(r'<p class="inputs">(.*?)</p>', page(run), re.DOTALL)
+    assert plain(told) == line
+
+
+def test_a_wrong_map_is_no_green_page() -> None:
+    text = page(result([verdict("unknown"), verdict("pass")], drives=[drive(exposure=EGO, not_judged=[OFF])]))
+    head = plain(text.partition("<h1>")[2].partition("</header>")[0])
+    assert "NOT JUDGED" in head
+    assert "exit 4 : the map does not fit 1 of 1 drive: 27 of 181 steps on a lane" in head
+
+
+def test_drives_that_were_not_judged_were_not_compared() -> None:
+    lost = drive("d4", status="not_judged", status_reason="broken", km=0.0, duration_s=None)
+    told = Parsed(page(result([verdict("pass")], drives=[drive(), drive("d2"), drive("d3"), lost]))).text
+    assert "3 of 4 recorded drives" in told
+    assert "1 could not be judged" in told
+    assert "4 recorded drives" not in told.replace("3 of 4 recorded drives", "")
+
+
+def test_the_worst_moment_is_the_contact_with_the_speeds_before_it(overtakes: Result) -> None:
+    shown = plain(section(page(overtakes), "worst"))
+    rows = [
+        r for r in overtakes.findings.to_pylist() if r["rule_id"].split(".")[1] in {"no-collision", "contact-signature"}
+    ]
+    worst = min(rows, key=lambda r: r["margin"])
+    assert f"{worst['observed']:.2f}" in shown
+    speeds = re.search(
+        r"just before the contact, at ([\d.]+) s: (\S+) at ([\d.]+) m/s, (\S+) at ([\d.]+) m/s, closing at ([\d.]+) m/s",
+        shown,
+    )
+    assert speeds
+    time_s, *parties, closing = speeds.groups()
+    (scene,) = [
+        s
+        for s in overtakes.scenes.to_pylist()
+        if (s["drive_id"], s["t_ns"]) == (worst["drive_id"], worst["t_worst_ns"])
+    ]
+    ways = {a["actor_id"]: a["path"] for a in scene["actors"]}
+    start = overtakes.start_times[worst["drive_id"]] or 0
+    at = start + round(float(time_s) * 1e9)
+    assert at < worst["t_start_ns"] <= at + SECOND
+    for who, said in (parties[:2], parties[2:]):
+        t = np.array([p["t_ns"] for p in ways[who]])
+        i = int(np.flatnonzero(t == at)[0])
+        x, y = (np.array([p[axis] for p in ways[who]]) for axis in ("x_m", "y_m"))
+        moved = np.hypot(x[i] - x[i - 1], y[i] - y[i - 1]) / (t[i] - t[i - 1]) * 1e9
+        assert float(said) == pytest.approx(moved, abs=0.3)
+    # head on: the speeds add up
+    assert float(closing) == pytest.approx(float(parties[1]) + float(parties[3]), abs=0.3)
+    assert "at 0.0 m/s" not in shown
+
+
+def test_long_after_the_contact_began_nothing_is_said_of_the_speeds_before_it() -> None:
+    path = [{"t_ns": (100 + k) * SECOND, "x_m": float(k), "y_m": 0.0, "speed_mps": 1.0} for k in range(6)]
+    scene = {"actors": [{"actor_id": "1", "path": path}, {"actor_id": "3", "path": path}]}
+    assert before_contact(scene, finding(t_start_ns=104 * SECOND), 100 * SECOND) is not None
+    assert before_contact(scene, finding(t_start_ns=110 * SECOND), 100 * SECOND) is None
+    assert before_contact(scene, finding(t_start_ns=99 * SECOND), 100 * SECOND) is None
+    assert before_contact(scene, finding(object_id=None), 100 * SECOND) is None
+
+
+def test_the_strips_draw_what_the_scene_and_the_course_have(overtakes: Result) -> None:
+    row = next(r for r in overtakes.findings.to_pylist() if r["rule_id"] == "ukhc.r126.ds-av-out-of-ov")
+    (scene,) = [
+        s for s in overtakes.scenes.to_pylist() if (s["drive_id"], s["t_ns"]) == (row["drive_id"], row["t_worst_ns"])
+    ]
+    course = next(c for c in overtakes.courses.to_pylist() if c["finding_id"] == row["finding_id"])
+    drawn = strips(scene, row, course, "reach", overtakes.start_times[row["drive_id"]] or 0)
+    assert drawn is not None
+    assert [s["title"].partition(" ")[0] for s in drawn["strips"]] == ["speed", "acceleration", "offset", "reach"]
+    way = scene["actors"][0]["path"]
+    t, v = (np.array([p[name] for p in way]) for name in ("t_ns", "speed_mps"))
+    (d,) = [d for kind, d in drawn["strips"][0]["lines"] if kind == "ego"]
+    x, y = np.array(re.findall(r"(-?[\d.]+),(-?[\d.]+)", d), float).T
+    np.testing.assert_allclose(x, LEFT + (t - t[0]) / (t[-1] - t[0]) * (RIGHT - LEFT), atol=0.06)
+    assert np.corrcoef(-y, v)[0, 1] > 0.999
+    assert f"observed {row['observed']:.2f}, required {row['required']:.2f}" == drawn["strips"][-1]["at_worst"]
+    assert drawn["strips"][-1]["spans"]
+
+
+def test_a_chart_shows_the_margin_that_decides() -> None:
+    axis, cut = axis_that_decides([-47.0, -20.0, 0.58, 0.3], [0.58, 0.0], 100.0, 0.0)
+    assert abs(axis.at(0.58) - axis.at(0.0)) > 20
+    assert cut == [-47.0]
+    whole, none = axis_that_decides([-1.0, 0.58], [0.58, 0.0], 100.0, 0.0)
+    assert none == []
+    assert whole.low < -1 < 0.58 < whole.high
+    assert axis_that_decides([1.0, 2.0], [], 100.0, 0.0)[1] == []
+
+
+def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
+    rows = [
+        finding(rule_id="ukhc.no-collision", profile=None, n_copies=100, n_stays=53, finding_id="a"),
+        finding(n_copies=100, n_stays=97, finding_id="b"),
+    ]
+    text = page(result([verdict("fail")], rows, rules=[rule(), CONTACT]))
+    told = Parsed(text).text
+    assert "A contact is possible:" in told
+    assert "The recording shows a contact" not in told
+    assert "1 only possible" in told
+    assert "possible: in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
+        "possible :", "possible:"
+    )
+    table = plain(section(text, "findings"))
+    assert "possible, 53 of 100" in table
+    assert "sure, 97 of 100" in table
+    assert '<select name="sure">' in text
+    untested = page(result([verdict("fail")], [finding(rule_id="ukhc.no-collision")], rules=[rule(), CONTACT]))
+    assert "not tested" in plain(section(untested, "worst"))
+    assert "The recording shows a contact" in Parsed(untested).text
+
+
+def test_findings_are_sorted_by_severity_then_contact_then_margin() -> None:
+    rows = [
+        finding(finding_id="minor", severity="minor", margin=-99.0),
+        finding(finding_id="little", margin=-1.0),
+        finding(finding_id="much", margin=-2.0),
+        finding(finding_id="contact", rule_id="ukhc.no-collision", margin=-0.1),
+    ]
+    text = page(result([verdict("fail")], rows, rules=[rule(), CONTACT]))
+    assert re.findall(r'href="#finding-(\w+)"', section(text, "findings")) == ["contact", "much", "little", "minor"]
+
+
+def test_what_a_baseline_lets_through_is_not_the_worst_moment() -> None:
+    old, new = finding(finding_id="old", margin=-9.0), finding(finding_id="new", margin=-1.0, occurrence=1)
+    before = result([verdict("fail")], [old])
+    run = GateInputs(date(2026, 11, 20), before, "main").apply_to(result([verdict("fail")], [old, new]))
+    shown = section(page(run), "worst")
+    assert "The worst moment that is new" in plain(shown)
+    assert 'href="#finding-new"' in shown
+
+
+def test_what_lies_beside_the_page_is_linked_only_if_it_is_there(tmp_path: Path) -> None:
+    run = result([verdict("fail")], [finding(finding_id="abc")])
+    write(run, tmp_path)
+    assert not [h for h in Parsed((tmp_path / "report.html").read_text()).all("href") if h[0] != "#" and h != "data:,"]
+    for name in ("annotated/d1.mcap", "incidents/abc.html"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    write(run, tmp_path)
+    links = Parsed((tmp_path / "report.html").read_text()).all("href")
+    assert {"annotated/d1.mcap", "incidents/abc.html"} <= set(links)
+    assert "drivelint explain abc --in ." in plain(section((tmp_path / "report.html").read_text(), "worst"))
+
+
+def test_a_safe_distance_without_end_is_no_number(overtakes: Result) -> None:
+    rows = overtakes.overtakes.to_pylist()
+    far = {"sda_m": 265062.45, "spare_m": 30.0 - 265062.45}
+    rows[0]["profiles"] = [rows[0]["profiles"][0] | far, *rows[0]["profiles"][1:]]
+    text = page(replace(overtakes, overtakes=pa.Table.from_pylist(rows, schema=overtakes.overtakes.schema)))
+    told = plain(section(text, "overtakes"))
+    assert "265062" not in told
+    assert "265032" not in told
+    assert "needs more than 2.00 km: hardly faster than whom it passes" in told
+    ticks = re.findall(r'text-anchor="middle">(\d+)</text>', text.partition('class="zones"')[2].partition("</svg><")[0])
+    assert max(map(int, ticks[:7])) < 1000, "one overtake does not shrink the plot of all others"
+
+
+def test_passing_an_obstruction_names_the_vehicle_that_came(overtakes: Result) -> None:
+    rows = [r for r in overtakes.findings.to_pylist() if r["rule_id"] == "ukhc.r163.obstruction-give-way"]
+    assert rows
+    for row in rows:
+        assert row["object_id"] == "parked"
+        assert row["reason"].startswith("oncoming ")
