@@ -101,6 +101,8 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     in_drives = len({row["drive_id"] for row in found})
     where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
     text.append(f"{_severities(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
+    if code == ExitCode.NOT_JUDGED:
+        text.append(f"; {exit_status(result).why}", "default")  # no findings, but not because nothing was wrong
     if touched := {row["drive_id"] for row in found if _is_contact(row, rules)}:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
@@ -138,7 +140,7 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
         if drive["status"] != "judged":
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
-        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(unknown[name])
+        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(drive, unknown[name])
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         table.add_row(
@@ -149,7 +151,9 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
     return table
 
 
-def _without_finding(verdicts: Mapping[str, int]) -> Text:
+def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
+    if off_map_reason(drive) is not None:
+        return Text("no finding, but the map does not fit", "yellow")
     return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
 
 
@@ -163,7 +167,8 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     parts = []
     if row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        parts.append(f"{number(row['observed'], row['unit'])}, needs {number(row['required'], row['unit'])}{profile}")
+        limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
+        parts.append(f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{profile}")
     if not contact:
         parts.append(rules[row["rule_id"]]["title"])
     if row["object_id"] is not None:
@@ -248,6 +253,8 @@ def _inputs(result: Result) -> Text:
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     warned = [q for drive in drives for q in drive["quality"] if q["severity"] != "info"]
     told = plural(len({(q["check_id"], q["message"]) for q in warned}), "warning") if warned else "no warnings"
+    if names := sorted({q["check_id"].replace("_", " ") for q in warned}):
+        told += f" ({listed(names, 3)})"
     text.append(f"    data: {told}", "yellow" if warned else "default")
     if lossy:
         text.append(f"; parts lost in {listed(lossy, 2)}", "bold yellow")
