@@ -82,8 +82,8 @@ def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) 
     critical = (row["verdict"], row["severity"]) == ("fail", "critical")
     level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
     # a reason that tells the numbers needs no headline with the same numbers
-    said = _subject(row) if row["reason_measures"] else headline(row, sense_by_rule)
-    text = f"{said}. {row['reason'][:1].upper()}{row['reason'][1:]}"
+    said = f"{_subject(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
+    text = f"{said} {row['reason'][:1].upper()}{row['reason'][1:]}"
     return Message(
         time, wire.time(1, time) + wire.integer(2, level) + wire.text(3, text) + wire.text(4, row["rule_id"])
     )
