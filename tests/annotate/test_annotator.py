@@ -225,12 +225,16 @@ def test_danger_spaces_are_as_long_as_the_stopping_distance(out: Path) -> None:
 def test_the_log_panel_says_what_a_person_should_look_at(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
     lines = messages(path, "log")
-    worth = [
-        r for r in rows(out, "verdicts", path.stem) if r["verdict"] in {"fail", "unknown", "error"} or r["near_miss"]
-    ]
-    assert sorted(line.content.name for line in lines) == sorted(row["rule_id"] for row in worth)
+    findings = rows(out, "findings", path.stem)
+    worth = [r for r in rows(out, "verdicts", path.stem) if r["verdict"] in {"unknown", "error"} or r["near_miss"]]
+    assert sorted(line.content.name for line in lines) == sorted(row["rule_id"] for row in (*findings, *worth))
+    for row in findings:
+        reason = row["reason"][1:]
+        said = [m for m in lines if reason in m.content.message and (row["profile"] or "") in m.content.message]
+        assert [m.log_time for m in said] == [row["t_start_ns"]], "a finding is said once, where it begins"
     (ours,) = (m for m in lines if "safe-distance-ahead [nominal]" in m.content.message)
     assert (ours.log_time, ours.content.level) == (T0, 4)
+    assert ours.content.message.count("58.33") == 1, "a reason that tells the numbers tells them alone"
 
 
 def test_metadata_and_summary_say_what_was_judged_and_by_what(out: Path) -> None:
@@ -285,7 +289,7 @@ def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
     monkeypatch.setattr(batch, "BATCH_STATES", 1)
     others = run(tmp_path / "a", *(CASE / f"{name}.csv" for name in ("collision", "safe")))
     alone = run(tmp_path / "b", CASE / "near_miss.csv")
-    for path in (*others.glob("*"), *alone.glob("*")):
+    for path in (*others.glob("*.mcap"), *alone.glob("*.mcap")):
         assert path.read_bytes() == (out / "annotated" / path.name).read_bytes()
 
 

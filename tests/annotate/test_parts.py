@@ -32,7 +32,7 @@ def made(name: str) -> Any:
     return message_factory.GetMessageClass(pool.FindMessageTypeByName(f"foxglove.{name}"))
 
 
-@pytest.mark.parametrize("name", ["SceneUpdate", "FrameTransform", "Log"])
+@pytest.mark.parametrize("name", ["SceneUpdate", "FrameTransform", "Log", "Event"])
 def test_foxgloves_types_are_those_of_its_own_package(name: str) -> None:
     package = pytest.importorskip("foxglove.messages", reason="the package foxglove-sdk is not installed")
 

@@ -121,6 +121,24 @@ def test_the_worst_drive_and_rule_stand_first() -> None:
     assert "explain  drivelint explain ukhc.no-collision@d2 --in out" in lines
 
 
+def test_what_must_be_less_is_not_said_to_need_as_much() -> None:
+    less = rule("ukhc.contact-signature", sense="<", tags=["contact"], unit="m/s2")
+    found = finding(rule_id="ukhc.contact-signature", observed=43.21, required=12.0, margin=-31.21, unit="m/s2")
+    lines = summary(result([verdict("fail")], [found], rules=[rule(), less]))
+    assert any("CONTACT 43.21 m/s2, at most 12.00 m/s2" in line for line in lines)
+
+
+def test_warnings_of_the_data_are_named() -> None:
+    quality = [
+        {"check_id": name, "severity": "warning", "actor_id": None, "n": 1, "t_first_ns": None, "message": name}
+        for name in ("teleport", "assumed_motion", "malformed_row", "no_position")
+    ]
+    lines = summary(result([verdict("pass")], drives=[drive(quality=quality)]))
+    assert any(
+        line.endswith("data: 4 warnings (assumed motion, malformed row, no position and 1 more)") for line in lines
+    )
+
+
 def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:
     rows = [verdict("unknown", rule_id=name, reason_code="missing_mode_headlights") for name in ("ukhc.a", "ukhc.b")]
     rows.append(verdict("unknown", rule_id="ukhc.c", reason_code="missing_indicator"))
@@ -161,7 +179,10 @@ def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
     run = result([verdict("unknown", drive_id="off"), verdict("pass")], drives=[drive(exposure=ego), off])
     assert exit_status(run).code == ExitCode.NOT_JUDGED
     lines = summary(run)
-    assert any(line.startswith("NOT JUDGED  no findings") for line in lines)
+    assert any(
+        line.startswith("NOT JUDGED  no findings; the map does not fit 1 of 2 drives: on a lane") for line in lines
+    )
+    assert any(re.match("off +no finding, but the map does not fit ", line) for line in lines)
     assert any(line.startswith("map: road.xodr fits 1 of 2 drives") for line in lines)
     assert any(
         line.startswith("exit 4: the map does not fit 1 of 2 drives: on a lane in only 27 of 181") for line in lines

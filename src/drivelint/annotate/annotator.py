@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager, suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.annotate.layout import layout
+from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.result import collect
@@ -19,17 +20,19 @@ from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     import duckdb
 
+    from drivelint.annotate.measures import Series
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
-_OVERTAKES = ("evidence/overtake_space", "evidence/chain_point")
-"""What the database only has while it has that part: the danger spaces in overtakes, and the chains that they lie on."""
+_OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
+"""What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
 
 
 class Annotator:
@@ -45,6 +48,7 @@ class Annotator:
         self._strict = strict
         self._roads: dict[str, Road] = {}
         self._parts: list[list[pa.Table]] = []
+        self._series: set[Series] = set()
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate the drives of a judged batch; of a batch judged in parts, after its last part.
@@ -54,21 +58,23 @@ class Annotator:
         ids = [drive.trace.drive_id for drive in drives]
         if first:
             self._parts.clear()
-        self._parts.append([con.execute(sql, {"ids": ids}).to_arrow_table() for sql in map(statement, _OVERTAKES)])
+        self._parts.append([con.execute(sql, {"ids": ids}).to_arrow_table() for sql in map(statement, _OF_PARTS)])
         if not last:
             return
         tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
         tables += [pa.concat_tables(parts) for parts in zip(*self._parts, strict=True)]
+        tables.append(con.execute(statement("evidence/least_margin"), {"ids": ids}).to_arrow_table())
+        self._series |= series_of(tables[-1], self._rules.to_pylist())
         self._parts.clear()
         for drive in drives:
             name, road = drive.trace.drive_id, self._road(drive.environment)
             mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
-            verdicts, findings, row, spaces, chains = mine
+            verdicts, findings, row, spaces, chains, measures, margins = mine
             alone = Result(verdicts, findings, row, self._rules, fail_on=self._fail_on, strict=self._strict)
             with _whole(self._folder / f"{name}.mcap") as file:
-                write(file, Annotation(drive.trace, alone, spaces, chains, road, drive.geo))
+                write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
         with _whole(self._folder / LAYOUT_FILE) as file:
-            file.write((Path(__file__).parent / "layout.json").read_bytes())
+            file.write(layout(self._series))
 
     def _road(self, environment: MapTables | None) -> Road | None:
         """Return the road of a map; of several, only the last is kept."""

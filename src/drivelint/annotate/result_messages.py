@@ -11,6 +11,7 @@ from mcap.records import Schema
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
+from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.text import finite
 
 if TYPE_CHECKING:
@@ -28,12 +29,13 @@ class Message(NamedTuple):
     data: bytes
 
 
+_EVENT_FACTS: Final = ("rule_id", "profile", "severity", "ego_id", "object_id", "reason", "finding_id")
 _LEVELS: Final = {"fail": foxglove.WARNING, "error": foxglove.ERROR, "unknown": foxglove.INFO, "pass": foxglove.WARNING}
 
 
 @cache
 def schema(name: str) -> Schema:
-    """Return the MCAP schema record (still without id) of our message `verdict` or `finding`."""
+    """Return the MCAP schema record (still without id) of our message: `verdict`, `finding`, `measures` or `margin`."""
     content = (folder("schemas") / f"{name}-message.schema.json").read_bytes()
     return Schema(id=0, name=f"drivelint.{name.title()}", encoding="jsonschema", data=content)
 
@@ -48,17 +50,43 @@ def finding_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
     return _in_order([_json(row, clock.at(row["t_start_ns"])) for row in rows.to_pylist()])
 
 
-def log_messages(rows: pa.Table, clock: LogClock, t_start_ns: int, sense_by_rule: Mapping[str, str]) -> list[Message]:
-    """Return a `foxglove.Log` line for every verdict that a person should look at: fails, near misses, unknowns, errors."""
-    lines = []
+def event_messages(rows: pa.Table, clock: LogClock, sense_by_rule: Mapping[str, str]) -> list[Message]:
+    """Return a `foxglove.Event` for every finding: its failing stretch, and what is known of it as text."""
+    events = []
     for row in rows.to_pylist():
-        if row["verdict"] in {"fail", "error", "unknown"} or row["near_miss"]:
-            time = clock.at(display_time(row, t_start_ns))
-            critical = (row["verdict"], row["severity"]) == ("fail", "critical")
-            level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
-            said = wire.text(3, f"{headline(row, sense_by_rule)}. {row['reason']}") + wire.text(4, row["rule_id"])
-            lines.append(Message(time, wire.time(1, time) + wire.integer(2, level) + said))
-    return _in_order(lines)
+        start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
+        unit = f" {row['unit']}" if row["unit"] else ""
+        facts = {key: row[key] for key in _EVENT_FACTS}
+        facts |= {key: f"{row[key]:.2f}{unit}" for key in ("observed", "required", "margin") if row[key] is not None}
+        facts |= {"finding": headline(row, sense_by_rule), "certainty": certainty(row)}
+        pairs = (wire.text(1, key) + wire.text(2, str(fact)) for key, fact in facts.items() if fact is not None)
+        content = wire.time(1, start) + wire.time(2, end) + b"".join(wire.nested(3, pair) for pair in pairs)
+        events.append(Message(start, content))
+    return _in_order(events)
+
+
+def log_messages(
+    verdicts: pa.Table, findings: pa.Table, clock: LogClock, t_start_ns: int, sense_by_rule: Mapping[str, str]
+) -> list[Message]:
+    """Return `foxglove.Log` lines for a person: each finding once, where it begins; near misses, unknowns and errors."""
+    rows = [{**row, "verdict": "fail", "t_ns": row["t_start_ns"]} for row in findings.to_pylist()]
+    rows += [
+        {**row, "t_ns": display_time(row, t_start_ns)}
+        for row in verdicts.to_pylist()
+        if row["verdict"] in {"error", "unknown"} or row["near_miss"]
+    ]
+    return _in_order([_log_line(row, clock.at(row["t_ns"]), sense_by_rule) for row in rows])
+
+
+def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:
+    critical = (row["verdict"], row["severity"]) == ("fail", "critical")
+    level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
+    # a reason that tells the numbers needs no headline with the same numbers
+    said = f"{_subject(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
+    text = f"{said} {row['reason'][:1].upper()}{row['reason'][1:]}"
+    return Message(
+        time, wire.time(1, time) + wire.integer(2, level) + wire.text(3, text) + wire.text(4, row["rule_id"])
+    )
 
 
 def display_time(row: dict[str, Any], t_start_ns: int) -> int:
@@ -72,14 +100,20 @@ def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
 
     `sense_by_rule`: rule -> relation that must hold.
     """
-    word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
-    profile = f" [{row['profile']}]" if row["profile"] else ""
-    who = f", {row['object_id']}" if row["object_id"] else ""
-    start = f"{word} {row['rule_id'].partition('.')[2]}{profile}{who}"
+    start = _subject(row)
     if row["observed"] is None or row["required"] is None:
         return start
     unit = f" {row['unit']}" if row["unit"] else ""
     return f"{start}: {row['observed']:.2f}{unit}, must be {sense_by_rule[row['rule_id']]} {row['required']:.2f}"
+
+
+def _subject(row: dict[str, Any]) -> str:
+    """Return what is said of which rule, with whom; a finding that too few copies of the drive keep is only possible."""
+    word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
+    possible = "POSSIBLE " if "n_copies" in row and certainty(row) == POSSIBLE else ""
+    profile = f" [{row['profile']}]" if row["profile"] else ""
+    who = f", {row['object_id']}" if row["object_id"] else ""
+    return f"{possible}{word} {row['rule_id'].partition('.')[2]}{profile}{who}"
 
 
 def _json(row: dict[str, Any], log_time: int) -> Message:

@@ -10,7 +10,7 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, places, result_messages
+from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, measures, places, result_messages
 from drivelint.annotate.tracks import tracks as tracks_of
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
@@ -40,13 +40,16 @@ class Annotation:
     """What was found in one drive, which is written beside its log.
 
     `result` is that of the drive as if it had been checked alone. `spaces` are the danger spaces in overtakes, `chains` what they
-    lie on. `road` is None without a map. `geo` is None if neither log nor map has a usable reference.
+    lie on. `measures` and `margins` are rows of `evidence/first_ego_measures.sql` and of `evidence/least_margin.sql`. `road` is
+    None without a map. `geo` is None if neither log nor map has a usable reference.
     """
 
     trace: Trace
     result: Result
     spaces: pa.Table
     chains: pa.Table
+    measures: pa.Table
+    margins: pa.Table
     road: Road | None
     geo: GeoFrame | None
 
@@ -99,7 +102,12 @@ class _Writer:
         judged = result_messages.verdict_messages(verdicts, times, start)
         self._few("verdicts", result_messages.schema("verdict"), judged)
         self._few("findings", result_messages.schema("finding"), result_messages.finding_messages(findings, times))
-        self._few("log", foxglove.schema("Log"), result_messages.log_messages(verdicts, times, start, senses))
+        self._few("events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses))
+        said = result_messages.log_messages(verdicts, findings, times, start, senses)
+        self._few("log", foxglove.schema("Log"), said)
+        self._few("measures", result_messages.schema("measures"), measures.measure_messages(annotation.measures, times))
+        for rule, margins in measures.margin_messages(annotation.margins, times).items():
+            self._few(measures.margin_topic(rule), result_messages.schema("margin"), margins)
         if annotation.geo:
             self._on_earth(annotation.geo)
         self._sink.add_metadata("drivelint", self._facts(every))

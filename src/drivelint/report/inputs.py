@@ -69,7 +69,9 @@ def _log(drives: Sequence[Row]) -> InputNote:
     parts += assumed
     if not parts:
         parts = ["complete"] if drives else ["none"]
-    parts += [plural(len(warned), "warning")] if warned else []
+    if warned:
+        names = sorted({check.replace("_", " ") for check, _ in warned})
+        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _NAMED)})")
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned))
 
 

@@ -11,13 +11,14 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import LABELS, by_severity, outcome_label
 from drivelint.report.worst_first import is_contact, worst_first
 from drivelint.result import counts
-from drivelint.result.model import exit_status
+from drivelint.result.model import exit_status, off_map_reason
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
@@ -77,6 +78,8 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     in_drives = len({row["drive_id"] for row in found})
     where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
     text.append(f"{by_severity(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
+    if (ended := exit_status(result)).code == ExitCode.NOT_JUDGED:
+        text.append(f"; {ended.why}", "default")  # no findings, but not because nothing was wrong
     if touched := {row["drive_id"] for row in found if is_contact(row, rules)}:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
@@ -114,7 +117,7 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
         if drive["status"] != "judged":
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
-        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(unknown[name])
+        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(drive, unknown[name])
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         table.add_row(
@@ -125,7 +128,9 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
     return table
 
 
-def _without_finding(verdicts: Mapping[str, int]) -> Text:
+def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
+    if off_map_reason(drive) is not None:
+        return Text("no finding, but the map does not fit", "yellow")
     return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
 
 
@@ -139,7 +144,8 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     parts = []
     if row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
-        parts.append(f"{number(row['observed'], row['unit'])}, needs {number(row['required'], row['unit'])}{profile}")
+        limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
+        parts.append(f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{profile}")
     if not contact:
         parts.append(rules[row["rule_id"]]["title"])
     if row["object_id"] is not None:

@@ -1,0 +1,72 @@
+"""Numbers for a viewer's plots: what is measured of the ego at each step, and the margins around findings and near misses."""
+
+from __future__ import annotations
+
+import re
+from itertools import groupby
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import msgspec
+import numpy as np
+
+from drivelint.annotate.result_messages import Message
+from drivelint.result.counts import SEVERITIES
+from drivelint.result.text import finite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from typing import Any
+
+    import pyarrow as pa
+
+    from drivelint.annotate.clock import LogClock
+
+MAX_STEPS: Final = 50_000
+"""A drive with more steps has the measures of every second, third ... step: no plot shows more points."""
+
+
+class Series(NamedTuple):
+    """The margins of one rule and profile: a line of a plot. Series are ordered by severity, then rule."""
+
+    severity: int
+    rule_id: str
+    profile: str
+    unit: str
+
+
+def measure_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
+    """Return the measures of one drive, one message per step; `rows`: of `evidence/first_ego_measures.sql`, in time order."""
+    every = max(1, -(-len(rows) // MAX_STEPS))
+    return _messages(rows.drop_columns("drive_id").to_pylist()[::every], clock)
+
+
+def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]:
+    """Return rule -> its margins in time order; `rows`: those of one drive of `evidence/least_margin.sql`."""
+    found = rows.drop_columns("drive_id").to_pylist()
+    by_rule = groupby(found, key=lambda row: str(row["rule_id"]))
+    return {
+        rule: sorted(_messages(list(steps), clock), key=lambda message: message.log_time) for rule, steps in by_rule
+    }
+
+
+def margin_topic(rule_id: str) -> str:
+    """Return the topic of a rule's margins below the prefix; a path in a viewer can have no dots within a topic."""
+    return "margins/" + re.sub(r"[^\w/-]", "_", rule_id.replace(".", "/"))
+
+
+def series_of(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[Series]:
+    """Return the series in rows of `evidence/least_margin.sql` that have margins."""
+    about = {rule["rule_id"]: rule for rule in rules}
+    measured = rows.filter(rows["margin"].is_valid()).select(["rule_id", "profile"])
+    keys = measured.group_by(["rule_id", "profile"]).aggregate([]).to_pylist()
+    return {
+        Series(SEVERITIES.index(rule["severity"]), rule["rule_id"], key["profile"] or "", rule["unit"] or "")
+        for key in keys
+        for rule in [about[key["rule_id"]]]
+    }
+
+
+def _messages(rows: list[dict[str, Any]], clock: LogClock) -> list[Message]:
+    times = clock.log_time(np.array([row["t_ns"] for row in rows], np.int64)).tolist()
+    known = ({key: value for key, value in row.items() if finite(value) is not None} for row in rows)
+    return [Message(time, msgspec.json.encode(row)) for time, row in zip(times, known, strict=True)]
