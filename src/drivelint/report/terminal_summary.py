@@ -46,16 +46,29 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
 
     Findings that a gate lets through are counted, not listed.
     """
-    gate, rows = result.gate, result.findings
-    if gate is not None:
-        rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
-    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    found = sorted(rows.to_pylist(), key=lambda row: _badness(row, rules))
+    rules, found = _rules(result), worst_first(result)
     drives = _drives(result, found, rules, width)
     parts: list[RenderableType] = [_head(result), Text(), _verdict(result, found, rules), Text(), drives, Text()]
     if found:
         parts += [_broken(found), Text()]
     return Group(*parts, *_lines(result), Text(), *_end(result, found, out))
+
+
+def worst_first(result: Result) -> list[Row]:
+    """Return the findings that no gate lets through, the worst first."""
+    gate, rows, rules = result.gate, result.findings, _rules(result)
+    if gate is not None:
+        rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
+    return sorted(rows.to_pylist(), key=lambda row: _badness(row, rules))
+
+
+def verdict_line(result: Result) -> str:
+    """Return the run's verdict, as it stands under the head, as plain text with single spaces."""
+    return " ".join(_verdict(result, worst_first(result), _rules(result)).plain.split())
+
+
+def _rules(result: Result) -> dict[str, Any]:
+    return {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
 
 def _badness(row: Row, rules: dict[str, Any]) -> tuple[Any, ...]:

@@ -50,7 +50,10 @@ def connect(
     con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
-    con.execute("SET enable_progress_bar=false")
+    if con.execute("SELECT current_setting('enable_progress_bar')").fetchall()[0][0]:
+        con.execute(
+            "SET enable_progress_bar=false"
+        )  # DuckDB refuses it in a notebook without ipywidgets, where it is off
     con.execute("SET preserve_insertion_order=false")
     if path is None:
         # there is nothing to write down, but a checkpoint packs the tables anew: a tenth of the time to derive them
