@@ -279,3 +279,11 @@ def test_importing_loads_nothing_heavy() -> None:
     assert {"check", "open", "read_trace", "DriveLintError"} <= set(dir(drivelint))
     with pytest.raises(AttributeError, match="chek"):
         _ = drivelint.chek  # type: ignore[attr-defined]
+
+
+def test_what_type_checkers_see_is_there() -> None:
+    stub = (ROOT / "src" / "drivelint" / "__init__.pyi").read_text("utf-8")
+    names = [line.rpartition(" ")[2] for line in stub.splitlines() if line.startswith("from ")]
+    assert sorted(names) == sorted(name for name in dir(drivelint) if name in names)
+    assert set(drivelint._OF_API) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
+    assert all(getattr(drivelint, name).__module__.startswith("drivelint.") for name in names)
