@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import inspect
 import os
+import signal
 import subprocess
 import sys
+import threading
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,7 @@ import typer
 import drivelint
 from drivelint import cli, demo
 from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.sql import store
 from tests.report import synthetic
 from tests.shared_data import ROOT
 
@@ -218,6 +221,19 @@ def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: p
     assert found.exit_code == 4
     assert any("bad.mcap" in note for note in found.notes)
     assert capfd.readouterr() == ("", ""), "nothing is printed"
+
+
+def test_an_interrupt_is_an_interrupt(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also while DuckDB computes in the main thread, which raises an error of its own then."""
+
+    def long_query(*_: object) -> None:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with store.workspace(None) as con:
+            con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
+
+    monkeypatch.setattr("drivelint.run.check", long_query)
+    with pytest.raises(KeyboardInterrupt):
+        drivelint.check(drives / "safe.mcap")
 
 
 def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:

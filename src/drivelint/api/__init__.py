@@ -25,6 +25,8 @@ from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
     from drivelint.api.options import AnyPath, Assignments, FailOn, Handedness, Pair, Paths, Texts, Visibility
+    from drivelint.api.progress import NoteKeeper
+    from drivelint.result.model import Result
 
 __all__ = ["CheckResult", "Table", "TraceTables", "check", "open", "read_trace"]
 
@@ -103,12 +105,22 @@ def check(
     if folder is not None:
         prepare_folder(folder)
     with kept_notes(progress) as listener:
-        result = run.check(settings, listener)
+        result = _interruptible(settings, listener)
     if gate_inputs is not None:
         result = gate_inputs.apply_to(result)
     if folder is not None:
         outputs.write(result, folder)
     return CheckResult(replace(result, margins_file=None), folder, tuple(listener.notes))
+
+
+def _interruptible(settings: run.CheckOptions, listener: NoteKeeper) -> Result:
+    """Run a check; an interrupt is `KeyboardInterrupt`, which DuckDB hides in an error of its own."""
+    try:
+        return run.check(settings, listener)
+    except RuntimeError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise error.__cause__ from None
+        raise
 
 
 def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open

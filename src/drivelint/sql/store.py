@@ -81,6 +81,8 @@ def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
             yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
+        finally:
+            con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 
 def lock(con: duckdb.DuckDBPyConnection) -> None:
