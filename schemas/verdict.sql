@@ -32,7 +32,9 @@ CREATE TABLE verdict (
     x_m DOUBLE,                       -- ego at the worst step
     y_m DOUBLE,                       -- ego at the worst step
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    assumes VARCHAR                   -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
+    assumes VARCHAR,                  -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
+    t_start_s DOUBLE,                 -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
+    t_worst_s DOUBLE                  -- t_worst_ns in the same way
 );
 
 -- lifetime: run
@@ -65,7 +67,10 @@ CREATE TABLE finding (
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
     n_copies INTEGER,                 -- copies of its stretch of the drive, with errors like the recording's, that were judged; NULL: none were
-    n_stays INTEGER                   -- in how many of them it is a finding too; NULL: as n_copies
+    n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
+    t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
+    t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way
+    closing_mps DOUBLE                -- how fast ego and object come nearer at the worst step, or, where they touch at it, at the last step before they did: their relative velocity along the line between their box centres; negative: they part; NULL: no object, or the place or velocity of one is not known
 );
 
 -- lifetime: drive

@@ -16,7 +16,8 @@ SELECT v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, obj
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id,
     CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation'
         AND (coalesce(g.gone_ns <= t_end_ns, g.gone_ns IS NOT NULL) OR coalesce(g.to_come_ns >= t_start_ns, g.to_come_ns IS NOT NULL))
-        THEN 'line_of_sight' END AS assumes
+        THEN 'line_of_sight' END AS assumes,
+    (t_start_ns - start_ns) / 1e9 AS t_start_s, (t_worst_ns - start_ns) / 1e9 AS t_worst_s
 FROM _numbered v
 LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_worst_ns
 LEFT JOIN _track_end_times g ON g.drive_id = v.drive_id AND g.ego_id = v.ego_id

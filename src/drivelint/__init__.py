@@ -1,3 +1,23 @@
-"""drivelint checks recorded drives against the rules of the road."""
+"""drivelint checks recorded drives against the rules of the road.
+
+From Python: `drivelint.check`, `drivelint.open` and `drivelint.read_trace`; see `drivelint docs python`. What type checkers see
+of this module stands in `__init__.pyi`.
+"""
+
+from importlib import import_module
+
+from drivelint.errors import DriveLintError as DriveLintError
 
 __version__ = "0.1.0"
+_OF_API = ("CheckResult", "Table", "TraceTables", "check", "open", "read_trace")
+
+
+def __getattr__(name: str) -> object:
+    """Import the Python interface when it is asked for: `import drivelint` itself loads nothing heavy."""
+    if name not in _OF_API:
+        raise AttributeError(f"module 'drivelint' has no attribute {name!r}")
+    return getattr(import_module("drivelint.api"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_OF_API])

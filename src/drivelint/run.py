@@ -48,6 +48,8 @@ class CheckOptions(DriveInput):
     margins: bool = False
     keep_db: bool = False
     annotate: bool = True
+    evidence: bool = False
+    """Gather what reports show without `out`, too."""
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
@@ -72,7 +74,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         # the report and the annotated logs read each batch before its tables are cleared
         observers: list[BatchObserver] = []
-        if settings.out:
+        if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"

@@ -59,7 +59,7 @@ class Bar(Progress):
 
 @contextmanager
 def bar() -> Iterator[Bar]:
-    """Show a bar on a terminal's stderr, which goes away at the end."""
+    """Show a bar on a terminal's stderr, which goes away at the end, or under a notebook's cell."""
     from rich import progress as drawn
     from rich.console import Console
 
@@ -70,5 +70,8 @@ def bar() -> Iterator[Bar]:
         drawn.MofNCompleteColumn(),
         drawn.TimeElapsedColumn(),
     )
-    with drawn.Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    if console.is_jupyter:  # rich's own way needs ipywidgets, and warns at each step where they are not installed
+        console = Console(stderr=True, force_jupyter=False, force_terminal=True)
+    with drawn.Progress(*columns, console=console, transient=True) as progress:
         yield Bar(progress)

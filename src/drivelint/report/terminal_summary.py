@@ -48,11 +48,7 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
 
     Findings that a gate lets through are counted, not listed.
     """
-    gate, rows = result.gate, result.findings
-    if gate is not None:
-        rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
-    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    found = worst_first(rows, rules).to_pylist()
+    rules, found = _rules(result), worst_gating(result)
     drives = _drives(result, found, rules, width)
     parts: list[RenderableType] = [_head(result), Text(), _verdict(result, found, rules), Text(), drives, Text()]
     if found:
@@ -68,6 +64,23 @@ def _head(result: Result) -> Text:
     return Text(
         f"drivelint: {plural(drives.num_rows, 'drive')}, {total[0]:.2f} km, {total[1]:.0f} s, {n_rules} ({', '.join(packs)})"
     )
+
+
+def worst_gating(result: Result) -> list[Row]:
+    """Return the findings that no gate lets through, the worst first."""
+    gate, rows = result.gate, result.findings
+    if gate is not None:
+        rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
+    return worst_first(rows, _rules(result)).to_pylist()
+
+
+def verdict_line(result: Result) -> str:
+    """Return the run's verdict, as it stands under the head, as plain text with single spaces."""
+    return " ".join(_verdict(result, worst_gating(result), _rules(result)).plain.split())
+
+
+def _rules(result: Result) -> dict[str, Any]:
+    return {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
 
 def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:

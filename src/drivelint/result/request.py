@@ -42,7 +42,7 @@ class RunRequest(DriveInput):
 def render(asked: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
-    del told["ego"]
+    told.pop("ego", None)  # a request that was loaded has none
     plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
     plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
     plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]

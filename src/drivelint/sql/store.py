@@ -50,7 +50,10 @@ def connect(
     con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
-    con.execute("SET enable_progress_bar=false")
+    if con.execute("SELECT current_setting('enable_progress_bar')").fetchall()[0][0]:
+        con.execute(
+            "SET enable_progress_bar=false"
+        )  # DuckDB refuses it in a notebook without ipywidgets, where it is off
     con.execute("SET preserve_insertion_order=false")
     if path is None:
         # there is nothing to write down, but a checkpoint packs the tables anew: a tenth of the time to derive them
@@ -78,6 +81,8 @@ def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
             yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
+        finally:
+            con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 
 def lock(con: duckdb.DuckDBPyConnection) -> None:

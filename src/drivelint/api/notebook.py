@@ -1,0 +1,65 @@
+"""What a notebook shows of a result: the verdict, the counts and the worst findings."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from drivelint.report.terminal_summary import verdict_line, worst_gating
+from drivelint.result import counts
+from drivelint.result.certainty import certainty
+from drivelint.result.model import exit_status
+from drivelint.result.text import comparison, measure, rule_name, seconds, subject
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+    from drivelint.result.model import Result
+
+MOST_FINDINGS: Final = 10
+
+
+def summary_html(result: Result) -> str:
+    """Return the summary as HTML, everything from a log escaped."""
+    found = worst_gating(result)
+    titles = dict(zip(*(result.rules[name].to_pylist() for name in ("rule_id", "title")), strict=True))
+    starts = result.start_times
+    end = exit_status(result)
+    rows = [
+        {
+            "drive": row["drive_id"],
+            "time": seconds(row["t_worst_ns"], starts[row["drive_id"]]),
+            "severity": row["severity"],
+            "certainty": certainty(row),
+            "rule": rule_name(row),
+            "title": titles[row["rule_id"]],
+            "who": subject(row),
+            "measured": comparison(row),
+            "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),
+        }
+        for row in found[:MOST_FINDINGS]
+    ]
+    return _template().render(
+        verdict=verdict_line(result),
+        exit_code=int(end.code),
+        why=end.why,
+        verdicts={word.replace("_", " "): n for word, n in counts.total(result.verdicts).items() if n},
+        rows=rows,
+        has_certainty=any(row["certainty"] for row in rows),
+        left_out=len(found) - len(rows),
+    )
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("notebook.html.j2")

@@ -1,0 +1,92 @@
+"""Reads the keywords of the Python interface: the options of the command line, in the types that Python has for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, Literal, TypeVar, get_args
+
+from drivelint.cli import values
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+
+AnyPath = str | PathLike[str]
+Paths = AnyPath | Iterable[AnyPath]
+Texts = str | Iterable[str] | None
+Assignments = Mapping[str, object] | Texts
+"""KEY=VALUE as texts, or as a dictionary."""
+Pair = str | tuple[float, float] | None
+FailOn = Literal["critical", "major", "minor", "never"]
+Handedness = Literal["auto", "lht", "rht"]
+Visibility = Literal["line-of-sight", "none"]
+ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
+_WORDS = {True: "yes", False: "no"}
+_Word = TypeVar("_Word", bound=str)
+
+
+def texts(given: Paths | None) -> tuple[str, ...]:
+    """Return one text or path, or several, as texts."""
+    if given is None:
+        return ()
+    several = (given,) if isinstance(given, str | PathLike) else given
+    return tuple(fspath(each) for each in several)
+
+
+def path(given: AnyPath | None) -> Path | None:
+    """Return a path, or None."""
+    return None if given is None else Path(given)
+
+
+def assignments(given: Assignments) -> tuple[str, ...]:
+    """Return `KEY=VALUE` for each entry of a dictionary; texts as they are."""
+    if isinstance(given, Mapping):
+        return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in given.items())
+    return texts(given)
+
+
+def one_of(name: str, given: _Word, kind: Any) -> _Word:
+    """Return a word, if it is one of those of a `Literal`. Errors: `UsageError` with the nearest."""
+    if given not in get_args(kind):
+        raise UsageError(f"{name}={given!r}: {hint(str(given), get_args(kind))}")
+    return given
+
+
+def drive_input(
+    *,
+    ego: str | int | None,
+    mapping: AnyPath | None,
+    topic: str | None,
+    sensor_range: float | None,
+    visibility: Visibility,
+    ego_size: str | tuple[float, ...] | None,
+    env: Assignments,
+) -> dict[str, Any]:
+    """Return the fields of `DriveInput` about the log. Errors: `UsageError` for a value that is none."""
+    return {
+        "ego": None if ego is None else str(ego),
+        "mapping": None if mapping is None else fspath(mapping),
+        "topic": topic,
+        "sensor_range_m": sensor_range,
+        "visibility": one_of("visibility", visibility, Visibility),
+        "ego_size": values.parse_ego_size(_with_commas(ego_size)),
+        "env": assignments(env),
+    }
+
+
+def map_input(
+    *, map_: AnyPath | None, map_dir: AnyPath | None, map_offset: Pair, map_origin: Pair, handedness: Handedness
+) -> dict[str, Any]:
+    """Return the fields of `DriveInput` about the map. Errors: `UsageError` for a value that is none."""
+    return {
+        "map": path(map_),
+        "map_dir": path(map_dir),
+        "map_offset": values.parse_offset(_with_commas(map_offset)),
+        "map_origin": values.parse_origin(_with_commas(map_origin)),
+        "handedness": one_of("handedness", handedness, Handedness),
+    }
+
+
+def _with_commas(given: str | tuple[float, ...] | None) -> str | None:
+    """Return numbers as the command line takes them, so that it is one place that judges them."""
+    return given if given is None or isinstance(given, str) else ",".join(map(str, given))

@@ -1,0 +1,39 @@
+"""The tables of one recorded drive, for whoever asks for them in Python."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.api.tables import Table, TableSet
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import Trace
+
+
+class TraceTables(TableSet):
+    """One drive as the tables that rules are judged on: metres, seconds, radians, box centres; one row of `data_log`.
+
+    `drivelint docs dictionary` describes the columns. `embedded_map`: OpenDRIVE that the log holds, or None. `notes`: what the
+    reader had to say about the log.
+    """
+
+    data_log: Table
+    actor: Table
+    actor_state: Table
+    signal_state: Table
+    declared_event: Table
+    drive_condition: Table
+    quality: Table
+
+    def __init__(self, trace: Trace) -> None:
+        super().__init__(trace.tables)
+        for name, table in self.tables.items():
+            setattr(self, name, table)
+        self.drive_id = trace.drive_id
+        self.path = trace.path
+        self.embedded_map = trace.embedded_map
+        self.notes = tuple(trace.notes)
+
+    def __repr__(self) -> str:
+        rows = ", ".join(f"{name} {len(table)}" for name, table in self.tables.items())
+        return f"<drivelint.TraceTables of {self.drive_id}: rows of {rows}>"

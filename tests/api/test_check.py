@@ -1,0 +1,306 @@
+"""`drivelint.check`: the options and the bytes of the command line, errors that can be caught, and no exit."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+import typer
+
+import drivelint
+from drivelint import cli, demo
+from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.sql import store
+from tests.report import synthetic
+from tests.shared_data import ROOT
+
+PRINTING = {"format_", "verbose", "quiet", "help"}
+"""Options of the command line about what it prints."""
+NAMES = {"map_": "map", "sensor_range_m": "sensor_range"}
+"""Parameters of the command line -> keywords, where they differ."""
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("demo")
+    demo.write(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def checked(drives: Path) -> drivelint.CheckResult:
+    return drivelint.check([drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr")
+
+
+def command_line(*args: object, code: int) -> None:
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    line = [sys.executable, "-m", "drivelint", *map(str, args)]
+    done = subprocess.run(line, check=False, capture_output=True, text=True, timeout=120, env=env)
+    assert done.returncode == code, done.stderr
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(f.relative_to(folder)): f.read_bytes() for f in sorted(folder.rglob("*")) if f.is_file()}
+
+
+def test_the_keywords_are_the_options_with_their_defaults() -> None:
+    (command,) = (c for name, c in typer.main.get_command(cli.app).commands.items() if name == "check")  # type: ignore[attr-defined]
+    options = {p.opts[0].lstrip("-").replace("-", "_"): p for p in command.params if p.name not in PRINTING}
+    keywords = inspect.signature(drivelint.check).parameters
+    assert set(keywords) - {"progress"} == {"traces" if name == "TRACE" else name for name in options}
+    for name, option in options.items():
+        if name != "traces":
+            assert (keywords[name].default or None) == (option.default or None), name
+
+
+def test_write_writes_the_bytes_of_the_command_line(
+    checked: drivelint.CheckResult, drives: Path, tmp_path: Path
+) -> None:
+    said = [drives / "near-miss.mcap", drives / "safe.mcap", "--map", drives / "road.xodr"]
+    command_line("check", *said, "--out", tmp_path / "a", "--no-annotate", code=1)
+    assert checked.write(tmp_path / "b") == tmp_path / "b"
+    theirs, ours = files(tmp_path / "a"), files(tmp_path / "b")
+    assert set(theirs) >= {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "run.json", "summary.json"}
+    assert theirs == ours
+
+
+def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Path) -> None:
+    """With every kind of option: the logs with their verdicts, each judged step, a baseline, waivers."""
+    waivers = tmp_path / "waivers.toml"
+    waivers.write_text(
+        '[[waiver]]\nrule = "ukhc.r162.*"\nreason = "known"\nowner = "me"\nexpires = 2027-03-31\n', encoding="utf-8"
+    )
+    log, road, base = drives / "collision.mcap", drives / "road.xodr", tmp_path / "base"
+    rules = ["ukhc.r162.*", "ukhc.no-collision", "ukhc.r126.thinking-gap"]
+    drivelint.check(drives / "safe.mcap", map=road, rules=rules, out=base)
+    said = [part for rule in rules for part in ("--rules", rule)]
+    said += ["--profile", "nominal", "--fail-on", "major", "--env", "nation=gb", "--env", "engaged=yes", "--margins"]
+    said += ["--map-offset", "0.5,0.25", "--ego-size", "4.5,1.8", "--memory", "1GB", "--today", "2027-01-01"]
+    said += ["--param", "ukhc.r126.thinking-gap.settle_s=8"]
+    files_of_gate = ["--baseline", base, "--waivers", waivers]
+    command_line("check", log, "--map", road, *said, *files_of_gate, "--out", tmp_path / "a", code=1)
+    found = drivelint.check(
+        str(log),
+        map=str(road),
+        rules=rules,
+        profile="nominal",
+        param={"ukhc.r126.thinking-gap.settle_s": 8},
+        fail_on="major",
+        env={"nation": "gb", "engaged": True},
+        map_offset=(0.5, 0.25),
+        ego_size=(4.5, 1.8),
+        margins=True,
+        memory="1GB",
+        baseline=str(base),
+        waivers=waivers,
+        today=date(2027, 1, 1),
+        out=tmp_path / "b",
+    )
+    theirs, ours = files(tmp_path / "a"), files(tmp_path / "b")
+    assert {"gate.json", "margins.parquet", "annotated/viewer-layout.json"} <= set(theirs)
+    assert theirs == ours
+    assert found.exit_code == 1
+    assert found.margins is not None
+    assert len(found.margins) == found.sql("SELECT count(*) AS n FROM margins").rows()[0]["n"] > 0
+
+    opened = drivelint.open(tmp_path / "b")
+    assert (opened.exit_code, opened.why) == (found.exit_code, found.why)
+    kept = {name: content for name, content in theirs.items() if not name.startswith("annotated")}
+    assert files(opened.write(tmp_path / "c")) == kept
+    assert files(opened.write(tmp_path / "b")) == theirs, "into its own folder"
+
+
+def test_the_tables_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+    folder = checked.write(tmp_path / "out")
+    opened = drivelint.open(str(folder))
+    for name in TABLE_OF_FILE:
+        ours, theirs = getattr(checked, name), getattr(opened, name)
+        assert ours.arrow().equals(theirs.arrow())
+        assert ours is checked.tables[name]
+        assert len(ours) == pq.read_metadata(folder / f"{name}.parquet").num_rows
+    assert len(checked.verdicts)
+    assert checked.exit_code == 1
+    assert opened.report() == checked.report() == (folder / "report.html").read_text("utf-8")
+
+
+def test_a_table_is_arrow_polars_and_pandas(checked: drivelint.CheckResult) -> None:
+    table = checked.findings
+    arrow = table.arrow()
+    assert pa.table(table).equals(arrow)
+    assert table.pl().to_arrow().column("finding_id").to_pylist() == arrow["finding_id"].to_pylist()
+    pytest.importorskip("pandas")
+    assert table.df()["finding_id"].tolist() == [row["finding_id"] for row in table.rows()]
+    assert table.columns == tuple(arrow.column_names)
+    assert "finding_id" in repr(table)
+
+
+def test_sql_reads_the_tables_by_name(checked: drivelint.CheckResult) -> None:
+    query = "SELECT drive_id, count(*) AS n FROM findings JOIN rules USING (rule_id) WHERE severity = $s GROUP BY ALL ORDER BY ALL"
+    (row,) = checked.sql("SELECT count(*) AS n FROM findings WHERE severity = ?", ["critical"]).rows()
+    named = checked.sql(query.replace("severity", "findings.severity"), {"s": "critical"})
+    assert sum(each["n"] for each in named.rows()) == row["n"] > 0
+
+
+@pytest.mark.parametrize(
+    ("query", "says"),
+    [
+        ("COPY findings TO '{out}/x.csv'", "disabled"),
+        ("ATTACH '{out}/x.duckdb'", "disabled"),
+        ("FROM '{out}/log.csv'", "does not exist|disabled"),
+        ("FROM read_csv('{out}/log.csv')", "disabled"),
+        ("SET enable_external_access = true", "locked"),
+        ("INSERT INTO findings FROM findings", "findings"),
+        ("FROM nowhere", "nowhere"),
+        ("FROM query", "query"),  # a Python variable
+        ("SELEC 1", "SELEC"),
+    ],
+)
+def test_sql_touches_nothing_else(checked: drivelint.CheckResult, query: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("a\n1\n", encoding="utf-8")
+    with pytest.raises(drivelint.DriveLintError, match=says):
+        checked.sql(query.format(out=tmp_path))
+    assert [f.name for f in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_what_a_query_creates_is_gone(checked: drivelint.CheckResult) -> None:
+    checked.sql("DROP VIEW findings")
+    checked.sql("CREATE TABLE mine AS SELECT 1")
+    assert len(checked.sql("FROM findings")) == len(checked.findings)
+    with pytest.raises(drivelint.DriveLintError, match="mine"):
+        checked.sql("FROM mine")
+
+
+def test_reports_are_texts_or_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+    assert checked.report(to="junit").startswith("<?xml")
+    file = checked.report(tmp_path / "page.html")
+    assert file == tmp_path / "page.html"
+    assert file.read_text("utf-8") == checked.report()
+    with pytest.raises(drivelint.DriveLintError, match="'html'"):
+        checked.report(to="htm")  # type: ignore[call-overload]
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"traces": []}, "no traces"),
+        ({"traces": "nowhere.mcap"}, r"nowhere\.mcap: no such file"),
+        ({"map": "nowhere.xodr"}, r"nowhere\.xodr does not exist"),
+        ({"fail_on": "critcal"}, "fail_on='critcal': did you mean 'critical'"),
+        ({"handedness": "left"}, "handedness='left'"),
+        ({"visibility": "all"}, "visibility='all'"),
+        ({"rules": "no-such-rule"}, "no-such-rule"),
+        ({"env": {"wether": "dry"}}, "did you mean 'weather'"),
+        ({"map_offset": (1.0,)}, "map-offset '1.0'"),
+        ({"map_origin": (91.0, 0.0)}, "map-origin"),
+        ({"ego_size": (0.0, 1.0)}, "ego-size"),
+        ({"memory": "1 byte"}, "memory"),
+        ({"today": "tomorrow"}, "today"),
+        ({"margins": True}, "--out"),
+        ({"sensor_range": -1.0}, "more than 0 m"),
+        ({"baseline": "nowhere"}, "nowhere: no result"),
+    ],
+)
+def test_a_mistake_is_an_error_that_can_be_caught(given: dict[str, Any], says: str, drives: Path) -> None:
+    with pytest.raises(drivelint.DriveLintError, match=says):
+        drivelint.check(**{"traces": drives / "safe.mcap", **given})
+
+
+def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "bad.mcap").write_bytes(b"\x89MCAP")
+    found = drivelint.check([drives / "safe.mcap", tmp_path / "bad.mcap"], map=drives / "road.xodr", fail_on="never")
+    assert found.exit_code == 4
+    assert any("bad.mcap" in note for note in found.notes)
+    assert capfd.readouterr() == ("", ""), "nothing is printed"
+
+
+def test_an_interrupt_is_an_interrupt(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also while DuckDB computes in the main thread, which raises an error of its own then."""
+
+    def long_query(*_: object) -> None:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with store.workspace(None) as con:
+            con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
+
+    monkeypatch.setattr("drivelint.run.check", long_query)
+    with pytest.raises(KeyboardInterrupt):
+        drivelint.check(drives / "safe.mcap")
+
+
+def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(drivelint.DriveLintError, match=r"summary\.json is missing"):
+        drivelint.open(tmp_path)
+
+
+def test_read_trace_has_the_tables_of_a_log(drives: Path) -> None:
+    trace = drivelint.read_trace(drives / "near-miss.mcap")
+    assert set(trace.tables) == {name for name in drivelint.TraceTables.__annotations__ if name in trace.tables}
+    assert set(trace.tables) == set(drivelint.TraceTables.__annotations__)
+    ids = trace.sql("SELECT DISTINCT actor_id FROM actor_state ORDER BY actor_id").rows()
+    assert [row["actor_id"] for row in ids] == sorted(trace.actor.pl()["actor_id"].to_list()) == ["1", "2", "3"]
+    assert trace.drive_id.startswith("near-miss-")
+    with pytest.raises(drivelint.DriveLintError, match="no such file"):
+        drivelint.read_trace("nowhere.mcap")
+    with pytest.raises(drivelint.DriveLintError, match="mapping"):
+        drivelint.read_trace(ROOT / "fixtures" / "overtake" / "safe.csv")
+    mapped = drivelint.read_trace(
+        ROOT / "fixtures" / "overtake" / "safe.csv", mapping=ROOT / "fixtures" / "overtake" / "mapping.toml"
+    )
+    assert len(mapped.actor_state)
+
+
+def test_names_of_a_log_are_escaped_in_a_notebook() -> None:
+    bad = "<script>alert(1)</script>"
+    drive = synthetic.drive("d1", file_name=bad)
+    found = synthetic.result(
+        [synthetic.verdict("fail", object_id=bad)],
+        [synthetic.finding(object_id=bad, n_copies=100, n_stays=53, closing_mps=3.2)],
+        [drive],
+        [synthetic.rule(title=bad)],
+    )
+    shown = drivelint.CheckResult(found)._repr_html_()
+    assert "<script" not in shown
+    assert "&lt;script&gt;" in shown
+    assert "possible" in shown
+    assert "3.20\u00a0m/s" in shown
+    assert "FAIL 1 critical finding in 1 of 1 drive" in shown
+    assert "exit code 1" in shown
+
+
+def test_a_notebook_shows_the_worst_and_counts_the_rest() -> None:
+    rows = [synthetic.finding(occurrence=n, margin=-float(n)) for n in range(13)]
+    shown = drivelint.CheckResult(synthetic.result([synthetic.verdict("fail")], rows))._repr_html_()
+    assert shown.count("<tr>") == 1 + 10
+    assert shown.index("-12.00") < shown.index("-11.00") < shown.index("-3.00")
+    assert "and 3 more" in shown
+    assert "certainty" not in shown
+
+
+def test_importing_loads_nothing_heavy() -> None:
+    probe = "import sys, drivelint; print(*sorted({name.split('.')[0] for name in sys.modules}))"
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True, env=env)
+    loaded = set(done.stdout.split())
+    assert "drivelint" in loaded
+    assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "typer", "jinja2", "rich", "msgspec"}
+    assert {"check", "open", "read_trace", "DriveLintError"} <= set(dir(drivelint))
+    with pytest.raises(AttributeError, match="chek"):
+        _ = drivelint.chek  # type: ignore[attr-defined]
+
+
+def test_what_type_checkers_see_is_there() -> None:
+    stub = (ROOT / "src" / "drivelint" / "__init__.pyi").read_text("utf-8")
+    names = re.findall(r"^from \S+ import (\w+) as \1\b", stub, re.MULTILINE)
+    assert set(names) <= set(dir(drivelint))
+    assert set(drivelint._OF_API) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
+    assert all(getattr(drivelint, name).__module__.startswith("drivelint.") for name in names)

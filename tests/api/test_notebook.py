@@ -1,0 +1,77 @@
+"""A real notebook, from empty to a plot: what the cells of the guide show in a kernel of their own."""
+
+from __future__ import annotations
+
+import base64
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drivelint import demo
+from drivelint.guide import FOLDER
+from tests.guide.blocks import blocks
+from tests.shared_data import ROOT
+
+nbclient: Any = pytest.importorskip("nbclient", reason="nbclient is not installed (pip install nbclient)")
+nbformat: Any = pytest.importorskip("nbformat")
+pytest.importorskip("ipykernel", reason="ipykernel is not installed (pip install ipykernel)")
+
+PROGRAMS = {block.argument: block.body for block in blocks(FOLDER / "python.md") if block.language == "python"}
+
+
+def run(folder: Path, *cells: str) -> list[list[dict[str, Any]]]:
+    """Run the cells in a new notebook; return the outputs of each."""
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
+    client = nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(folder)}})
+    client.execute(env={**os.environ, "PYTHONPATH": path})
+    return [cell.outputs for cell in notebook.cells]
+
+
+def streams(outputs: list[dict[str, Any]]) -> dict[str, str]:
+    told: dict[str, str] = {}
+    for each in outputs:
+        if each["output_type"] == "stream":
+            told[each["name"]] = told.get(each["name"], "") + each["text"]
+    return told
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    demo.write(tmp_path / "demo")
+    return tmp_path
+
+
+def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
+    assert list(PROGRAMS) == ["gap.py", "plot.py", "fastest.py"]
+    first, plot, fastest, result, table = run(folder, *PROGRAMS.values(), "r", "r.findings")
+    assert streams(first).keys() == {"stdout"}, "no progress, no warning"
+    assert (folder / "report.html").read_text("utf-8").startswith("<!doctype html>")
+    (picture,) = (each["data"]["image/png"] for each in plot if "image/png" in each.get("data", {}))
+    assert base64.b64decode(picture).startswith(b"\x89PNG")
+    assert (folder / "overlap.png").stat().st_size > 5000
+    assert streams(fastest)["stdout"].splitlines()[1] == "{'actor_id': '2', 'mps': 0.0}"
+    (shown,) = result
+    assert "FAIL 2 critical" in shown["data"]["text/html"]
+    assert "ukhc.r162.safe-distance-ahead [observed]" in shown["data"]["text/html"]
+    assert "closing_mps" in table[0]["data"]["text/html"]
+
+
+def test_progress_is_drawn_under_the_cell(folder: Path) -> None:
+    """Without ipywidgets, which rich would want, and warns of at each step."""
+    asked = "r = drivelint.check('demo/safe.mcap', map='demo/road.xodr', rules='ukhc.no-collision', progress=True)"
+    (outputs,) = run(folder, f"import drivelint\n{asked}")
+    assert {each["output_type"] for each in outputs} == {"stream"}
+    assert "checking" in streams(outputs)["stderr"]
+    assert "1/1" in streams(outputs)["stderr"]
+    assert "ipywidgets" not in streams(outputs)["stderr"]
+
+
+def test_an_error_stops_a_cell_and_not_the_kernel(folder: Path) -> None:
+    caught = "try:\n    drivelint.check('nowhere.mcap')\nexcept drivelint.DriveLintError as error:\n    print(error)"
+    first, second = run(folder, f"import drivelint\n{caught}", "print('still there')")
+    assert streams(first) == {"stdout": "nowhere.mcap: no such file or folder: check the path\n"}
+    assert streams(second) == {"stdout": "still there\n"}
