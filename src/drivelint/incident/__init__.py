@@ -56,12 +56,11 @@ def write_incident(request: IncidentRequest) -> list[Path]:
     Errors: `UsageError` for a finding, log or map that is not there, or where no browser is installed that prints a PDF.
     """
     browser = pdf.find_browser() if request.pdf else None
-    result = load_result(request.folder)
-    finding = named_finding(result, request.name)
-    page = render(_case(request, result, finding))
-    contents = {f"{finding.row['finding_id']}.html": page}
+    case = open_case(request)
+    name, page = case.finding.row["finding_id"], render(case)
+    contents = {f"{name}.html": page}
     if browser is not None:
-        contents[f"{finding.row['finding_id']}.pdf"] = pdf.print_page(page, browser)
+        contents[f"{name}.pdf"] = pdf.print_page(page, browser)
     publish(request.folder / FOLDER, contents, {})
     return [request.folder / FOLDER / name for name in contents]
 
@@ -72,8 +71,13 @@ def render(case: sheet.Case) -> bytes:
     return text.encode("utf-8", "replace")
 
 
-def _case(request: IncidentRequest, result: Result, finding: NamedFinding) -> sheet.Case:
-    """Judge both parties again. What the result itself says of a party counts, where it was an ego there."""
+def open_case(request: IncidentRequest) -> sheet.Case:
+    """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
+
+    Errors: `UsageError` for a finding, log or map that is not there.
+    """
+    result = load_result(request.folder)
+    finding = named_finding(result, request.name)
     asked = run_request.load(request.folder)
     judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 class Judged:
     """The rows of `verdict` and `finding` of one ego, and the rows of `queries/incident/step.sql`."""
 
-    verdicts: list[Row]
-    findings: list[Row]
+    verdicts: Sequence[Row]
+    findings: Sequence[Row]
     steps: pa.Table
 
 
