@@ -100,7 +100,7 @@ def _told(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: fl
     from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row
     if before_s is None:
-        span = "the whole log, as no shorter part gives the finding"
+        span = "the whole log, as no part that was tried gives the finding"
         whole = (row["t_start_ns"] - clip.from_ns, clip.to_ns - row["t_end_ns"])
         if whole[0] <= SPANS_S[0][0] * _S and whole[1] <= SPANS_S[0][1] * _S:
             span = "the whole log, which is no longer"
