@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import shlex
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import pyarrow as pa
 
+from drivelint.drive.cut import cut_trace
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
@@ -35,6 +36,14 @@ _HEAD_BYTES: Final = 64
 """Enough of an MCAP file for its magic bytes and header, in which its writer names itself."""
 
 
+class Clip(NamedTuple):
+    """A part of a log, by the log's own clock, and what it is called."""
+
+    name: str
+    from_ns: int
+    to_ns: int
+
+
 @dataclass(frozen=True)
 class ConvertRequest(DriveInput):
     """What `convert` is asked to do; the names are those of its options."""
@@ -42,6 +51,8 @@ class ConvertRequest(DriveInput):
     trace: str
     to: Literal["mcap", "parquet"]
     out: Path
+    clip: Clip | None = None
+    """Convert this part only; None: all of it."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +82,14 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
             f"{request.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
         )
     (path,) = paths
-    stem = path.resolve().name if path.is_dir() else path.stem
+    stem = request.clip.name if request.clip else path.resolve().name if path.is_dir() else path.stem
     target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
     _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
+    if request.clip is not None:
+        trace = cut_trace(trace, request.clip.from_ns, request.clip.to_ns)
     if request.map_offset is not None:
         x, y = request.map_offset
         trace = replace(_with_log(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)

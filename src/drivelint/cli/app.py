@@ -20,7 +20,7 @@ from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
 from drivelint.cli.options import Texts, argument, option
-from drivelint.errors import DriveLintError, ExitCode
+from drivelint.errors import DriveLintError, ExitCode, UsageError
 
 app = typer.Typer(
     name="drivelint",
@@ -211,16 +211,31 @@ def convert(
         options.ConvertTarget, option("--to", None, "mcap: one file of ASAM OSI; parquet: a folder of tables.")
     ],
     out: Annotated[Path, option("--out", "DIR", "Folder for the converted log.")],
+    clip: Annotated[
+        str | None,
+        option("--clip", "FINDING", "Only 15 s before to 7 s after this finding, or more if it needs more. With --in."),
+    ] = None,
+    folder: Annotated[Path | None, option("--in", "DIR", "With --clip: what check --out wrote.")] = None,
     drive: options.DriveInputValues,
 ) -> None:
     """Write a log anew, as OSI in MCAP or as Parquet.
 
     In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
+    A clip is judged alone, and is as long as it must be to give the same finding.
     """
     from drivelint import convert as converter
+    from drivelint.engine.memory import DEFAULT_MEMORY
 
     request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
-    written = run_interruptible(lambda: converter.convert(request))
+    if (clip is None) is not (folder is None):
+        raise UsageError("--clip and --in belong together: the finding, and the folder that check --out wrote")
+    if clip is not None and folder is not None:
+        from drivelint.incident.clip import write_clip
+
+        name, result = clip, folder
+        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY))
+    else:
+        written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
         typer.echo(f"drivelint: {note}", err=True)
     typer.echo(converter.summary_text(written))

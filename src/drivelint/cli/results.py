@@ -10,7 +10,7 @@ import typer
 from drivelint.cli import options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
-from drivelint.errors import ExitCode
+from drivelint.errors import ExitCode, UsageError
 
 
 def report(
@@ -24,11 +24,39 @@ def report(
             "markdown: for a comment on a pull request.",
         ),
     ] = "html",
+    *,
+    incident: Annotated[
+        str | None,
+        option(
+            "--incident",
+            "FINDING",
+            "Two A4 pages about one finding, instead: incidents/ID.html. Its id, or RULE or RULE@DRIVE, as in explain.",
+        ),
+    ] = None,
+    pdf: Annotated[
+        bool, option("--pdf", None, "With --incident: also as PDF, printed by an installed Chromium.")
+    ] = False,
+    trace: Annotated[
+        Path | None, option("--trace", "FILE", "With --incident: where the log is, if it was moved.")
+    ] = None,
+    map_: Annotated[Path | None, option("--map", "MAP", "With --incident: where the map is, if it was moved.")] = None,
 ) -> None:
     """Write a report from a result folder, into it.
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
+
+    With --incident, the sheet of one finding, to be filed: when and where, both parties, speeds, who slowed, second by second,
+    what each of them did by the same rules, how sure it is, what the recording does not hold. The log is judged again for it.
     """
+    if incident is not None:
+        from drivelint.incident import IncidentRequest, write_incident
+
+        asked = IncidentRequest(incident, folder, pdf, trace, map_)
+        for path in run_interruptible(lambda: write_incident(asked)):
+            typer.echo(str(path))
+        return
+    if pdf or trace is not None or map_ is not None:
+        raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
     from drivelint.report.outputs import REPORT_FORMATS
     from drivelint.result.files import publish
     from drivelint.result.load import load_result

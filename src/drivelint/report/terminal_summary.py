@@ -71,7 +71,8 @@ def worst_gating(result: Result) -> list[Row]:
     gate, rows = result.gate, result.findings
     if gate is not None:
         rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
-    return worst_first(rows, _rules(result)).to_pylist()
+    found: list[Row] = worst_first(rows, _rules(result)).to_pylist()
+    return found
 
 
 def verdict_line(result: Result) -> str:

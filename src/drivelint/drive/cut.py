@@ -1,0 +1,66 @@
+"""Cuts a span out of a trace. What still holds at its start, such as the colour of a traffic light, stays in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.arrays import with_columns
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import Trace
+
+_HOLDS: Final = {"signal_state": ["signal_id"], "declared_event": ["actor_id", "event"]}
+"""Table -> its keys: a row holds until the next one of the same keys."""
+
+
+def cut_trace(trace: Trace, from_ns: int, to_ns: int) -> Trace:
+    """Return the states of a trace from one time to another, both included, with the actors that have any.
+
+    Errors: `ValueError` if there is no state between them.
+    """
+    tables = dict(trace.tables)
+    states = _between(tables["actor_state"], from_ns, to_ns)
+    if not states.num_rows:
+        raise ValueError(f"no state from {from_ns} to {to_ns} ns")
+    seen = pc.unique(states["actor_id"])
+    tables["actor_state"] = states
+    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
+    for name, keys in _HOLDS.items():
+        tables[name] = _with_what_holds(tables[name], keys, from_ns, to_ns)
+    about = tables["quality"]["actor_id"]
+    tables["quality"] = tables["quality"].filter(pc.or_(pc.is_null(about), pc.is_in(about, value_set=seen)))
+    tables["data_log"] = _log_of(tables["data_log"], states)
+    return replace(trace, tables=tables, frame_times=None)
+
+
+def _between(rows: pa.Table, from_ns: int, to_ns: int) -> pa.Table:
+    return rows.filter(pc.and_(pc.greater_equal(rows["t_ns"], from_ns), pc.less_equal(rows["t_ns"], to_ns)))
+
+
+def _with_what_holds(rows: pa.Table, keys: list[str], from_ns: int, to_ns: int) -> pa.Table:
+    """Return the rows of a span and, of each key, the last one before it."""
+    before = rows.filter(pc.less(rows["t_ns"], from_ns))
+    last = before.group_by(keys).aggregate([("t_ns", "max")]).rename_columns([*keys, "t_ns"])
+    held = before.join(last, [*keys, "t_ns"], join_type="left semi", use_threads=False).select(rows.column_names)
+    order = [(name, "ascending") for name in ("t_ns", *keys)]
+    return pa.concat_tables([held, _between(rows, from_ns, to_ns)]).sort_by(order).cast(rows.schema)
+
+
+def _log_of(log: pa.Table, states: pa.Table) -> pa.Table:
+    """Return the row of `data_log` for these states."""
+    span = pc.min_max(states["t_ns"]).as_py()
+    start, utc = log["t_start_ns"][0].as_py(), log["utc_start_ns"][0].as_py()
+    later = None if utc is None or start is None else utc + span["min"] - start
+    return with_columns(
+        log,
+        {
+            "t_start_ns": [span["min"]],
+            "t_end_ns": [span["max"]],
+            "n_states": [states.num_rows],
+            "utc_start_ns": pa.array([later], pa.int64()),
+        },
+    )

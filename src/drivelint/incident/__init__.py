@@ -1,0 +1,143 @@
+"""The incident sheet: two A4 pages about one finding that a claims handler can file, and the clip of the log around it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import duckdb
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from drivelint import __version__
+from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.explain.source import open_drive
+from drivelint.incident import pdf, sheet
+from drivelint.incident.finding import named_finding
+from drivelint.incident.judge import Judge, Judged
+from drivelint.report import html as report_page
+from drivelint.report.html.anchors import anchor
+from drivelint.result import request as run_request
+from drivelint.result.files import publish
+from drivelint.result.load import load_result
+from drivelint.result.text import measure, number
+
+if TYPE_CHECKING:
+    from drivelint.incident.finding import NamedFinding
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+FOLDER: Final = "incidents"
+"""The sheets of a result stand in this folder of it, each called by its finding's id."""
+_HERE: Final = Path(__file__).parent
+_REPORT_TEMPLATES: Final = Path(report_page.__file__).parent / "templates"
+_NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
+
+
+@dataclass(frozen=True)
+class IncidentRequest:
+    """What `report --incident` is asked: a finding, as `explain` takes it, and where log and map are if they were moved."""
+
+    name: str
+    folder: Path
+    pdf: bool = False
+    trace: Path | None = None
+    map: Path | None = None
+    memory: int | None = DEFAULT_MEMORY
+
+
+def write_incident(request: IncidentRequest) -> list[Path]:
+    """Write the sheet of a finding into the result folder and return the paths of its files.
+
+    Errors: `UsageError` for a finding, log or map that is not there, or where no browser is installed that prints a PDF.
+    """
+    browser = pdf.find_browser() if request.pdf else None
+    case = open_case(request)
+    name, page = case.finding.row["finding_id"], render(case)
+    contents = {f"{name}.html": page}
+    if browser is not None:
+        contents[f"{name}.pdf"] = pdf.print_page(page, browser)
+    publish(request.folder / FOLDER, contents, {})
+    return [request.folder / FOLDER / name for name in contents]
+
+
+def render(case: sheet.Case) -> bytes:
+    """Return the sheet as one HTML page that opens offline; the same case gives the same bytes."""
+    text = _environment().get_template("sheet.html.j2").render(sheet.content(case))
+    return text.encode("utf-8", "replace")
+
+
+def open_case(request: IncidentRequest) -> sheet.Case:
+    """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
+
+    Errors: `UsageError` for a finding, log or map that is not there.
+    """
+    result = load_result(request.folder)
+    finding = named_finding(result, request.name)
+    asked = run_request.load(request.folder)
+    judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
+    ego, other = finding.row["ego_id"], finding.row["object_id"]
+    drive, source = open_drive(
+        request.folder, asked, finding.row["drive_id"], ego, trace=_log(request, asked, finding), map_=request.map
+    )
+    again = judge.judge(drive, ego, other)
+    return sheet.Case(result, asked, finding, drive, again, _other_party(request, result, finding, judge), source)
+
+
+def _other_party(request: IncidentRequest, result: Result, finding: NamedFinding, judge: Judge) -> Judged | str | None:
+    """Return what is judged of the other party as ego, or why it is not."""
+    other, drive_id = finding.row["object_id"], finding.row["drive_id"]
+    if other is None:
+        return None
+    if any(ego["ego_id"] == other for ego in finding.drive["exposure"]):
+        rows = [
+            [row for row in table.to_pylist() if row["drive_id"] == drive_id and row["ego_id"] == other]
+            for table in (result.verdicts, result.findings)
+        ]
+        return Judged(rows[0], rows[1], result.verdicts.slice(0, 0))
+    asked = run_request.load(request.folder)
+    # what the options say of the ego is not said of another vehicle
+    asked = replace(asked, ego_size=None)
+    drive, _ = open_drive(request.folder, asked, drive_id, other, trace=_log(request, asked, finding), map_=request.map)
+    kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
+    if kinds.get(other) in _NO_VEHICLES:
+        return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."
+    return judge.judge(drive, other, finding.row["ego_id"])
+
+
+def _log(request: IncidentRequest, asked: RunRequest, finding: NamedFinding) -> Path | None:
+    """Return where the log is, so that it is read again even if the database was kept; None: it is not where it was."""
+    if request.trace is not None:
+        return request.trace
+    known = asked.traces.get(finding.row["drive_id"])
+    return Path(known) if known is not None and Path(known).exists() else None
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader([_HERE, _REPORT_TEMPLATES]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    # the plan view is drawn as in the report
+    files = (_REPORT_TEMPLATES / "charts.css", _HERE / "sheet.css")
+    style = "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    environment.globals.update(
+        style=Markup(style),  # noqa: S704 - ours
+        policy=f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'",
+        version=__version__,
+        duckdb_version=duckdb.__version__,
+        anchor=anchor,
+        number=number,
+        figure=sheet.figure,
+    )
+    environment.filters["measure"] = measure
+    return environment

@@ -1,0 +1,114 @@
+"""Cuts the log around a finding, long enough that the clip alone gives the same finding, and converts it."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.convert import Clip, convert
+from drivelint.drive.trace import DriveInput
+from drivelint.engine.batch import drive_with_map
+from drivelint.engine.map_library import MapLibrary
+from drivelint.errors import DriveLintError, UsageError
+from drivelint.formats import expand_traces, read_trace
+from drivelint.formats.files import identify
+from drivelint.incident.finding import named_finding
+from drivelint.incident.judge import Judge, same_finding
+from drivelint.result import request as run_request
+from drivelint.result.load import load_result
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.convert import ConvertedTrace, ConvertRequest
+    from drivelint.incident.finding import NamedFinding
+    from drivelint.result.request import RunRequest
+
+SPANS_S: Final = ((15, 7), (30, 15), (60, 60))
+"""Seconds before the first and after the last failing step, tried in this order; then the whole log."""
+_S: Final = 1_000_000_000
+_IN_THE_LOG: Final = ("map", "map_dir", "map_offset", "mapping", "topic", "ego_size")
+"""Options that a converted log makes needless."""
+
+
+def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | None) -> ConvertedTrace:
+    """Convert the part of a log around a finding of a result; what the request does not say is as that result's run had it.
+
+    Errors: `UsageError` for a finding that is not there, for another log, or if not even the whole log gives the finding again;
+    else as `convert`.
+    """
+    finding = named_finding(load_result(folder), name)
+    asked = run_request.load(folder)
+    request = _as_asked(request, asked, finding)
+    judge = Judge.of_run(asked, [finding.row["rule_id"]], memory)
+    for before_s, after_s, clip in _clips(finding):
+        with TemporaryDirectory(prefix="drivelint-") as place:
+            tried = convert(replace(request, out=Path(place) / "clip", clip=clip))
+            same = _gives(tried.path, asked, finding, judge)
+        if same:
+            written = convert(replace(request, clip=clip))
+            return replace(written, notes=(*written.notes, _told(finding, clip, before_s, after_s)))
+    raise UsageError(
+        f"finding {finding.row['finding_id']}: not even the whole log, judged again, gives it: the tool, the rule or an option "
+        "has changed: check the drive again"
+    )
+
+
+def _as_asked(request: ConvertRequest, asked: RunRequest, finding: NamedFinding) -> ConvertRequest:
+    """Return the request with the ego of the finding, and with the run's options where it has none. Errors: `UsageError`."""
+    paths = expand_traces([request.trace])
+    if len(paths) == 1 and identify(paths[0]).sha256 != finding.drive["sha256"]:
+        raise UsageError(f"{paths[0]} is not the log of the finding, {finding.drive['file_name']}: its content differs")
+    unset = {field.name: field.default for field in fields(DriveInput)}
+    given = {name for name, default in unset.items() if getattr(request, name) != default}
+    # one given map replaces the other way to find it
+    given |= {"map", "map_dir"} if given & {"map", "map_dir"} else set()
+    options = {name: getattr(asked, name) for name in unset if name not in given}
+    return replace(request, **{**options, "ego": finding.row["ego_id"] or None})
+
+
+def _clips(finding: NamedFinding) -> Iterator[tuple[float | None, float | None, Clip]]:
+    """Yield the spans to try, from the first to the last failing step with more and more around it; None: to the log's end."""
+    name = f"{Path(finding.drive['file_name']).stem}-clip-{finding.row['finding_id'][:8]}"
+    start, end = finding.row["t_start_ns"], finding.row["t_end_ns"]
+    first = finding.start_ns
+    last = first + round((finding.drive["duration_s"] or 0.0) * _S)
+    for before_s, after_s in SPANS_S:
+        clip = Clip(name, max(start - before_s * _S, first), min(end + after_s * _S, last))
+        if (clip.from_ns, clip.to_ns) == (first, last):
+            break
+        yield before_s, after_s, clip
+    yield None, None, Clip(name, first, last)
+
+
+def _gives(path: Path, asked: RunRequest, finding: NamedFinding, judge: Judge) -> bool:
+    """Whether a clip gives the finding: of the same rule, profile and object, worst at the same step, by the same margin."""
+    defaults: dict[str, Any] = {field.name: field.default for field in fields(DriveInput) if field.name in _IN_THE_LOG}
+    options = replace(asked, **{**defaults, "ego": finding.row["ego_id"] or None})
+    try:
+        drive = drive_with_map(read_trace(path, options.ingest_options()), MapLibrary(options))
+        judged = judge.judge(drive, finding.row["ego_id"], finding.row["object_id"])
+    except DriveLintError:
+        return False  # a longer clip may do
+    return same_finding(judged.findings, finding.row) is not None
+
+
+def _told(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
+    """Return what the clip covers, in one sentence."""
+    from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
+    row = finding.row
+    if before_s is None:
+        span = "the whole log, as no part that was tried gives the finding"
+        whole = (row["t_start_ns"] - clip.from_ns, clip.to_ns - row["t_end_ns"])
+        if whole[0] <= SPANS_S[0][0] * _S and whole[1] <= SPANS_S[0][1] * _S:
+            span = "the whole log, which is no longer"
+    else:
+        span = f"{before_s:g} s before to {after_s:g} s after the finding"
+        if (before_s, after_s) != SPANS_S[0]:
+            span += f", as {SPANS_S[0][0]} s and {SPANS_S[0][1]} s do not give it"
+    return (
+        f"the clip is {from_s:.2f} s to {to_s:.2f} s of the drive ({span}); judged alone it gives the same finding of "
+        f"{row['rule_id']}"
+    )

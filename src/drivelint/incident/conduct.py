@@ -1,0 +1,108 @@
+"""What one party did around the moment, by the verdicts on it: rules broken, kept, not decided, and never asked."""
+
+from __future__ import annotations
+
+from textwrap import shorten
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.phrases import listed
+from drivelint.report.html.reasons import summarise_reasons, verdict_reason
+from drivelint.result.counts import SEVERITIES, grouped
+from drivelint.result.text import number, seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.result.text import Row
+
+_ROOM: Final = {"broken": 900, "kept": 320, "near": 100, "reasons": 600}
+"""Characters that fit on the page; the number of what is left out is told."""
+
+
+def conduct(
+    verdicts: Iterable[Row], findings: Iterable[Row], rules: Mapping[str, Row], span: tuple[int, int], start_ns: int
+) -> dict[str, Any]:
+    """Return what the verdicts and findings of one ego say about a span of the drive.
+
+    A rule counts once, by its worst verdict there: broken, not decided, kept, or never asked. `near`: of the rules that are kept,
+    those with a near miss. A verdict without a time is about the whole drive.
+    """
+    told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
+    by_rule = grouped(told["v"], lambda row: row["rule_id"])
+    found = grouped(told["f"], lambda row: row["rule_id"])
+    failed = {rule for rule, rows in by_rule.items() if any(row["verdict"] in {"fail", "error"} for row in rows)}
+    broken = sorted(found.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule))
+    rest = {rule: rows for rule, rows in sorted(by_rule.items()) if rule not in set(broken)}
+    undecided = {rule: rows for rule, rows in rest.items() if any(row["verdict"] == "unknown" for row in rows)}
+    kept = [
+        rule for rule, rows in rest.items() if rule not in undecided and any(row["verdict"] == "pass" for row in rows)
+    ]
+    titles = [rules[rule]["title"] for rule in kept]
+    near = [rules[rule]["title"] for rule in kept if any(row["near_miss"] for row in rest[rule])]
+    return {
+        "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
+        "broken": _fitting(
+            [_line(rules[rule], found.get(rule) or by_rule[rule], start_ns) for rule in broken], "broken"
+        ),
+        "kept": _fitting(titles, "kept"),
+        "near": _fitting(near, "near"),
+        "reasons": _fitting(_reasons(undecided, rules), "reasons"),
+        "never": len(rules) - len(broken) - len(undecided) - len(kept),
+    }
+
+
+class Fitting(NamedTuple):
+    """The first of some texts, and how many more there are."""
+
+    shown: list[str]
+    more: int
+
+
+def _fitting(texts: Sequence[str], part: str) -> Fitting:
+    """Return as many of the texts as fit, at least one."""
+    room, shown = _ROOM[part], list(texts[:1])
+    for text in texts[1:]:
+        if sum(len(each) + 2 for each in [*shown, text]) > room:
+            break
+        shown.append(text)
+    return Fitting(shown, len(texts) - len(shown))
+
+
+def measured(row: Row) -> str:
+    """Return what was measured and what was required; '' where the rule measures nothing."""
+    if row["observed"] is None and row["required"] is None:
+        return ""
+    return f"{number(row['observed'], row['unit'])}, required {number(row['required'], row['unit'])}".replace(
+        "-", "\u2212"
+    )
+
+
+def short_clause(clause: str) -> str:
+    """Return the number of a clause without what it says."""
+    return clause.partition(":")[0].partition(" (")[0]
+
+
+def _within(row: Row, span: tuple[int, int]) -> bool:
+    start, end = row["t_start_ns"], row["t_end_ns"]
+    return start is None or end is None or (start <= span[1] and end >= span[0])
+
+
+def _line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
+    """Return the worst finding of a rule in words, and how many there are."""
+    row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
+    profile = f" [{row['profile']}]" if row["profile"] else ""
+    times = f" ({len(rows)} findings)" if len(rows) > 1 else ""
+    about = f"{short_clause(rule['clause'])}, {rule['severity']}"
+    what = measured(row) or shorten(row["reason"], 120, placeholder=" ...")
+    return f"{rule['title']}{profile} ({about}): {seconds(row['t_worst_ns'], start_ns)}, {what}{times}"
+
+
+def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[str]:
+    """Return why rules are not decided, in words, the reason of most rules first."""
+    unknown = [row for rows in undecided.values() for row in rows if row["verdict"] == "unknown"]
+    told = []
+    for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
+        titles = [rules[rule]["title"] for rule in sorted({row["rule_id"] for row in rows})]
+        why = shorten(summarise_reasons(verdict_reason(row) for row in rows), 100, placeholder=" ...")
+        told.append((-len(titles), why, f"{listed(titles, 3)}: {why}"))
+    return [text for *_, text in sorted(told)]

@@ -1,0 +1,70 @@
+"""Finds the finding that a user names, with its drive and rule."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.errors import UsageError
+from drivelint.explain.target import VerdictFilter, find_verdict
+
+if TYPE_CHECKING:
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
+
+CONTACT: Final = "contact"
+"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+_SAME: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
+
+
+@dataclass(frozen=True)
+class NamedFinding:
+    """One finding of a result: its rows of `finding`, `drive` and `rule`."""
+
+    row: Row
+    drive: Row
+    rule: Row
+
+    @property
+    def is_contact(self) -> bool:
+        """Whether it is a contact."""
+        return CONTACT in self.rule["tags"]
+
+    @property
+    def moment_ns(self) -> int:
+        """The time that the sheet counts from: a contact's first step, else the worst step."""
+        return int(self.row["t_start_ns" if self.is_contact else "t_worst_ns"])
+
+    @property
+    def start_ns(self) -> int:
+        """The drive's first time stamp."""
+        return self.drive["t_start_ns"] or 0
+
+    @property
+    def parties(self) -> list[str]:
+        """The ego, and the other actor if there is one."""
+        return [name for name in (self.row["ego_id"], self.row["object_id"]) if name is not None]
+
+
+def named_finding(result: Result, name: str) -> NamedFinding:
+    """Return the finding that `name` means, as `explain` takes it; of a rule, the worst.
+
+    Errors: `UsageError` where nothing is called so, or where the verdict is no finding.
+    """
+    target = find_verdict(result, name, VerdictFilter())
+    row = target.finding or _worst_of(target.verdict, result)
+    drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+    return NamedFinding(row, drives[row["drive_id"]], rules[row["rule_id"]])
+
+
+def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
+    """Return the worst finding of a verdict. Errors: `UsageError`."""
+    rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _SAME)]
+    about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
+    if verdict["verdict"] != "fail" or not about:
+        raise UsageError(
+            f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict']}, and no finding: "
+            "name a finding by its id, or a rule that failed"
+        )
+    return min(about, key=lambda row: (row["margin"] is not None, row["margin"], row["t_worst_ns"], row["finding_id"]))

@@ -1,0 +1,86 @@
+"""Judges one drive again with one ego, by the rules of a result, and takes that ego's steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from drivelint import catalogue
+from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import JudgingSession
+from drivelint.errors import UsageError
+from drivelint.result import collect
+from drivelint.sql import store
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    import duckdb
+    import pyarrow as pa
+
+    from drivelint.catalogue import Rule
+    from drivelint.engine.batch import Drive
+    from drivelint.result.request import RunRequest
+    from drivelint.result.text import Row
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The rows of `verdict` and `finding` of one ego, and the rows of `queries/incident/step.sql`."""
+
+    verdicts: Sequence[Row]
+    findings: Sequence[Row]
+    steps: pa.Table
+
+
+@dataclass(frozen=True)
+class Judge:
+    """The rules of a result with the parameters and profiles of its run."""
+
+    rules: Sequence[Rule]
+    params: dict[str, dict[str, Any]]
+    profiles: pa.Table
+    memory: int | None = DEFAULT_MEMORY
+
+    @classmethod
+    def of_run(cls, asked: RunRequest, rule_ids: Collection[str], memory: int | None) -> Judge:
+        """Return the judge of a run, by these of its rules. Errors: `UsageError` for a rule that is gone."""
+        known = catalogue.load_rules(asked.rules_dirs)
+        if gone := sorted(set(rule_ids) - known.keys()):
+            raise UsageError(f"rule {gone[0]} is not in the catalogue any more: check the drives again")
+        rules = [known[rule_id] for rule_id in sorted(rule_ids)]
+        mine = [each for each in asked.params if each.partition("=")[0].strip().rpartition(".")[0] in set(rule_ids)]
+        profiles = profile_table(load_profiles(asked.rules_dirs), asked.profiles)
+        return cls(rules, catalogue.parse_params(rules, mine), profiles, memory)
+
+    def judge(self, drive: Drive, ego_id: str, object_id: str | None) -> Judged:
+        """Judge a drive of one ego."""
+        steps: list[pa.Table] = []
+
+        def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
+            values = {"ego_id": ego_id, "object_id": object_id}
+            steps.append(con.execute(statement("incident/step"), values).to_arrow_table())
+
+        with store.workspace(self.memory) as con:
+            store.insert(con, "profile", self.profiles)
+            memory = Memory(con, self.memory)
+            session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory)
+            session.judge([drive])
+            session.close()
+            verdicts, findings = (memory.run_job(job).to_pylist() for job in (collect.verdicts, collect.findings))
+        return Judged(verdicts, findings, steps[-1])
+
+
+def same_finding(findings: Sequence[Row], wanted: Row, *, tolerance: float = 1e-6) -> Row | None:
+    """Return the finding that has the rule, profile, object, worst step and margin of `wanted`; None: there is none."""
+    same = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
+    for row in findings:
+        if all(row[key] == wanted[key] for key in same) and _close(row["margin"], wanted["margin"], tolerance):
+            return row
+    return None
+
+
+def _close(a: float | None, b: float | None, tolerance: float) -> bool:
+    return a == b if a is None or b is None else abs(a - b) <= tolerance

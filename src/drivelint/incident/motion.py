@@ -1,0 +1,172 @@
+"""How two parties moved against each other: gap, closing speed, who slowed, and a table second by second."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.arrays import Floats, Mask, floats
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pyarrow as pa
+
+BEFORE_S: Final = 15
+AFTER_S: Final = 2
+"""The table runs from 15 s before the moment to 2 s after it."""
+SLOWING_MPS2: Final = 1.0
+"""Who slows by less, as a mean of half a second, may coast."""
+_MEAN_S: Final = 0.5
+_MERGE_S: Final = 0.5
+"""Two stretches of slowing with a shorter break between them are one."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
+
+    `t`: seconds from the moment; `gap`: box to box in m, negative: depth of overlap; `closing`: speed at which the line
+    between the box centres shortens; `relative`: length of the difference of the velocities; `aside`: how far the other's
+    centre is left of the ego's axis; `lane_offset`: left of the middle of the ego's lane, as the ego drives.
+    """
+
+    t: Floats
+    speed: tuple[Floats, Floats]
+    lane_offset: tuple[Floats, Floats]
+    gap: Floats
+    closing: Floats
+    relative: Floats
+    aside: Floats
+
+    @classmethod
+    def of_steps(cls, steps: pa.Table, moment_ns: int) -> Motion:
+        """Return the motion in rows of `queries/incident/step.sql`."""
+        c = {name: floats(steps[name]) for name in steps.column_names if name != "t_ns"}
+        east, north = c["object_x_m"] - c["x_m"], c["object_y_m"] - c["y_m"]
+        de, dn = c["object_vx_mps"] - c["vx_mps"], c["object_vy_mps"] - c["vy_mps"]
+        far = np.hypot(east, north)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            closing = -(east * de + north * dn) / far
+        exact = c["clearance_m"]
+        return cls(
+            t=(steps["t_ns"].to_numpy() - moment_ns) / 1e9,
+            speed=(c["speed_mps"], c["object_speed_mps"]),
+            lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
+            gap=np.where(np.isnan(exact), _apart(c), exact),
+            closing=closing,
+            relative=np.hypot(de, dn),
+            aside=north * np.cos(c["yaw_rad"]) - east * np.sin(c["yaw_rad"]),
+        )
+
+    @property
+    def step_s(self) -> float:
+        """The usual time from one step to the next."""
+        return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.0
+
+    def at(self, t: float) -> int | None:
+        """Return the step nearest to a time; None: none is within half a usual step, or half a second."""
+        i = int(np.abs(self.t - t).argmin())
+        return i if abs(self.t[i] - t) <= min(self.step_s / 2, 0.5) + 1e-6 else None
+
+    def last_before(self, t: float) -> int | None:
+        """Return the last step before a time; None: there is none."""
+        i = int(np.searchsorted(self.t, t - 1e-9)) - 1
+        return i if i >= 0 else None
+
+    def acceleration(self, party: int, i: int, over_s: float) -> float:
+        """Return the mean acceleration of a party over the time before a step; NaN: not known over all of it."""
+        t, v = self.t, self.speed[party]
+        start = t[i] - over_s
+        within = (t >= start - 1.5 * self.step_s) & (t <= t[i])
+        if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_S).any():
+            return float("nan")
+        return float((v[i] - np.interp(start, t, v)) / over_s)
+
+
+class Slowing(NamedTuple):
+    """A stretch in which a party slows: its times, the speeds at both, and the hardest deceleration (mean of half a second)."""
+
+    start_s: float
+    end_s: float
+    from_mps: float
+    to_mps: float
+    hardest_mps2: float
+
+    @property
+    def mean_mps2(self) -> float:
+        """The mean deceleration."""
+        return (self.from_mps - self.to_mps) / max(self.end_s - self.start_s, 1e-9)
+
+
+def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
+    """Return the stretches in which a party slows by `SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
+    t, v = motion.t, motion.speed[party]
+    steps = np.flatnonzero((t >= until_s - BEFORE_S) & (t <= until_s + 1e-9))
+    mean = {int(i): motion.acceleration(party, int(i), _MEAN_S) for i in steps}
+    hard = [i for i in steps.tolist() if mean[i] <= -SLOWING_MPS2]
+    runs: list[list[int]] = []
+    for i in hard:
+        if runs and t[i] - t[runs[-1][-1]] <= _MERGE_S + motion.step_s:
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    found = []
+    for run in runs:
+        # the mean of the half second before says that it has begun by then
+        first = run[0]
+        while first > 0 and t[run[0]] - t[first - 1] <= _MEAN_S + 1e-9 and v[first - 1] > v[first]:
+            first -= 1
+        found.append(
+            Slowing(float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run))
+        )
+    return found
+
+
+def second_by_second(motion: Motion, before_s: float | None) -> list[dict[str, Any]]:
+    """Return a row per full second from 15 s before to 2 s after the moment, and that of the last step before a contact."""
+    return [_row(motion, i, t, t == before_s) for i, t in _wanted(motion, before_s)]
+
+
+def _wanted(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float]]:
+    times = sorted({float(t) for t in range(-BEFORE_S, AFTER_S + 1)} | ({before_s} if before_s is not None else set()))
+    for t in times:
+        if (i := motion.at(t)) is not None:
+            yield i, t
+
+
+def _row(motion: Motion, i: int, t: float, last_before: bool) -> dict[str, Any]:
+    return {
+        "i": i,
+        "t": t,
+        "last_before": last_before,
+        "moment": t == 0,
+        "speed": [float(v[i]) for v in motion.speed],
+        "accel": [motion.acceleration(party, i, 1.0) for party in (0, 1)],
+        "offset": [float(v[i]) for v in motion.lane_offset],
+        "gap": float(motion.gap[i]),
+        "closing": float(motion.closing[i]),
+        "aside": float(motion.aside[i]),
+    }
+
+
+def _apart(c: dict[str, Floats]) -> Floats:
+    """Return the distance from box to box in m; 0 where they overlap."""
+    a, b = (_boxes(c, prefix) for prefix in ("", "object_"))
+    known: Mask = np.isfinite(np.concatenate([a, b], axis=1)).all(axis=(1, 2))
+    found = np.full(len(a), np.nan)
+    found[known] = shapely.distance(shapely.polygons(a[known]), shapely.polygons(b[known]))
+    return found
+
+
+def _boxes(c: dict[str, Floats], prefix: str) -> Floats:
+    """Return the corners of the boxes, shape (n, 4, 2)."""
+    x, y, yaw, length, width = (c[f"{prefix}{name}"] for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m"))
+    corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+    ahead = np.stack([length / 2 * u for u, _ in corners], axis=1)
+    left = np.stack([width / 2 * w for _, w in corners], axis=1)
+    cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+    return np.stack([x[:, None] + ahead * cos - left * sin, y[:, None] + ahead * sin + left * cos], axis=2)

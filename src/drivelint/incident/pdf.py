@@ -1,0 +1,55 @@
+"""Prints a page to PDF with an installed Chromium: no library on PyPI draws this page without libraries of the system."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from drivelint.errors import DriveLintError, ExitCode, UsageError
+
+_BROWSERS: Final = (
+    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge", "msedge",
+)  # fmt: skip
+_PATIENCE_S: Final = 120
+_DATE: Final = re.compile(rb"(/(?:CreationDate|ModDate) \(D:)\d{14}")
+
+
+class PdfError(DriveLintError):
+    """The browser did not print the page."""
+
+    exit_code = ExitCode.TEMPFAIL
+
+
+def find_browser() -> str:
+    """Return the path of a browser that prints. Errors: `UsageError` that says what to install."""
+    found = next((path for name in _BROWSERS if (path := shutil.which(name))), None)
+    if found is None:
+        raise UsageError(
+            "no Chromium is installed, which prints the PDF: install chromium (or Google Chrome), or print the HTML page "
+            "from any browser on A4"
+        )
+    return found
+
+
+def print_page(html: bytes, browser: str) -> bytes:
+    """Return a page as PDF, the same bytes for the same page and browser. Errors: `PdfError`."""
+    with TemporaryDirectory(prefix="drivelint-") as folder:
+        page, out = Path(folder, "page.html"), Path(folder, "page.pdf")
+        page.write_bytes(html)
+        flags = ["--headless=new", "--disable-gpu", "--no-first-run", f"--user-data-dir={folder}/profile"]
+        # its sandbox refuses to run as the superuser, as in a container; the page is ours and loads nothing
+        flags += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
+        command = [browser, *flags, "--no-pdf-header-footer", f"--print-to-pdf={out}", page.as_uri()]
+        try:
+            subprocess.run(command, check=True, capture_output=True, timeout=_PATIENCE_S)  # noqa: S603 - no shell, our words
+            content = out.read_bytes()
+        except (OSError, subprocess.SubprocessError) as error:
+            raise PdfError(
+                f"{browser} did not print the page: {str(error).splitlines()[0]}: print the HTML page"
+            ) from error
+    return _DATE.sub(rb"\g<1>19700101000000", content)

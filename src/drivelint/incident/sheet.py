@@ -1,0 +1,303 @@
+"""What the two pages of an incident sheet say, as plain values for the template."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+from textwrap import shorten
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.incident.command import commands
+from drivelint.incident.conduct import conduct, measured
+from drivelint.incident.judge import same_finding
+from drivelint.incident.motion import BEFORE_S, Motion, second_by_second, slowings
+from drivelint.incident.record import held_elements
+from drivelint.incident.strips import strips
+from drivelint.report.html.plan_view import actor_shapes, plan_view
+from drivelint.report.html.road import Road
+from drivelint.result.certainty import certainty
+from drivelint.result.text import number, seconds, utc_at
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import pyarrow as pa
+
+    from drivelint.engine.batch import Drive
+    from drivelint.incident.finding import NamedFinding
+    from drivelint.incident.judge import Judged
+    from drivelint.incident.motion import Slowing
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+    from drivelint.result.text import Row
+
+SPAN_S: Final = (15, 7)
+"""What each party did is told from so long before the moment to so long after it."""
+LETTERS: Final = ("A", "B")
+_NO_NUMBER: Final = "-"
+_KMH, _MPH = 3.6, 1 / 0.44704
+_SPACES: Final = "danger_space"
+_LONGEST: Final = 330
+
+
+@dataclass(frozen=True)
+class Case:
+    """Everything behind a sheet. `others`: what was judged of the second party, or in a sentence why it was not; None: there is none."""
+
+    result: Result
+    asked: RunRequest
+    finding: NamedFinding
+    drive: Drive
+    again: Judged
+    others: Judged | str | None
+    source: str
+
+
+def content(case: Case) -> dict[str, Any]:
+    """Return everything that the template shows."""
+    finding, row = case.finding, case.finding.row
+    motion = Motion.of_steps(case.again.steps, finding.moment_ns)
+    before = motion.last_before(0.0) if finding.is_contact else None
+    at = motion.at(0.0) if before is None else before
+    before_s = None if before is None else float(motion.t[before])
+    return {
+        "row": row,
+        "rule": finding.rule,
+        "drive": finding.drive,
+        "what": _what(finding),
+        "when": seconds(finding.moment_ns, finding.start_ns),
+        "worst": seconds(row["t_worst_ns"], finding.start_ns),
+        "stretch": None
+        if row["t_start_ns"] == row["t_end_ns"]
+        else [seconds(row[key], finding.start_ns) for key in ("t_start_ns", "t_end_ns")],
+        "utc": utc_at(finding.moment_ns, finding.drive),
+        "road_id": _road_of(case),
+        "contact": finding.is_contact,
+        "before": None if before_s is None else f"{-before_s:.2f} s before",
+        "parties": [_party(case, motion, no, at, before_s) for no in range(len(finding.parties))],
+        "closing": None if at is None else _closing(float(motion.closing[at])),
+        "relative": None if at is None else speed(float(motion.relative[at])),
+        "gap": None if at is None else _metres(float(motion.gap[at])),
+        "least": _least_gap(motion, finding),
+        "contacts": _contacts(case),
+        **_plan(case),
+        "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
+        "seconds": [
+            {**each, "drive_s": (finding.moment_ns - finding.start_ns) / 1e9 + float(motion.t[each["i"]])}
+            for each in second_by_second(motion, before_s)
+        ],
+        "step_s": motion.step_s,
+        "conduct": _conduct(case),
+        "span": SPAN_S,
+        "sure": _sure(row),
+        "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
+        "quality": [check["message"] for check in finding.drive["quality"] if check["severity"] != "info"],
+        "again": same_finding(case.again.findings, row),
+        "source": case.source,
+        "commands": commands(case.asked, finding),
+        "rules_sha256": _rules_hash(case.result),
+        "n_rules": case.result.rules.num_rows,
+    }
+
+
+def speed(mps: float) -> str:
+    """Return a speed in m/s, km/h and mph."""
+    if math.isnan(mps):
+        return "not known"
+    return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
+
+
+def _closing(mps: float) -> str:
+    return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
+
+
+def figure(value: float | None, digits: int = 2) -> str:
+    """Return a number of the table, or a dash where it is not known."""
+    if value is None or math.isnan(value):
+        return _NO_NUMBER
+    text = f"{value:.{digits}f}"
+    return text.removeprefix("-") if float(text) == 0 else text.replace("-", "\u2212")
+
+
+def _what(finding: NamedFinding) -> str:
+    """Return what was found, in one sentence."""
+    row, rule = finding.row, finding.rule
+    said = measured(row)
+    if said and row["margin"] is not None:
+        said = f"{rule['observes'] or 'measured'}: {said}; missed by {number(-row['margin'], row['unit'])}"
+    reason = "" if row["reason_measures"] and said else row["reason"]
+    text = "; ".join(part for part in (reason, said) if part)
+    return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
+
+
+def _names(finding: NamedFinding) -> list[str]:
+    return [f"{letter} ({who})" for letter, who in zip(LETTERS, finding.parties, strict=False)]
+
+
+def _metres(value: float) -> str:
+    return "not known" if math.isnan(value) else f"{value:.2f} m"
+
+
+def _party(case: Case, motion: Motion, number: int, at: int | None, before_s: float | None) -> dict[str, Any]:
+    """Return one party: who it is, how fast it was, and whether it slowed."""
+    actor_id = case.finding.parties[number]
+    tables = case.drive.trace.tables
+    about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
+    v = motion.speed[number]
+    window = v[(motion.t >= -BEFORE_S - 1e-9) & (motion.t <= (0.0 if before_s is None else before_s) + 1e-9)]
+    fastest = window[~np.isnan(window)].max(initial=-math.inf)
+    size = [about.get(name) for name in ("length_m", "width_m", "height_m")]
+    return {
+        "letter": LETTERS[number],
+        "id": actor_id,
+        "ego": number == 0,
+        "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
+        "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
+        "speed": "not known" if at is None else speed(float(v[at])),
+        "fastest": "not known" if math.isinf(fastest) else speed(float(fastest)),
+        "slowed": _slowed(slowings(motion, number, 0.0 if before_s is None else before_s), before_s),
+        "lights": _brake_lights(case, actor_id),
+    }
+
+
+def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
+    """Return the last stretches of slowing in words."""
+    told = []
+    for each in found[-2:]:
+        until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
+        told.append(
+            f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, "
+            f"hardest {each.hardest_mps2:.1f}, mean {each.mean_mps2:.1f} m/s\u00b2".replace("-", "\u2212")
+        )
+    return told
+
+
+def _brake_lights(case: Case, actor_id: str) -> str:
+    """Return when the brake lights were on in the 15 s before the moment, in words."""
+    moment = case.finding.moment_ns
+    states = [
+        (t_ns, light)
+        for who, t_ns, light in zip(
+            *(case.drive.trace.tables["actor_state"][name].to_pylist() for name in ("actor_id", "t_ns", "brake_light")),
+            strict=True,
+        )
+        if who == actor_id and moment - BEFORE_S * 10**9 <= t_ns <= moment
+    ]
+    known = [(t_ns, light) for t_ns, light in states if light is not None]
+    if not known:
+        return "not recorded"
+    on = [t_ns for t_ns, light in known if light != "off"]
+    partly = "" if len(known) == len(states) else " (not known at every step)"
+    if not on:
+        return f"off throughout{partly}"
+    return f"on from {(on[0] - moment) / 1e9:+.2f} s, at {len(on)} of {len(states)} steps{partly}".replace(
+        "-", "\u2212"
+    )
+
+
+def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
+    """Return the least gap of the two in the whole drive, in words; None: not known."""
+    known = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
+    if not known:
+        return None
+    i = min(known, key=lambda i: (motion.gap[i], i))
+    at = (float(motion.t[i]) * 1e9 + finding.moment_ns - finding.start_ns) / 1e9
+    deep = f"boxes overlap by {-motion.gap[i]:.2f} m" if motion.gap[i] < 0 else f"{motion.gap[i]:.2f} m"
+    return f"{deep} at {at:.2f} s"
+
+
+def _contacts(case: Case) -> list[str]:
+    """Return the contacts of the two in this drive that are findings of their own, in words."""
+    mine = case.finding
+    tagged = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist() if "contact" in rule["tags"]}
+    return [
+        f"{tagged[row['rule_id']]} at {seconds(row['t_start_ns'], mine.start_ns)} (finding {row['finding_id'][:8]})"
+        for row in case.result.findings.to_pylist()
+        if row["drive_id"] == mine.row["drive_id"]
+        and row["rule_id"] in tagged
+        and row["finding_id"] != mine.row["finding_id"]
+        and row["object_id"] is not None
+        and {row["ego_id"], row["object_id"]} == set(mine.parties)
+    ][:2]
+
+
+def _conduct(case: Case) -> list[dict[str, Any]]:
+    """Return what each party did, by the verdicts on it as ego."""
+    finding = case.finding
+    rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
+    span = (finding.moment_ns - SPAN_S[0] * 10**9, finding.moment_ns + SPAN_S[1] * 10**9)
+    found = []
+    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.others), strict=False):
+        told = {
+            "letter": letter,
+            "id": who,
+            "ego": letter == LETTERS[0],
+            "not_judged": judged if isinstance(judged, str) else "",
+        }
+        if judged is not None and not isinstance(judged, str):
+            told |= conduct(judged.verdicts, judged.findings, rules, span, finding.start_ns)
+        found.append(told)
+    return found
+
+
+def _sure(row: Row) -> dict[str, Any]:
+    return {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"]}
+
+
+def _plan(case: Case) -> dict[str, Any]:
+    """Return the plan view of the finding's worst step, with the lanes and shapes in it; None and nothing: no scene was kept."""
+    finding = case.finding
+    at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
+    scene, *_ = [*_at(case.result.scenes, at), None]
+    if scene is None:
+        return {"plan": None, "tiles": [], "shapes": []}
+    road = Road(case.result.lanes)
+    spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
+    plan = plan_view(scene, road, set(finding.parties[1:]), spaces)
+    tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
+    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([scene])}
+
+
+def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
+    """Return the rows of a table of evidence at a moment of an ego."""
+    return [row for row in table.to_pylist() if (row["drive_id"], row["ego_id"], row["t_ns"]) == at]
+
+
+def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
+    """Return the distances that rules required of the two, over time, and the finding's own measure if it is something else.
+
+    A measure of a contact in metres is the gap, which is drawn anyway.
+    """
+    rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
+    units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
+    about = case.finding.row
+    gaps, own = [], None
+    for row in case.result.courses.to_pylist():
+        rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
+        if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
+            continue
+        title = rule["title"] + (f" [{row['profile']}]" if row["profile"] else "")
+        if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
+            gaps.append({**row, "title": title})
+        elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):
+            own = {**row, "title": f"{rule['observes'] or title}, {unit}"}
+    return gaps, own if own and any(value is not None for value in own["observed"]) else None
+
+
+def _road_of(case: Case) -> str | None:
+    """Return the map's road of the finding's lanelet; None: there is none, or it is called as the lanelet."""
+    lanelet, environment = case.finding.row["lanelet_id"], case.drive.environment
+    if lanelet is None or environment is None:
+        return None
+    rows: Mapping[str, Any] = environment.tables["lanelet"].select(["lanelet_id", "road_id"]).to_pydict()
+    roads = dict(zip(rows["lanelet_id"], rows["road_id"], strict=True))
+    return roads.get(lanelet)
+
+
+def _rules_hash(result: Result) -> str:
+    """Return the hash of the ids and versions of all rules, a line each, in the order of the ids."""
+    rows = sorted((rule["rule_id"], rule["rule_version"]) for rule in result.rules.to_pylist())
+    return hashlib.sha256("".join(f"{rule} {version}\n" for rule, version in rows).encode()).hexdigest()

@@ -1,0 +1,106 @@
+"""Charts under the plan view, on one time axis: speeds, gap, and what the rule measured against what it requires."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.report.html.svg import Axis, axis_around, num
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.incident.motion import Motion
+    from drivelint.result.text import Row
+
+WIDTH: Final = 700
+HEIGHT: Final = 70
+_LEFT, _RIGHT, _TOP, _BOTTOM = 46.0, WIDTH - 8.0, 6.0, HEIGHT - 16.0
+_FROM_S, _TO_S = -15.0, 7.0
+_HOLE_STEPS: Final = 3
+_MOST_REQUIRED: Final = 3
+
+
+class _Line(NamedTuple):
+    """One line of a chart: its times in seconds from the moment, and its values, NaN where one is not known."""
+
+    kind: str
+    name: str
+    t: list[float]
+    values: list[float]
+
+
+def strips(
+    motion: Motion, parties: Sequence[str], gaps: Sequence[Row], own: Row | None, moment_ns: int
+) -> list[dict[str, Any]]:
+    """Return the charts of the span from 15 s before to 7 s after the moment, as far as the drive goes.
+
+    `gaps`: rows of the table `course` that require a distance between the two, each with its `title`; `own`: the course of what
+    the finding measures, if it is something else.
+    """
+    shown = [i for i, t in enumerate(motion.t) if _FROM_S - 1e-9 <= t <= _TO_S + 1e-9]
+    t = [float(motion.t[i]) for i in shown]
+    x = Axis(t[0], t[-1], _LEFT, _RIGHT)
+    speeds = [
+        _Line(kind, name, t, [float(v[i]) for i in shown])
+        for kind, name, v in zip(("ego", "met"), parties, motion.speed, strict=False)
+    ]
+    charts = [_chart("Speed, m/s", speeds, x, from_zero=True)]
+    if len(parties) > 1:
+        lines = [_Line("gap", "gap", t, [float(motion.gap[i]) for i in shown])]
+        lines += [
+            _course_line(row, "required", f"required: {row['title']}", moment_ns, t) for row in gaps[:_MOST_REQUIRED]
+        ]
+        charts.append(_chart("Gap from box to box, m", lines, x, from_zero=True))
+    if own is not None:
+        lines = [_course_line(own, name, name, moment_ns, t) for name in ("observed", "required")]
+        charts.append(_chart(own["title"][:1].upper() + own["title"][1:], lines, x))
+    return [chart for chart in charts if chart["lines"]]
+
+
+def _course_line(row: Row, column: str, name: str, moment_ns: int, t: Sequence[float]) -> _Line:
+    """Return a column of a course within the span of the steps `t`."""
+    at = [(t_ns - moment_ns) / 1e9 for t_ns in row["t_ns"]]
+    inside = [i for i, s in enumerate(at) if t[0] <= s <= t[-1]]
+    values = [math.nan if row[column][i] is None else float(row[column][i]) for i in inside]
+    return _Line("limit" if column == "required" else "gap", name, [at[i] for i in inside], values)
+
+
+def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = False) -> dict[str, Any]:
+    known = [v for line in lines for v in line.values if math.isfinite(v)]
+    known += [0.0] if from_zero and known else []
+    y = axis_around(known or [0.0], _BOTTOM, _TOP)
+    drawn = [
+        {"kind": line.kind, "name": line.name, "d": _path(line, x, y), "dots": _dots(line, x, y)}
+        for line in lines
+        if any(math.isfinite(v) for v in line.values)
+    ]
+    return {
+        "title": title,
+        "height": HEIGHT,
+        "lines": drawn,
+        "x_ticks": x.ticks(12),
+        "y_ticks": y.ticks(4),
+        "zero": num(x.at(0.0)),
+    }
+
+
+def _dots(line: _Line, x: Axis, y: Axis) -> list[tuple[str, str]]:
+    """Return the points of what was measured at so few steps that a line would not show."""
+    points = [(num(x.at(at)), num(y.at(v))) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)]
+    return points if len(points) < _HOLE_STEPS else []
+
+
+def _path(line: _Line, x: Axis, y: Axis) -> str:
+    """Return the path through the values, broken where one is not known or steps are missing."""
+    steps = sorted(b - a for a, b in pairwise(line.t))
+    hole = _HOLE_STEPS * steps[len(steps) // 2] if steps else math.inf
+    parts, last = [], None
+    for at, v in zip(line.t, line.values, strict=True):
+        if not math.isfinite(v):
+            last = None
+            continue
+        parts.append(f"{'M' if last is None or at - last > hole else 'L'}{num(x.at(at))},{num(y.at(v))}")
+        last = at
+    return "".join(parts)

@@ -1,0 +1,31 @@
+"""The overtake fixture, checked once by the Highway Code, and the cases of its findings, each judged once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.incident import IncidentRequest, open_case
+from tests.explain.checked import check
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.incident.sheet import Case
+
+CaseOf = Callable[[str], "Case"]
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("incidents")
+    check(out, rules=("ukhc",), params=())
+    return out
+
+
+@pytest.fixture(scope="session")
+def case_of(folder: Path) -> CaseOf:
+    return cache(lambda name: open_case(IncidentRequest(name, folder)))

@@ -1,0 +1,163 @@
+"""A clip of a log, judged alone, gives the finding that it was cut for."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint import cli, demo
+from drivelint.convert import ConvertRequest
+from drivelint.drive.cut import cut_trace
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import UsageError
+from drivelint.formats import read_trace
+from drivelint.incident import clip
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from drivelint.run import CheckOptions
+from drivelint.run import check as run_check
+from drivelint.sql.store import owned_table
+from tests.explain.checked import OVERTAKE
+from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from drivelint.result.model import Result
+
+MARGIN = 1e-6
+
+
+def checked(out: Path, *logs: Path, **options: Any) -> Result:
+    result = run_check(
+        CheckOptions(tuple(map(str, logs)), rules=("ukhc",), out=out, annotate=False, **options), Silent()
+    )
+    write(result, out)
+    return result
+
+
+def findings(result: Result) -> list[dict[str, Any]]:
+    return [dict(row) for row in result.findings.to_pylist()]
+
+
+def judged_alone(path: Path, rule_id: str) -> list[dict[str, Any]]:
+    """Return the findings of a rule in a clip, by a check as a user runs it: no map and no mapping is given."""
+    return findings(run_check(CheckOptions((str(path),), rules=(rule_id,)), Silent()))
+
+
+def same(found: list[dict[str, Any]], wanted: dict[str, Any]) -> bool:
+    keys = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
+    return any(
+        all(row[key] == wanted[key] for key in keys)
+        and (row["margin"] == wanted["margin"] or abs(row["margin"] - wanted["margin"]) < MARGIN)
+        for row in found
+    )
+
+
+def cut(log: Path, folder: Path, out: Path, finding: dict[str, Any], to: Literal["mcap", "parquet"] = "mcap") -> Path:
+    return clip.write_clip(ConvertRequest(str(log), to, out), finding["finding_id"], folder, None).path
+
+
+def worst_per_rule(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return list({row["rule_id"]: row for row in sorted(rows, key=lambda row: -(row["margin"] or 0))}.values())
+
+
+def test_demo_findings_come_again(tmp_path: Path) -> None:
+    files = {path.name: path for path in demo.write(tmp_path / "demo")}
+    log = files["collision-25mph.mcap"]
+    result = checked(tmp_path / "out", log, map=files["road.xodr"])
+    rows = worst_per_rule([row for row in findings(result) if row["severity"] == "critical"])
+    assert len(rows) >= 3
+    for n, row in enumerate(rows):
+        path = cut(log, tmp_path / "out", tmp_path / f"clip{n}", row)
+        assert path.name == f"collision-25mph-clip-{row['finding_id'][:8]}.mcap"
+        assert same(judged_alone(path, row["rule_id"]), row), row["rule_id"]
+
+
+@pytest.mark.parametrize("to", ["mcap", "parquet"])
+def test_case_study_findings_come_again(tmp_path: Path, to: Literal["mcap", "parquet"]) -> None:
+    log = shared("overtake_case_study/near_miss.csv")
+    road = shared("overtake_case_study/t_junction.xodr")
+    result = checked(tmp_path / "out", log, map=road, mapping="carla-testbench")
+    row = next(row for row in findings(result) if row["unit"] == "m/s2")  # the touch that no box shows
+    path = cut(log, tmp_path / "out", tmp_path / "clip", row, to)
+    assert same(judged_alone(path, row["rule_id"]), row)
+    states = read_trace(path, IngestOptions()).tables["actor_state"]["t_ns"]
+    length_s = (pc.max(states).as_py() - pc.min(states).as_py()) / 1e9
+    whole_s = result.drives["duration_s"][0].as_py()
+    assert length_s < whole_s
+    assert pc.max(states).as_py() == row["t_end_ns"] + 7 * 10**9
+
+
+def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An overtake that began before the clip is none: a span too short gives way to a longer one."""
+    log, out = OVERTAKE / "near_miss.csv", tmp_path / "out"
+    result = checked(out, log, map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"))
+    row = next(row for row in findings(result) if row["rule_id"].endswith("safe-distance-ahead"))
+    spans = ((0, 0.1), (5, 5))
+    monkeypatch.setattr(clip, "SPANS_S", spans)
+    written = clip.write_clip(ConvertRequest(str(log), "mcap", tmp_path / "clip"), row["finding_id"], out, None)
+    assert "as 0 s and 0.1 s do not give it" in written.notes[-1]
+    assert same(judged_alone(written.path, row["rule_id"]), row)
+
+
+def test_another_log_is_refused(folder: Path, tmp_path: Path) -> None:
+    request = ConvertRequest(str(OVERTAKE / "safe.csv"), "mcap", tmp_path)
+    with pytest.raises(UsageError, match="not the log of the finding"):
+        clip.write_clip(request, "no-collision@collision", folder, None)
+
+
+def test_clip_and_result_belong_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    log = str(OVERTAKE / "safe.csv")
+    monkeypatch.setattr(
+        sys, "argv", ["drivelint", "convert", log, "--to", "mcap", "--out", str(tmp_path), "--clip", "x"]
+    )
+    with pytest.raises(SystemExit) as left:
+        cli.main()
+    assert left.value.code == 2
+    assert "--clip and --in belong together" in capfd.readouterr().err
+
+
+def test_what_holds_at_the_start_stays() -> None:
+    """A light that turned red before the clip is red in it, and an automated driver that was switched on is on."""
+    path = OVERTAKE / "safe.csv"
+    trace = read_trace(path, IngestOptions(mapping=str(OVERTAKE / "mapping.toml")))
+    signals = {
+        "signal_id": ["a", "a", "a", "b"],
+        "t_ns": [0, 10**9, 5 * 10**9, 0],
+        "state": ["green", "red", "green", "red"],
+    }
+    events = {"t_ns": [0, 10**8], "actor_id": ["ego"] * 2, "event": ["engaged"] * 2, "value": ["off", "on"]}
+    trace.tables["signal_state"] = owned_table("signal_state", trace.drive_id, signals)
+    trace.tables["declared_event"] = owned_table("declared_event", trace.drive_id, events)
+    log = trace.tables["data_log"]
+    at = log.schema.get_field_index("utc_start_ns")
+    trace.tables["data_log"] = log.set_column(at, log.schema.field(at), pa.array([10**18], pa.int64()))
+    short = cut_trace(trace, 3 * 10**9, 6 * 10**9).tables
+    assert short["signal_state"].select(["signal_id", "t_ns", "state"]).to_pylist() == [
+        {"signal_id": "b", "t_ns": 0, "state": "red"},
+        {"signal_id": "a", "t_ns": 10**9, "state": "red"},
+        {"signal_id": "a", "t_ns": 5 * 10**9, "state": "green"},
+    ]
+    assert short["declared_event"]["value"].to_pylist() == ["on"]
+    assert pc.min_max(short["actor_state"]["t_ns"]).as_py() == {"min": 3 * 10**9, "max": 6 * 10**9}
+    (about,) = short["data_log"].to_pylist()
+    assert about["utc_start_ns"] == 10**18 + 3 * 10**9  # the same moment, by its clock
+    assert about["n_states"] == short["actor_state"].num_rows
+    with pytest.raises(ValueError, match="no state"):
+        cut_trace(trace, 10**15, 10**16)
+
+
+def test_the_same_clip_has_the_same_bytes(folder: Path, tmp_path: Path) -> None:
+    for out in ("a", "b"):
+        request = ConvertRequest(str(OVERTAKE / "collision.csv"), "parquet", tmp_path / out)
+        clip.write_clip(request, "no-collision@collision", folder, None)
+    for file in sorted((tmp_path / "a").iterdir()):
+        assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes()
+    assert pq.read_table(tmp_path / "a" / "actor.parquet")["is_ego"].to_pylist().count(True) == 1

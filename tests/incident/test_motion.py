@@ -1,0 +1,79 @@
+"""Slowing, gaps and closing speeds of motions that are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from drivelint.incident.motion import Motion, second_by_second, slowings
+
+STEP_S = 0.1
+
+
+def steps(v: np.ndarray, x: np.ndarray, other_x: float, other_v: float = 0.0) -> pa.Table:
+    """Return an ego that drives east along y = 0 and an object on its line, boxes of 4 m by 2 m."""
+    n = len(v)
+    t = np.arange(n) * STEP_S
+    columns = {
+        "t_ns": np.round(t * 1e9).astype(np.int64), "x_m": x, "y_m": np.zeros(n), "yaw_rad": np.zeros(n),
+        "length_m": np.full(n, 4.0), "width_m": np.full(n, 2.0), "speed_mps": v, "vx_mps": v, "vy_mps": np.zeros(n),
+        "lane_offset_m": np.zeros(n), "object_x_m": other_x + other_v * t, "object_y_m": np.full(n, 1.0),
+        "object_yaw_rad": np.zeros(n), "object_length_m": np.full(n, 4.0), "object_width_m": np.full(n, 2.0),
+        "object_speed_mps": np.full(n, abs(other_v)), "object_vx_mps": np.full(n, other_v), "object_vy_mps": np.zeros(n),
+        "object_lane_offset_m": np.ones(n), "clearance_m": np.full(n, np.nan),
+    }  # fmt: skip
+    return pa.table({name: pa.array(values, from_pandas=True) for name, values in columns.items()})
+
+
+def braking(at_s: float, mps2: float, lasts_s: float = 10.0) -> Motion:
+    """Return an ego at 20 m/s that brakes from `at_s`; the moment is at 10 s."""
+    t = np.arange(0, 10.05, STEP_S)
+    v = np.maximum(20 - mps2 * np.clip(t - at_s, 0, lasts_s), 0.0)
+    x = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * STEP_S)])
+    return Motion.of_steps(steps(v, x, 300.0), 10_000_000_000)
+
+
+def test_when_and_how_hard() -> None:
+    (found,) = slowings(braking(at_s=7.0, mps2=4.0), 0, 0.0)
+    assert found.start_s == pytest.approx(-3.0, abs=0.11)
+    assert found.end_s == pytest.approx(0.0)
+    assert (found.from_mps, found.to_mps) == pytest.approx((20.0, 8.0))
+    assert found.hardest_mps2 == pytest.approx(4.0)
+    assert found.mean_mps2 == pytest.approx(4.0, abs=0.15)
+
+
+def test_what_is_no_braking_and_what_is_over() -> None:
+    assert slowings(braking(at_s=2.0, mps2=0.9), 0, 0.0) == []
+    (over,) = slowings(braking(at_s=2.0, mps2=3.0, lasts_s=1.0), 0, 0.0)
+    assert over.end_s == pytest.approx(-7.0, abs=0.41)
+    assert slowings(braking(at_s=9.0, mps2=6.0), 0, -1.0) == []  # nothing after the last step before a contact
+
+
+def test_gap_closing_and_side() -> None:
+    motion = braking(at_s=100.0, mps2=1.0)
+    i = motion.at(-5.0)
+    assert i is not None
+    ahead = 300.0 - 100.0
+    assert motion.gap[i] == pytest.approx(ahead - 4.0)
+    assert motion.closing[i] == pytest.approx(20.0 * ahead / math.hypot(ahead, 1.0))
+    assert motion.relative[i] == pytest.approx(20.0)
+    assert motion.aside[i] == pytest.approx(1.0)
+
+
+def test_rows_that_the_log_does_not_have() -> None:
+    rows = second_by_second(braking(at_s=100.0, mps2=1.0), -0.1)
+    assert [row["t"] for row in rows] == [float(t) for t in range(-10, 0)] + [-0.1, 0.0]
+    assert [row["t"] for row in rows if row["last_before"]] == [-0.1]
+    assert math.isnan(rows[0]["accel"][0])  # there is no second before
+
+
+def test_unknown_is_no_number() -> None:
+    v = np.full(101, 20.0)
+    v[50] = np.nan
+    motion = Motion.of_steps(steps(v, np.arange(101) * 2.0, 300.0), 10_000_000_000)
+    assert math.isnan(motion.speed[0][50])
+    assert math.isnan(motion.acceleration(0, 55, 1.0))
+    assert not math.isnan(motion.acceleration(0, 65, 1.0))

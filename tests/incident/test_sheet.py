@@ -1,0 +1,208 @@
+"""The incident sheet says what the log says: its numbers are computed again from the log alone."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint import cli
+from drivelint.errors import UsageError
+from drivelint.incident import IncidentRequest, open_case, render, write_incident
+from drivelint.incident.sheet import content
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from drivelint.run import CheckOptions
+from drivelint.run import check as run_check
+from tests.explain.checked import OVERTAKE, check
+from tests.incident.recorded import carla_log, closing_by_places, fixture_log, gap
+from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.incident.conftest import CaseOf
+    from tests.incident.recorded import Log
+
+
+@pytest.fixture(scope="module")
+def collision(case_of: CaseOf) -> dict[str, Any]:
+    return content(case_of("no-collision@collision"))
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Log:
+    return fixture_log(OVERTAKE / "collision.csv")
+
+
+def first_contact(log: Log) -> float:
+    """Return the first time at which the boxes of ego and oncoming car overlap, from the log alone."""
+    return min(t for t in log["ego"] if log["ego"][t].box.intersection(log["oncoming"][t].box).area > 0)
+
+
+def numbers(text: str) -> list[float]:
+    return [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", text)]
+
+
+def test_contact_is_where_the_boxes_first_overlap(collision: dict[str, Any], recorded: Log) -> None:
+    assert collision["contact"]
+    assert collision["when"] == f"{first_contact(recorded):.2f} s"
+
+
+def test_speeds_are_those_before_the_contact(collision: dict[str, Any], recorded: Log) -> None:
+    at = round(first_contact(recorded) - 0.1, 3)
+    for party, actor in zip(collision["parties"], ("ego", "oncoming"), strict=True):
+        v = recorded[actor][at].speed
+        assert v > 1  # at the contact itself they stand
+        assert party["id"] == actor
+        assert numbers(party["speed"])[0] == pytest.approx(v, abs=0.051)
+        assert numbers(party["speed"])[1] == pytest.approx(v * 3.6, abs=0.51)
+        assert numbers(party["speed"])[2] == pytest.approx(v / 0.44704, abs=0.51)
+    assert numbers(collision["gap"])[0] == pytest.approx(gap(recorded["ego"][at], recorded["oncoming"][at]), abs=0.006)
+    before = round(at - 0.1, 3)
+    by_places = closing_by_places(recorded["ego"], recorded["oncoming"], before, at)
+    assert numbers(collision["closing"])[0] == pytest.approx(by_places, abs=0.3)
+
+
+def test_table_second_by_second(collision: dict[str, Any], recorded: Log) -> None:
+    contact = first_contact(recorded)
+    rows = [row for row in collision["seconds"] if not row["last_before"]]
+    assert [row["t"] for row in rows] == [float(t) for t in range(-int(contact), 3)]
+    for row in rows:
+        t = round(contact + row["t"], 3)
+        ego, other = recorded["ego"][t], recorded["oncoming"][t]
+        assert row["drive_s"] == pytest.approx(t)
+        assert row["speed"] == pytest.approx([ego.speed, other.speed], abs=1e-6)
+        if (apart := gap(ego, other)) > 0:
+            assert row["gap"] == pytest.approx(apart, abs=1e-6)
+        else:
+            assert row["gap"] < 0
+        if t >= 1.2:
+            earlier = round(t - 1, 3)
+            means = [recorded[who][t].speed - recorded[who][earlier].speed for who in ("ego", "oncoming")]
+            assert row["accel"] == pytest.approx(means, abs=1e-6)
+        # the road of the fixture runs east, its lanes are 3.5 m wide and the ego's middle lies at y = 1.75 m
+        assert row["offset"] == pytest.approx([ego.y - 1.75, other.y - 1.75], abs=0.02)
+
+
+def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
+    """The other party's conduct is what a check with --ego of that party says."""
+    case = case_of("no-collision@collision")
+    settings: dict[str, Any] = {"traces": (str(OVERTAKE / "collision.csv"),), "profiles": ("relaxed", "nominal")}
+    settings |= {"map": OVERTAKE / "road.xodr", "mapping": str(OVERTAKE / "mapping.toml"), "rules": ("ukhc",)}
+    result = run_check(CheckOptions(**settings, ego="oncoming"), Silent())
+    assert not isinstance(case.others, str)
+    assert case.others is not None
+    assert case.others.verdicts == result.verdicts.to_pylist()
+    told = content(case)["conduct"]
+    assert [party["id"] for party in told] == ["ego", "oncoming"]
+    failed = len(set(result.findings["rule_id"].to_pylist()))
+    assert told[1]["n"]["broken"] == failed > 0
+    assert any("No collision" in line for line in told[1]["broken"].shown)
+    total = sum(told[1]["n"].values()) + told[1]["never"]
+    assert total == result.rules.num_rows
+
+
+def test_it_says_that_the_log_gives_the_same_finding(collision: dict[str, Any]) -> None:
+    assert collision["again"]["finding_id"] == collision["row"]["finding_id"]
+
+
+def test_commands_give_the_finding_again(
+    collision: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("collision.csv", "road.xodr", "mapping.toml"):
+        shutil.copy(OVERTAKE / name, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    for command in collision["commands"]:
+        monkeypatch.setattr(sys, "argv", shlex.split(command))
+        with pytest.raises(SystemExit):
+            cli.main()
+    written = list((tmp_path / "again" / "incidents").iterdir())
+    assert [file.name for file in written] == [f"{collision['row']['finding_id']}.html"]
+
+
+def test_same_case_same_bytes(folder: Path, case_of: CaseOf) -> None:
+    name = "safe-distance-ahead@collision"
+    assert render(open_case(IncidentRequest(name, folder))) == render(case_of(name))
+
+
+def test_required_distance_is_drawn(case_of: CaseOf) -> None:
+    told = content(case_of("safe-distance-ahead@collision"))
+    assert not told["contact"]
+    (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]
+    required = [line["name"] for line in chart["lines"] if line["kind"] == "limit"]
+    assert "required: Safe distance ahead before overtaking [nominal]" in required
+    assert "Contact" not in told["what"]
+    assert told["contacts"]  # the same two touch later in that drive
+
+
+@pytest.mark.parametrize(("stays", "said"), [(None, "not examined"), (53, "<b>possible</b>"), (99, "<b>sure</b>")])
+def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> None:
+    case = case_of("no-collision@collision")
+    row = {**case.finding.row, "n_copies": None if stays is None else 100, "n_stays": stays}
+    page = render(replace(case, finding=replace(case.finding, row=row))).decode()
+    assert said in page
+    assert (f"{stays} of 100 copies" in page) is (stays is not None)
+    assert ("Possible contact" in page) is (stays == 53)
+
+
+def test_a_verdict_that_is_no_finding(folder: Path) -> None:
+    with pytest.raises(UsageError, match="is pass, and no finding"):
+        open_case(IncidentRequest("no-collision@safe", folder))
+
+
+def test_pdf_without_a_browser(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    with pytest.raises(UsageError, match="install chromium"):
+        write_incident(IncidentRequest("no-collision@collision", folder, pdf=True))
+
+
+def test_a_log_that_is_gone(tmp_path: Path) -> None:
+    """Without the log, the kept database does; without both, the error says what to give."""
+    log = tmp_path / "collision.csv"
+    shutil.copy(OVERTAKE / "collision.csv", log)
+    out = tmp_path / "kept"
+    for keep in (True, False):
+        check(out, traces=(str(log),), rules=("ukhc.no-collision",), params=(), keep_db=keep)
+        if not keep:
+            (out / "drivelint.duckdb").unlink(missing_ok=True)
+        moved = log.rename(tmp_path / "moved.csv")
+        request = IncidentRequest("no-collision", out)
+        if keep:
+            assert content(open_case(request))["again"] is not None
+        else:
+            with pytest.raises(UsageError, match="--trace FILE"):
+                open_case(request)
+            assert content(open_case(IncidentRequest("no-collision", out, trace=moved)))["again"] is not None
+        moved.rename(log)
+
+
+def test_case_study_before_the_impact(tmp_path: Path) -> None:
+    log = shared("overtake_case_study/collision.csv")
+    road = shared("overtake_case_study/t_junction.xodr")
+    options = CheckOptions(
+        (str(log),),
+        map=road,
+        mapping="carla-testbench",
+        rules=("ukhc.contact-signature", "ukhc.no-collision"),
+        out=tmp_path,
+    )
+    write(run_check(options, Silent()), tmp_path)
+    told = content(open_case(IncidentRequest("contact-signature", tmp_path)))
+    recorded = carla_log(log)
+    # within one step both lose far more speed than a tyre can brake
+    lost = {t: recorded["3"][round(t - 0.1, 3)].speed - recorded["3"][t].speed for t in recorded["3"] if t > 1}
+    impact = max(lost, key=lambda t: lost[t])
+    before = round(impact - 0.1, 3)
+    assert told["when"] == f"{impact:.2f} s"
+    for party in told["parties"]:
+        assert numbers(party["speed"])[0] == pytest.approx(recorded[party["id"]][before].speed, abs=0.051)
+    by_places = closing_by_places(recorded["1"], recorded["3"], round(before - 0.1, 3), before)
+    assert numbers(told["closing"])[0] == pytest.approx(by_places, abs=0.3)
+    least = min((gap(recorded["1"][t], recorded["3"][t]), t) for t in recorded["1"] if t in recorded["3"])
+    assert told["least"] == f"{least[0]:.2f} m at {least[1]:.2f} s"
