@@ -38,6 +38,7 @@ _LABEL: Final = {
     ExitCode.USAGE: ("ERROR", "bold magenta"),
     ExitCode.LOSSY: ("LOSSY", "bold yellow"),
     ExitCode.NOT_JUDGED: ("NOT JUDGED", "bold yellow"),
+    ExitCode.INTERRUPTED: ("PARTIAL", "bold yellow"),
 }
 
 
