@@ -16,10 +16,11 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
+from drivelint.cli import completion, options, results, rules, values
 from drivelint.cli import docs as docs_
-from drivelint.cli import options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
+from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.errors import DriveLintError, ExitCode
 
@@ -28,7 +29,6 @@ app = typer.Typer(
     help="Checks recorded drives against the rules of the road.",
     epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
     "`drivelint inspect TRACE` shows what a log of yours can decide; `drivelint docs` lists the guides.",
-    add_completion=False,
     rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -57,7 +57,7 @@ def _root(
         raise typer.Exit(int(ExitCode.USAGE))
 
 
-@app.command()
+@app.command(cls=GroupedCommand)
 @options.takes_drive_input
 def check(
     *,
@@ -70,9 +70,17 @@ def check(
         bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
     ] = False,
     rules: Annotated[
-        Texts, option("--rules", "SEL", "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
+        Texts,
+        option(
+            "--rules",
+            "SEL",
+            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.",
+            autocompletion=completion.rule_ids,
+        ),
     ] = None,
-    ignore: Annotated[Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.")] = None,
+    ignore: Annotated[
+        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
+    ] = None,
     profile: Annotated[
         Texts,
         option(
@@ -88,7 +96,13 @@ def check(
     ] = "critical",
     strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
     require: Annotated[
-        Texts, option("--require", "SEL", "These of the rules may not be unknown: exit code 4. Repeatable.")
+        Texts,
+        option(
+            "--require",
+            "SEL",
+            "These of the rules may not be unknown: exit code 4. Repeatable.",
+            autocompletion=completion.rule_ids,
+        ),
     ] = None,
     format_: options.FormatOption = "text",
     margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint.cli import completion, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
@@ -90,7 +90,9 @@ def explain(
     name: Annotated[
         str,
         argument(
-            "FINDING", "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin."
+            "FINDING",
+            "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin.",
+            autocompletion=completion.rule_ids,
         ),
     ],
     *,
