@@ -263,7 +263,7 @@ def main() -> NoReturn:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
     try:
-        sys.exit(app(standalone_mode=False, default_map=_settings()) or 0)
+        code = app(standalone_mode=False, default_map=_settings())
     except DriveLintError as error:
         _fail(str(error), error.exit_code)
     except TyperException as error:
@@ -271,10 +271,12 @@ def main() -> NoReturn:
         words = error.format_message().replace("Value error, ", "")  # the library's, not ours
         _fail(f"{words} (see drivelint {_asked(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
+        code = ExitCode.INTERRUPTED
+    if code == ExitCode.INTERRUPTED:
         print("drivelint: error: interrupted", file=sys.stderr, flush=True)
-        os._exit(
-            ExitCode.INTERRUPTED
-        )  # the database may still be computing in its thread: there is nothing to wait for
+        sys.stdout.flush()  # a partial result was printed
+        os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
+    sys.exit(code or 0)
 
 
 def _asked(error: Exception) -> str:

@@ -134,7 +134,9 @@ def content(result: Result) -> dict[str, Any]:
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
-        "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
+        "overtakes": overtake_views(
+            result.overtakes.to_pylist(), starts, {p for ps in result.rules["profiles"].to_pylist() for p in ps}
+        ),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
         "rule_groups": _rule_groups(result, rules),
