@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from itertools import takewhile
+from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 
@@ -13,6 +15,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
+from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
     from drivelint.engine.session import BatchObserver
     from drivelint.report.progress import Progress
 
+_MISSED: Final = "the run was interrupted before this drive was judged"
+
 
 @dataclass(frozen=True)
 class CheckOptions(DriveInput):
@@ -45,6 +50,7 @@ class CheckOptions(DriveInput):
     rules_dirs: tuple[Path, ...] = ()
     fail_on: str = "critical"
     strict: bool = False
+    require: tuple[str, ...] = ()
     margins: bool = False
     keep_db: bool = False
     annotate: bool = True
@@ -54,13 +60,18 @@ class CheckOptions(DriveInput):
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
 
-def check(settings: CheckOptions, progress: Progress) -> Result:
+def check(settings: CheckOptions, progress: Progress, interruption: Interruption | None = None) -> Result:
     """Judge every drive by every selected rule.
 
+    After an interruption the result has the drives that were judged until then, and the others as not judged; `KeyboardInterrupt` if
+    none was.
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
-    rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
+    interruption = interruption or Interruption()
+    known = catalogue.load_rules(settings.rules_dirs)
+    rules = catalogue.select_rules(known, settings.rules, settings.ignore)
+    required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
     params = catalogue.parse_params(rules, settings.params)
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
     if (settings.margins or settings.keep_db) and settings.out is None:
@@ -78,7 +89,9 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"
-            observers.append(Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict))
+            observers.append(
+                Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict, required=required)
+            )
         session = JudgingSession(
             con,
             rules,
@@ -88,28 +101,34 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             keep_db=settings.keep_db,
             observers=observers,
             memory=memory,
+            interruption=interruption,
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []
         said: set[str] = set()
-        places: dict[str, str] = {}
+        ids: dict[Path, str] = {}
+        read = takewhile(lambda _item: not interruption.requested, read_drives(paths, options, library))
         try:
-            for batch in cut_batches(read_drives(paths, options, library)):
-                for drive in batch:
-                    if isinstance(drive, Drive):
-                        places.setdefault(drive.trace.drive_id, str(drive.trace.path))
-                failed = _judge(session, batch, progress, said)
-                refused += failed
-                if len(paths) > 1:  # a single one is the error of the whole run
-                    for each in failed:
-                        progress.note(f"not judged: {each.error}")
+            with suppress(InterruptedRunError):
+                for batch in cut_batches(read):
+                    ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
+                    failed = _judge(session, batch, progress, said)
+                    refused += failed
+                    if len(paths) > 1:  # a single one is the error of the whole run
+                        for each in failed:
+                            progress.note(f"not judged: {each.error}")
         finally:
             session.close()
+        done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
+        missed = sorted(set(paths) - done) if interruption.requested else []
+        if missed and not session.judged:
+            raise KeyboardInterrupt
         if len(refused) == len(paths):
             first = refused[0].error
             many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
             raise first if len(refused) == 1 else many
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
+        unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         return Result(
             verdicts=memory.run_job(collect.verdicts),
@@ -120,7 +139,11 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
-            asked=RunRequest.from_options(settings, places),
+            required=required,
+            interrupted=bool(missed),
+            asked=RunRequest.from_options(
+                settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
+            ),
         )
 
 

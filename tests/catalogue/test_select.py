@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.catalogue import Rule, parse_params, select_rules
+from drivelint.catalogue import Rule, parse_params, required_rules, select_rules
 from drivelint.errors import UsageError
 from tests.evaluate.packs import INVARIANT, MEASURED, write
 
@@ -66,6 +66,32 @@ def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], e
             select_rules(rules, include, ignore, default_pack="pack")
     else:
         assert [rule.id for rule in select_rules(rules, include, ignore, default_pack="pack")] == expected
+
+
+@pytest.mark.parametrize(
+    ("include", "ignore", "required", "expected"),
+    [
+        (["pack"], [], ["pack.r1.speed"], ("pack.r1.speed",)),
+        (["pack"], [], ["legal:must", "pack.r1.*"], None),
+        (["pack"], ["pack.r2.gap"], ["pack"], ("pack.r1.speed",)),
+        (["pack"], ["pack.r2.gap"], ["pack.r2.gap"], "pack.r2.gap"),
+        (["pack.r1.speed"], [], ["pack"], "pack.r2.gap"),
+        (["pack"], [], ["pack.r3.new"], "no stable rule"),
+        (["pack"], [], ["pack.r9"], "no rule, pack or glob"),
+        (["pack"], [], [], ()),
+    ],
+)
+def test_what_is_required_is_stable_and_selected(
+    rules: dict[str, Rule], include: list[str], ignore: list[str], required: list[str], expected: object
+) -> None:
+    selected = select_rules(rules, include, ignore)
+    if isinstance(expected, str):
+        with pytest.raises(UsageError, match=expected):
+            required_rules(rules, selected, required, ignore)
+    else:
+        musts = tuple(rule.id for rule in selected if rule.legal == "must" and rule.status == "stable")
+        either = tuple(sorted({*musts, "pack.r1.speed"}))
+        assert required_rules(rules, selected, required, ignore) == (either if expected is None else expected)
 
 
 @pytest.mark.parametrize(

@@ -185,7 +185,7 @@ def test_a_run_that_is_not_judged_is_not_saved_by_a_waiver() -> None:
 def test_junit_skips_what_is_waived_and_says_why() -> None:
     text = junit.render(gated(waiver(), rows=[ROW])).decode()
     assert 'failures="0"' in text
-    assert "waived until 2027-03-31 by jo: why: 8.00 s: ego 1, object 3" in text
+    assert "does not gate (waived until 2027-03-31 by jo: why): 8.00 s: ego 1, object 3" in text
     other = finding(object_id="4", finding_id="x", reason="stays")
     mixed = junit.render(gated(waiver(object="3"), rows=[ROW, other])).decode()
     assert 'message="8.00 s: ego 1, object 4; observed' in mixed

@@ -5,11 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from lxml import etree
 
+from drivelint.errors import ExitCode
 from drivelint.report import junit
-from drivelint.result.model import Result
-from tests.report.synthetic import drive, finding, result, rule, verdict
+from drivelint.result.gate import Gate, Waiver
+from drivelint.result.model import Result, exit_status
+from tests.report.synthetic import SDA, drive, finding, result, rule, verdict
 from tests.shared_data import shared
 
 
@@ -22,6 +26,7 @@ def outcomes(run: Result) -> dict[str, str]:
     return {case.get("name", ""): case[0].tag if len(case) else "passed" for case in parsed(run).iter("testcase")}
 
 
+WAIVER = Waiver("w.toml:1", "ukhc.*", "prop", "jo", "2027-03-31")
 MIXED = [
     verdict("pass", profile="aggressive"),
     verdict("fail", profile="nominal"),
@@ -66,6 +71,87 @@ def test_each_verdict_has_its_place() -> None:
 def test_a_case_gathers_its_verdict_rows_by_the_worst(said: list[str], strict: bool, shown: str) -> None:
     run = result([verdict(v, occurrence=n) for n, v in enumerate(said)], strict=strict)
     assert list(outcomes(run).values()) == [shown]
+
+
+VERDICTS = ("pass", "fail", "unknown", "not_applicable", "error")
+OFF_MAP = {
+    "exposure": [{"ego_id": "1", "km": 0.1, "duration_s": 25.0}],
+    "not_judged": [
+        {"ego_id": "1", "signal": "registration", "reason_code": "seldom_on_lane", "reason": "3 of 90 steps on a lane"}
+    ],
+}
+DRIVES = [{}, {"lossy": True}, {"status": "not_judged", "status_reason": "no ego"}, OFF_MAP]
+
+
+@given(
+    rows=st.lists(
+        st.tuples(st.sampled_from(VERDICTS), st.sampled_from(["nominal", "observed"]), st.booleans()), max_size=4
+    ),
+    severity=st.sampled_from(["critical", "major", "minor"]),
+    fail_on=st.sampled_from(["critical", "major", "minor", "never"]),
+    status=st.sampled_from(["stable", "draft"]),
+    waives=st.booleans(),
+    unknown_is=st.sampled_from(["fine", "strict", "required"]),
+    about=st.sampled_from(DRIVES),
+)
+def test_junit_counts_what_the_exit_code_counts(
+    *,
+    rows: list[tuple[str, str, bool]],
+    severity: str,
+    fail_on: str,
+    status: str,
+    waives: bool,
+    unknown_is: str,
+    about: dict[str, Any],
+) -> None:
+    """Failures are exit code 1, errors 2, 3 and 4; a green suite is exit code 0. Some failed verdicts have a finding, some none."""
+    verdicts = [verdict(v, profile=p, severity=severity, occurrence=n) for n, (v, p, _) in enumerate(rows)]
+    found = [
+        finding(profile=p, severity=severity, occurrence=n) for n, (v, p, has) in enumerate(rows) if v == "fail" and has
+    ]
+    run = result(
+        verdicts,
+        found,
+        drives=[drive(**about)],
+        rules=[rule(status=status, severity=severity)],
+        fail_on=fail_on,
+        strict=unknown_is == "strict",
+        required=(SDA,) if unknown_is == "required" else (),
+        gate=Gate(waived={row["finding_id"]: 0 for row in found}, waivers=(WAIVER,)) if waives else None,
+    )
+    code, root = exit_status(run).code, parsed(run)
+    failures, errors = (len(list(root.iter(tag))) for tag in ("failure", "error"))
+    assert (int(root.get("failures", "")), int(root.get("errors", ""))) == (failures, errors)
+    if code == ExitCode.FAILED:
+        assert failures
+    elif code == ExitCode.OK:
+        assert (failures, errors) == (0, 0)
+    elif code in {ExitCode.NOT_JUDGED, ExitCode.LOSSY}:
+        assert (failures > 0, errors > 0) == (False, True)
+    else:
+        assert code == ExitCode.USAGE
+        assert errors
+
+
+def test_what_is_shown_and_does_not_gate_is_no_failure() -> None:
+    rows = [verdict("fail"), verdict("unknown", occurrence=1, reason="lost")]
+    found = [finding(), finding(finding_id="known", occurrence=1)]
+    run = result(rows, found, gate=Gate(waived={"known": 0}, waivers=(WAIVER,)))
+    case = parsed(run).find(".//testcase")
+    assert case is not None
+    assert [child.tag for child in case] == ["failure", "system-out"]
+    assert (case.findtext("failure") or "").count("8.00 s") == 1
+    notes = (case.findtext("system-out") or "").splitlines()
+    assert notes[0].startswith("does not gate (waived until 2027-03-31 by jo: prop): 8.00 s")
+    assert notes[1:] == ["unknown: lost"]
+    minor = result([verdict("fail", severity="minor")], [finding(severity="minor")], rules=[rule(severity="minor")])
+    assert (parsed(minor).findtext(".//skipped") or "").startswith("does not gate (below --fail-on critical): 8.00 s")
+
+
+def test_only_what_is_required_may_not_be_unknown() -> None:
+    rows = [verdict("unknown"), verdict("unknown", rule_id="ukhc.other")]
+    run = result(rows, rules=[rule(), rule("ukhc.other")], required=("ukhc.other",))
+    assert outcomes(run) == {f"{SDA} [nominal]": "skipped", "ukhc.other [nominal]": "error"}
 
 
 def test_a_failure_lists_its_findings_and_a_skip_its_reasons() -> None:

@@ -56,7 +56,7 @@ def test_counts_stand_beside_each_other_per_pack() -> None:
 
 
 def test_a_finding_is_a_row_that_links_to_the_report() -> None:
-    text = told(result(MIXED, [finding()]), link="https://ci.example/run 1/report.html")
+    text = told(result(MIXED, [finding()]), base_url="https://ci.example/run 1/")
     _, found, _ = tables(text)
     assert found[1] == [
         "critical", "d1", "8.00 s", f"{SDA} [nominal]", "ego 1, object 3", "58.00 m", "> 64.00 m",
@@ -65,15 +65,23 @@ def test_a_finding_is_a_row_that_links_to_the_report() -> None:
     assert links == [
         f"https://ci.example/run%201/report.html#finding-d1-{SDA}-nominal-0", "https://ci.example/run%201/report.html",
     ]  # fmt: skip
-    assert text.startswith("## drivelint: failed, exit 1\n\n1 verdict failed at or above severity critical.")
+    assert text.startswith("## drivelint: failed, exit 1\n\n1 finding at or above severity critical.")
 
 
 def test_the_link_is_an_anchor_of_the_report() -> None:
     from drivelint.report import html
 
     run = result(MIXED, [finding(finding_id="0123456789abcdef")])
-    assert "report.html#finding-0123456789abcdef" in told(run)
+    assert "https://ci.example/report.html#finding-0123456789abcdef" in told(run, base_url="https://ci.example")
     assert 'id="finding-0123456789abcdef"' in html.render(run).decode()
+
+
+def test_without_a_base_url_nothing_is_linked() -> None:
+    """A relative link in a comment on a pull request would lead into the repository."""
+    run = result(MIXED, [finding()])
+    for text in (told(run), markdown.difference(*compare_results(run, run, ("a", "b"), "critical"), "critical")):
+        assert not [c for t in PARSER.parse(text) for c in t.children or [] if c.type == "link_open"]
+    assert tables(told(run))[1][1][3] == f"{SDA} [nominal]"
 
 
 def test_unknown_is_told_with_its_reason() -> None:
@@ -169,7 +177,7 @@ def test_a_comment_has_room_for_it_whatever_the_names_are() -> None:
     text = told(result(rows, [finding(drive_id=long, finding_id=str(n)) for n in range(50)], drives=[drive(long)]))
     assert len(text) < 65_536
     assert "parts left out here for length, not for weight" in text
-    assert text.endswith("[The whole report](report.html)\n")
+    assert text.endswith("The whole report is report.html of the results.\n")
 
 
 def test_a_difference_as_markdown() -> None:

@@ -52,7 +52,7 @@ def test_everything_is_told(width: int) -> None:
     assert "4 headings differ" in text
     assert "nothing to worry about" not in text
     assert "(draft)" in text
-    assert "exit 1: 1 verdict failed at or above severity critical" in text
+    assert "exit 1: 1 finding at or above severity critical" in text
 
 
 def summary(run: Result, width: int = 120) -> list[str]:

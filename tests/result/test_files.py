@@ -16,7 +16,7 @@ from drivelint.result.load import load_result
 from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
 from tests.report.synthetic import finding, result, table, verdict
 
-NAMES = {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "summary.json", "junit.xml"}
+NAMES = {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "summary.json", "junit.xml", "files.json"}
 
 
 def rows(n: int) -> pa.Table:

@@ -9,7 +9,7 @@ import pytest
 from drivelint.errors import DriveLintError, ExitCode
 from drivelint.result.model import Result, exit_status
 from drivelint.result.schemas import empty_table
-from tests.report.synthetic import drive, result, rule, verdict
+from tests.report.synthetic import SDA, drive, result, rule, verdict
 
 LOST = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
 LOSSY = drive(lossy=True)
@@ -31,6 +31,10 @@ LOSSY = drive(lossy=True)
         pytest.param(["fail", "error"], [LOSSY, LOST], {}, ExitCode.USAGE, id="2 before 1"),
         pytest.param(["unknown"], [LOSSY], {"strict": True}, ExitCode.NOT_JUDGED, id="strict unknown before 3"),
         pytest.param([], [drive(), LOST], {}, ExitCode.NOT_JUDGED, id="no verdict at all"),
+        pytest.param(["pass", "unknown"], None, {"required": (SDA,)}, ExitCode.NOT_JUDGED, id="required: unknown"),
+        pytest.param(["pass", "unknown"], None, {"required": ("ukhc.other",)}, ExitCode.OK, id="another is required"),
+        pytest.param(["fail", "unknown"], None, {"required": (SDA,)}, ExitCode.FAILED, id="1 before required unknown"),
+        pytest.param(["error"], [drive(), LOST], {"interrupted": True}, ExitCode.INTERRUPTED, id="130 before all"),
     ],
 )
 def test_exit_code(
@@ -39,6 +43,17 @@ def test_exit_code(
     run = result([verdict(said, occurrence=n) for n, said in enumerate(verdicts)], drives=drives, **settings)
     assert exit_status(run).code is code
     assert exit_status(run).why
+
+
+def test_what_is_unknown_and_may_not_be_is_counted_by_rule() -> None:
+    rows = [verdict("unknown", rule_id=name, occurrence=n) for n, name in enumerate(("b", "a", "b", "free"))]
+    run = result(rows, rules=[rule("a"), rule("b"), rule("free")], required=("a", "b"))
+    assert exit_status(run).why == "3 verdicts of required rules unknown (--require): 1 of a, 2 of b"
+
+
+def test_an_interrupted_run_says_how_far_it_came() -> None:
+    run = result([verdict("fail")], drives=[drive(), LOST, drive("d3")], interrupted=True)
+    assert exit_status(run).why == "partial: 2 of 3 drives judged, interrupted"
 
 
 def test_it_is_said_that_nothing_could_be_decided() -> None:

@@ -9,7 +9,7 @@
 -- sense = ">="
 -- unit = "s"
 -- observes = "spare time"
--- reads = ["overtake", "overtake_sda", "profile"]
+-- reads = ["overtake", "overtake_sda"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.margin_s]
@@ -18,11 +18,11 @@
 -- why = "zone A (unsafe) and B (less than this to spare) fail, C and D are kept"
 -- source = "Harper et al. 2021, performance zones"
 --
--- [reasons.zones]
--- says = "zones: {zones}; no profile other than 'observed' is in zone C, the best one[; the zone of 'observed' is not known: {observed_doubt}]"
+-- [reasons.spare_time_unknown]
+-- says = "the spare time of the overtake as it was driven is not known[: {observed_doubt}]"
 --
--- [reasons.zones_and_best]
--- says = "zones: {zones}; best profile: {best_profile}[; the zone of 'observed' is not known: {observed_doubt}]"
+-- [reasons.no_profile_in_time]
+-- says = "no profile would have had so much time to spare; that of the overtake as it was driven is not known[: {observed_doubt}]"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, ov_id AS object_id, occurrence
@@ -37,12 +37,12 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.
         any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
     ) AS observed,
-    why(CASE WHEN bool_or(s.zone = 'C' AND s.profile <> 'observed') THEN 'zones_and_best' ELSE 'zones' END, {
-        'zones': string_agg(s.profile || ' ' || coalesce(s.zone, 'unknown'), ', ' ORDER BY p.style, s.profile),
-        'best_profile': min({'style': p.style, 'profile': s.profile}) FILTER (s.zone = 'C' AND s.profile <> 'observed').profile,
-        'observed_doubt': min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL)
-    }) AS reason
+    -- The measure is the reason where there is one: what other profiles would have had is shown with the overtakes.
+    CASE WHEN bool_or(s.profile = 'observed' AND s.zone IS NOT NULL) IS NOT true THEN why(
+        CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed')
+            THEN 'no_profile_in_time' ELSE 'spare_time_unknown' END,
+        {'observed_doubt': min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL)}
+    ) END AS reason
 FROM reference r
 JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
-JOIN profile p USING (profile)
 GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id

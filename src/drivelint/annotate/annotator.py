@@ -38,14 +38,17 @@ _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_
 class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
-    `rules` is the run's rule table, `fail_on` and `strict` its options.
+    `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result.
     """
 
-    def __init__(self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool) -> None:
+    def __init__(
+        self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool, required: tuple[str, ...] = ()
+    ) -> None:
         self._folder = folder
         self._rules = rules
         self._fail_on = fail_on
         self._strict = strict
+        self._required = required
         self._roads: dict[str, Road] = {}
         self._parts: list[list[pa.Table]] = []
         self._series: set[Series] = set()
@@ -70,7 +73,15 @@ class Annotator:
             name, road = drive.trace.drive_id, self._road(drive.environment)
             mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
             verdicts, findings, row, spaces, chains, measures, margins = mine
-            alone = Result(verdicts, findings, row, self._rules, fail_on=self._fail_on, strict=self._strict)
+            alone = Result(
+                verdicts,
+                findings,
+                row,
+                self._rules,
+                fail_on=self._fail_on,
+                strict=self._strict,
+                required=self._required,
+            )
             with _whole(self._folder / f"{name}.mcap") as file:
                 write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
         with _whole(self._folder / LAYOUT_FILE) as file:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from drivelint.catalogue.header import Conditions, Header, Param, json_schema
 from drivelint.catalogue.load import Rule, load_rules, read_rule
-from drivelint.catalogue.select import parse_params, select_rules
+from drivelint.catalogue.select import parse_params, required_rules, select_rules
 
 __all__ = [
     "Conditions",
@@ -15,5 +15,6 @@ __all__ = [
     "load_rules",
     "parse_params",
     "read_rule",
+    "required_rules",
     "select_rules",
 ]

@@ -22,7 +22,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
-from drivelint.phrases import hint
+from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -48,6 +48,27 @@ def select_rules(
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
     return [chosen[rule_id] for rule_id in sorted(chosen)]
+
+
+def required_rules(
+    rules: Mapping[str, Rule], selected: Iterable[Rule], required: Sequence[str], ignore: Sequence[str]
+) -> tuple[str, ...]:
+    """Return the ids of the stable rules that these selectors name, sorted: those that may not be unknown.
+
+    What `ignore` names is not required, unless a selector is its id. Errors: `UsageError` for a required rule that is not selected,
+    or a selector that names no stable rule, as others do not gate.
+    """
+    chosen = {rule.id for rule in selected}
+    left_out = {rule.id for selector in ignore for rule in _matching(rules, selector)}
+    found: set[str] = set()
+    for selector in required:
+        stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
+        if not stable:
+            raise UsageError(f"--require {selector!r}: is no stable rule, and others do not gate")
+        if lacking := sorted(stable - chosen - (left_out - {selector})):
+            raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
+        found |= stable & chosen
+    return tuple(sorted(found))
 
 
 def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:

@@ -9,16 +9,18 @@ import io
 import os
 import sys
 from contextlib import redirect_stdout
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
 
 from drivelint import __version__
-from drivelint.cli import audits, options, results, rules, values
+from drivelint.cli import audits, completion, options, results, rules, values
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
+from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 
@@ -27,7 +29,6 @@ app = typer.Typer(
     help="Checks recorded drives against the rules of the road.",
     epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
     "`drivelint inspect TRACE` shows what a log of yours can decide; `drivelint docs` lists the guides.",
-    add_completion=False,
     rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -56,17 +57,30 @@ def _root(
         raise typer.Exit(int(ExitCode.USAGE))
 
 
-@app.command()
+@app.command(cls=GroupedCommand)
 @options.takes_drive_input
 def check(
     *,
     traces: Annotated[list[str], argument("TRACE", "Recorded drives: files, globs or folders.")],
     drive: options.DriveInputValues,
-    out: Annotated[Path | None, option("--out", "DIR", "Folder for the result files.")] = None,
-    rules: Annotated[
-        Texts, option("--rules", "SEL", "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
+    out: Annotated[
+        Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
     ] = None,
-    ignore: Annotated[Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.")] = None,
+    overwrite: Annotated[
+        bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
+    ] = False,
+    rules: Annotated[
+        Texts,
+        option(
+            "--rules",
+            "SEL",
+            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.",
+            autocompletion=completion.rule_ids,
+        ),
+    ] = None,
+    ignore: Annotated[
+        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
+    ] = None,
     profile: Annotated[
         Texts,
         option(
@@ -80,7 +94,16 @@ def check(
     fail_on: Annotated[
         options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
     ] = "critical",
-    strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
+    strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
+    require: Annotated[
+        Texts,
+        option(
+            "--require",
+            "SEL",
+            "These of the rules may not be unknown: exit code 4. Repeatable.",
+            autocompletion=completion.rule_ids,
+        ),
+    ] = None,
     format_: options.FormatOption = "text",
     margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
@@ -105,15 +128,15 @@ def check(
     status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
 
     Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline or --waivers: something that is new
-    and that nobody answers for); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged (with --strict: some
-    rule unknown); 75 the machine failed, try again; 130 interrupted.
+    and that nobody answers for); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged (with --strict or
+    --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged until then is kept.
     """
     from drivelint import run
+    from drivelint.engine.interruption import Interruption
     from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs
     from drivelint.report import summary, terminal
-    from drivelint.report.outputs import write
-    from drivelint.result.files import prepare_folder
+    from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
     from drivelint.settings import SETTINGS_FILE
 
@@ -121,7 +144,6 @@ def check(
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
-        out=out,
         rules=tuple(rules or ()),
         ignore=tuple(ignore or ()),
         profiles=tuple(profile or ()),
@@ -129,19 +151,20 @@ def check(
         rules_dirs=tuple(rules_dir or ()),
         fail_on=fail_on,
         strict=strict,
+        require=tuple(require or ()),
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
         memory=values.parse_memory(memory),
     )
-    if out is not None:
-        prepare_folder(out)
-    with bar(quiet) as progress:
-        result = run_interruptible(lambda: run.check(settings, progress))
+    interruption = Interruption()
+    with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+        settings = replace(settings, out=work)
+        result = run_interruptible(lambda: run.check(settings, progress, interruption), interruption.request)
         if gate_inputs is not None:
             result = gate_inputs.apply_to(result)
         if out is not None:
-            write(result, out)
+            write(result, out, work, overwrite=overwrite)
         if memory is not None and (most := peak_bytes()) is not None:
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
@@ -269,6 +292,7 @@ def main() -> NoReturn:
         code = ExitCode.INTERRUPTED
     if code == ExitCode.INTERRUPTED:
         print("drivelint: error: interrupted", file=sys.stderr, flush=True)
+        sys.stdout.flush()  # a partial result was printed
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
 

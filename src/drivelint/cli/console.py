@@ -21,14 +21,23 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-def run_interruptible(job: Callable[[], T]) -> T:
+def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None = None) -> T:
     """Run `job` in a second thread, so that Ctrl-C interrupts it while the database computes.
 
-    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted.
+    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted. With
+    `interrupt`, the first Ctrl-C calls it until the job has ended by itself, and only the second one leaves.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    while not running.done():
-        wait([running], timeout=0.2)
+    try:
+        while not running.done():
+            wait([running], timeout=0.2)
+    except KeyboardInterrupt:
+        if interrupt is None:
+            raise
+        typer.echo("drivelint: interrupted: keeps what is judged; Ctrl-C again leaves at once", err=True)
+        while not running.done():
+            interrupt()
+            wait([running], timeout=0.2)
     return running.result()
 
 

@@ -27,9 +27,9 @@ Texts = list[str] | None
 """What an option that may be given several times has."""
 
 
-def argument(metavar: str, words: str) -> Any:
+def argument(metavar: str, words: str, **more: Any) -> Any:
     """Return an argument of a command with its help."""
-    return typer.Argument(metavar=metavar, help=words)
+    return typer.Argument(metavar=metavar, help=words, **more)
 
 
 def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
@@ -72,7 +72,7 @@ class _DriveOption(NamedTuple):
     read: Callable[[Any], Any] = lambda value: value
 
 
-_DRIVE_OPTIONS = {
+DRIVE_OPTIONS = {
     "map": _DriveOption(
         Path | None,
         option("--map", "MAP", "The road, as OpenDRIVE, Lanelet2, CommonRoad or a SUMO net: most rules need it."),
@@ -142,7 +142,7 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def wrapped(**given: Any) -> None:
-        drive = {name: each.read(given.pop(name)) for name, each in _DRIVE_OPTIONS.items()}
+        drive = {name: each.read(given.pop(name)) for name, each in DRIVE_OPTIONS.items()}
         command(**given, drive=drive)
 
     parameters: list[inspect.Parameter] = []
@@ -150,7 +150,7 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
         if parameter.name != "drive":
             parameters.append(parameter)
             continue
-        for name, each in _DRIVE_OPTIONS.items():
+        for name, each in DRIVE_OPTIONS.items():
             kind, type_ = inspect.Parameter.KEYWORD_ONLY, Annotated[each.type, each.said]
             parameters.append(inspect.Parameter(name, kind, default=each.default, annotation=type_))
     wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]

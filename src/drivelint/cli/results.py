@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint.cli import completion, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
+
+if TYPE_CHECKING:
+    from drivelint.result.model import Result
 
 
 def report(
@@ -40,6 +43,12 @@ def report(
         Path | None, option("--trace", "FILE", "With --incident: where the log is, if it was moved.")
     ] = None,
     map_: Annotated[Path | None, option("--map", "MAP", "With --incident: where the map is, if it was moved.")] = None,
+    base_url: Annotated[
+        str | None,
+        option(
+            "--base-url", "URL", "With markdown: where DIR can be opened, for links to report.html. Default: no links."
+        ),
+    ] = None,
 ) -> None:
     """Write a report from a result folder, into it.
 
@@ -57,12 +66,17 @@ def report(
         return
     if pdf or trace is not None or map_ is not None:
         raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
+    from drivelint.report import markdown
     from drivelint.report.outputs import REPORT_FORMATS
-    from drivelint.result.files import publish
+    from drivelint.result.folder import add
     from drivelint.result.load import load_result
 
+    if base_url is not None and to != "markdown":
+        raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
     name, render = REPORT_FORMATS[to]
-    publish(folder, {name: render(load_result(folder))}, {})
+    result = load_result(folder)
+    _warn_of_partial(folder, result)
+    add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
     typer.echo(str(folder / name))
 
 
@@ -85,6 +99,8 @@ def diff(
     from drivelint.result.load import load_result
 
     earlier, later = load_result(base), load_result(new)
+    _warn_of_partial(base, earlier)
+    _warn_of_partial(new, later)
     least = later.fail_on if fail_on is None else fail_on
     found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
     if format_ == "json":
@@ -102,7 +118,9 @@ def explain(
     name: Annotated[
         str,
         argument(
-            "FINDING", "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin."
+            "FINDING",
+            "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin.",
+            autocompletion=completion.rule_ids,
         ),
     ],
     *,
@@ -144,6 +162,7 @@ def explain(
     from drivelint.explain import ExplainRequest, MeasurementErrors, VerdictFilter
     from drivelint.explain import explain as explained
     from drivelint.explain.text import render, to_json
+    from drivelint.result.load import load_result
 
     request = ExplainRequest(
         name,
@@ -154,8 +173,17 @@ def explain(
         MeasurementErrors(position, time, of_map, samples, seed),
         values.parse_memory(memory),
     )
+    _warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
         typer.echo(to_json(found))
     else:
         print_rich(lambda width: render(found, width))
+
+
+def _warn_of_partial(folder: Path, result: Result) -> None:
+    """Say on stderr that a result is of an interrupted run."""
+    if result.interrupted:
+        from drivelint.result.model import partial_sentence
+
+        typer.echo(f"drivelint: {folder}: {partial_sentence(result.drives)}", err=True)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
+from drivelint.cli import completion, options
 from drivelint.cli.console import print_rich, progress, run_interruptible
 from drivelint.cli.options import Texts, argument, option
 
@@ -40,7 +40,12 @@ def list_(
 
 @app.command("show")
 def show(
-    rule_id: Annotated[str, argument("ID", "The rule's id, or how it begins, with or without its pack.")],
+    rule_id: Annotated[
+        str,
+        argument(
+            "ID", "The rule's id, or how it begins, with or without its pack.", autocompletion=completion.rule_ids
+        ),
+    ],
     rules_dir: options.RulesDirs = None,
 ) -> None:
     """Show one rule: question, clause, parameters, SQL."""

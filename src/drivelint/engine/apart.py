@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import duckdb
 
 from drivelint.engine.barrier import RefusedLog, refused
+from drivelint.engine.interruption import InterruptedRunError
 from drivelint.errors import DriveLintError
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive]) -> list[Refuse
     """
     try:
         session.judge(drives)
+    except InterruptedRunError:
+        raise
     except Exception as error:
         if isinstance(error, DriveLintError) and error.is_of_the_run:
             raise

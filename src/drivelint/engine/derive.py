@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint.errors import DriveLintError
+from drivelint.sql import store
 from drivelint.sql.derivations import needed
 from drivelint.sql.statements import statement, texts
 
@@ -42,7 +43,7 @@ def derive(con: duckdb.DuckDBPyConnection, tables: Iterable[str], *, of_the_map:
         con.execute(statement(f"map_shapes/{table}"))
     workers = WORKERS if n_states < ONE_WORKER_STATES else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
-        free = [stack.enter_context(con.cursor()) for _ in range(workers)]
+        free = [stack.enter_context(store.cursor(con)) for _ in range(workers)]
         busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}
         ready: deque[str] = deque()
         stack.callback(_stop, tuple(free), busy)  # should one fail, or the user not want to wait

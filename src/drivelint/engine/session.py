@@ -13,6 +13,7 @@ from drivelint.arrays import with_columns
 from drivelint.engine.batch import skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
+from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
 from drivelint.errors import RuleError
@@ -41,6 +42,7 @@ class JudgingSession:
     A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
+    `interruption` ends a batch before it is judged.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class JudgingSession:
         keep_db: bool = False,
         observers: Sequence[BatchObserver] = (),
         memory: Memory | None = None,
+        interruption: Interruption | None = None,
     ) -> None:
         self._con = con
         self._rules = rules
@@ -61,6 +64,7 @@ class JudgingSession:
         self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
         self._memory = memory or Memory(con, None)
+        self._interruption = interruption or Interruption()
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
@@ -75,6 +79,11 @@ class JudgingSession:
         """The path of the margins file; None: none was asked for."""
         return None if self._margins is None else self._margins.path
 
+    @property
+    def judged(self) -> frozenset[str]:
+        """The ids of the drives that were judged."""
+        return frozenset(self._seen)
+
     def has_judged(self, drive: Drive) -> bool:
         """Whether this very log was judged before."""
         return drive.trace.drive_id in self._seen
@@ -86,15 +95,19 @@ class JudgingSession:
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, nothing of it stays behind.
 
-        Errors: `duckdb.OutOfMemoryException` for several drives, which may fit one by one, and for one that does not fit with
-        all the memory there is, each of its egos alone.
+        Errors: `InterruptedRunError`. `duckdb.OutOfMemoryException` for several drives, which may fit one by one, and for one that does
+        not fit with all the memory there is, each of its egos alone.
         """
         if not drives:
             return
         done = False
         while not done:
             try:
-                done = self._judge(drives)
+                with self._interruption.interruptible(self._con):
+                    done = self._judge(drives)
+            except InterruptedRunError:
+                self._forget([drive.trace.drive_id for drive in drives])  # what did so may have been interrupted too
+                raise
             except duckdb.OutOfMemoryException:
                 # what one ego needs and cannot be spilled to disk may take what the machine has
                 if len(drives) > 1 or not self._memory.lift_limit():

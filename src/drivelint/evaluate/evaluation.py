@@ -63,7 +63,7 @@ class Evaluation:
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
-        with ThreadPoolExecutor(1) as pool, self.con.cursor() as other:
+        with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as other:
             helper = replace(self, con=other)
             helped = pool.submit(helper.judge_from_queue, todo)
             try:

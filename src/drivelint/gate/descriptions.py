@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from drivelint.result.gate import ComparedFinding, Difference, Gate, NewUnknowns, Waiver
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 MAX_LINES: Final = 50
 """Findings or reasons that a terminal shows of each kind; JSON has them all."""
@@ -147,6 +149,16 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     if waiver is not None:
         return waiver_reason(waiver)
     return "known: the baseline has it" if gate and gate.in_baseline(finding_id) else ""
+
+
+def excuse(result: Result, row: Row, rule: Row | None) -> str:
+    """Return why a finding, or a failed verdict, does not gate; '' where it does. `rule`: its row of the table `rule`."""
+    if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
+        return reason
+    if rule is None or rule["status"] != "stable":
+        return "draft" if rule is None else str(rule["status"])
+    severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
+    return "" if row["severity"] in severe else f"below --fail-on {result.fail_on}"
 
 
 def gate_counts(gate: Gate) -> dict[str, Any]:

@@ -12,10 +12,11 @@ from lxml import etree
 from drivelint.gate import descriptions
 from drivelint.report.xml import add, document, replace_non_xml
 from drivelint.result import counts
+from drivelint.result.model import failures_without_finding, gating_unknowns, off_map_reason
 from drivelint.result.text import line, with_count
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import pyarrow as pa
 
@@ -31,86 +32,111 @@ _key = itemgetter("drive_id", "rule_id", "profile")
 
 
 class Case(NamedTuple):
-    """A test case; `outcome` is the name of its element (failure, error, skipped), None: passed."""
+    """A test case; `outcome` is the name of its element (failure, error, skipped), None: passed. `notes`: its system-out."""
 
     name: str
     outcome: str | None
     kind: str
     lines: list[str]
+    notes: Sequence[str] = ()
 
 
 def render(result: Result) -> bytes:
     """Return the report as UTF-8 XML.
 
-    A test case gathers the verdict rows of a drive, rule and profile: any error is an error, any fail a failure that
-    lists its findings, any unknown is skipped with the reasons (an error under `--strict`). Not applicable is skipped.
-    A draft never fails a suite: its failures are skipped, saying so; so are findings that the gate lets through, where a case
-    has no others. A drive that could not be judged is an error.
+    It counts what the exit code counts. A failure is a case of a drive, rule and profile with something that makes exit code 1; an
+    error is what makes exit code 2, 3 or 4: a rule in error, an unknown verdict that may not be, a drive that was not judged, one
+    that the map does not fit, a lossy log. Whatever else is unknown, not applicable, or found and does not gate, is skipped with
+    its reasons, or in the system-out of a case that is none of that.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases(result)
     totals = dict.fromkeys(("tests", "failures", "errors"), 0)
-    for drive in result.drives.select(["drive_id", "status", "status_reason"]).to_pylist():
-        suite = list(cases.get(drive["drive_id"], ()))
-        if drive["status"] == "not_judged":
-            suite.insert(0, Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""]))
-        counted = _suite(root, drive["drive_id"], suite)
+    for drive in result.drives.to_pylist():
+        counted = _suite(root, drive["drive_id"], [*_of_drive(drive), *cases.get(drive["drive_id"], ())])
         totals = {name: n + counted[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
     return document(root)
 
 
+def _of_drive(drive: Row) -> Iterator[Case]:
+    """Yield what is wrong with a drive as a whole."""
+    if drive["status"] == "not_judged":
+        yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
+    elif drive["lossy"]:
+        yield Case("the log is whole", "error", "lossy", ["parts of the log were lost"])
+    if (reason := off_map_reason(drive)) is not None:
+        yield Case("the map fits the drive", "error", "map", [reason])
+
+
+class _Lines(NamedTuple):
+    """What a test case has to tell, one line each."""
+
+    erred: list[str]
+    stopping: list[str]
+    not_gating: list[str]
+    unknown: list[str]
+    not_applicable: list[str]
+    passed: list[str]
+
+
 def _cases(result: Result) -> dict[str, list[Case]]:
     """Return drive_id -> its test cases, in the order of the verdict table."""
-    starts = result.start_times
-    drafts = set(result.rules.filter(pc.not_equal(result.rules["status"], "stable"))["rule_id"].to_pylist())
-    found: dict[CaseKey, list[str]] = defaultdict(list)
-    passed: dict[CaseKey, list[str]] = defaultdict(list)
-    for row in result.findings.to_pylist():
-        text = line(row, starts.get(row["drive_id"]))
-        if reason_not_gating := descriptions.reason_not_gating(result.gate, row["finding_id"]):
-            passed[_key(row)].append(f"{reason_not_gating}: {text}")
+    told: dict[CaseKey, _Lines] = defaultdict(lambda: _Lines([], [], [], [], [], []))
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+
+    def add_failed(row: Row, text: str) -> None:
+        reason = descriptions.excuse(result, row, rules.get(row["rule_id"]))
+        lines = told[_key(row)]
+        if reason:
+            lines.not_gating.append(f"does not gate ({reason}): {text}")
         else:
-            found[_key(row)].append(text)
-    reasons: dict[CaseKey, dict[str, list[str]]] = defaultdict(dict)
+            lines.stopping.append(text)
+
+    of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
     for row in _reasons(result.verdicts):
-        reasons[_key(row)].setdefault(row["verdict"], []).append(with_count(row["reason"], row["count_all"]))
+        lines = told[_key(row)]  # a case of each, in the order of the verdicts
+        if row["verdict"] in of_verdict:
+            getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
+    for row in result.findings.to_pylist():
+        add_failed(row, line(row, result.start_times.get(row["drive_id"])))
+    for row in _reasons(failures_without_finding(result)):
+        add_failed(row, with_count(row["reason"], row["count_all"]))
+    required = set(_keys(gating_unknowns(result)))
     cases: dict[str, list[Case]] = defaultdict(list)
-    for key, verdicts in reasons.items():
-        if "fail" in verdicts and key in found:
-            verdicts["fail"] = [*found[key], *passed[key]]
-        elif "fail" in verdicts and key in passed:
-            del verdicts["fail"]
-            verdicts["let_through"] = passed[key]
-        cases[key[0]].append(_case(key, verdicts, draft=key[1] in drafts, strict=result.strict))
+    for key, lines in told.items():
+        cases[key[0]].append(_case(key, lines, required=key in required))
     return cases
 
 
 def _reasons(verdicts: pa.Table) -> Sequence[Row]:
     """Return each distinct verdict and reason of a drive, rule and profile with its count; passes need no reason."""
     reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
-    columns = ["drive_id", "rule_id", "profile", "verdict"]
+    columns = ["drive_id", "rule_id", "profile", "severity", "verdict"]
     return counts.distinct_rows(verdicts.select(columns).append_column("reason", reason), [*columns, "reason"])
 
 
-def _case(key: CaseKey, verdicts: dict[str, list[str]], *, draft: bool, strict: bool) -> Case:
+def _keys(rows: pa.Table) -> Iterator[CaseKey]:
+    return map(_key, rows.select(["drive_id", "rule_id", "profile"]).to_pylist())
+
+
+def _case(key: CaseKey, lines: _Lines, *, required: bool) -> Case:
+    """Return the test case of a drive, rule and profile; `required`: what is unknown in it may not be."""
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
-    if "error" in verdicts:
-        return Case(name, "error", "error", verdicts["error"])
-    if "fail" in verdicts:
-        lines = [f"draft, does not gate: {x}" for x in verdicts["fail"]]
-        return Case(name, "skipped", "draft", lines) if draft else Case(name, "failure", "fail", verdicts["fail"])
-    let_through = verdicts.get("let_through", [])
-    if "unknown" in verdicts:
-        lines = [*(f"unknown: {x}" for x in verdicts["unknown"]), *let_through]
-        return Case(name, "error" if strict and not draft else "skipped", "unknown", lines)
-    if let_through:
-        return Case(name, "skipped", "let_through", let_through)
-    if "pass" in verdicts:
+    unknown = [f"unknown: {x}" for x in lines.unknown]
+    if lines.erred:
+        return Case(name, "error", "error", lines.erred, [*lines.stopping, *lines.not_gating, *unknown])
+    if lines.stopping:
+        return Case(name, "failure", "fail", lines.stopping, [*lines.not_gating, *unknown])
+    if unknown and required:
+        return Case(name, "error", "unknown", unknown, lines.not_gating)
+    if unknown or lines.not_gating:
+        return Case(name, "skipped", "unknown" if unknown else "does_not_gate", [*unknown, *lines.not_gating])
+    if lines.passed:
         return Case(name, None, "pass", [])
-    return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in verdicts.get("not_applicable", [])])
+    return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in lines.not_applicable])
 
 
 def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
@@ -122,9 +148,18 @@ def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, 
     for case in cases:
         element = add(suite, "testcase", name=case.name, classname=drive_id)
         if case.outcome:
-            lines = case.lines[:MAX_LINES]
-            if more := len(case.lines) - len(lines):
-                lines.append(f"... and {more} more: see findings.parquet and verdicts.parquet")
+            lines = _first(case.lines)
             detail = add(element, case.outcome, type=case.kind, message=lines[0] if lines else case.kind)
             detail.text = replace_non_xml("\n".join(lines))
+        if case.notes:
+            add(element, "system-out").text = replace_non_xml("\n".join(_first(case.notes)))
     return counted
+
+
+def _first(lines: Sequence[str]) -> list[str]:
+    """Return the lines that are shown, and how many more there are."""
+    more = len(lines) - MAX_LINES
+    return [
+        *lines[:MAX_LINES],
+        *([f"... and {more} more: see findings.parquet and verdicts.parquet"] if more > 0 else []),
+    ]

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from drivelint.result.gate import ComparedFinding, Difference, Gate
     from drivelint.result.model import Result
-    from drivelint.result.text import Row
 
 MAX_ROWS: Final = 40
 """Rows per table."""
@@ -34,17 +33,21 @@ MAX_REASON_CHARS: Final = 160
 _END_PART: Final = "\f"
 
 
-def render(result: Result, link: str = "report.html") -> bytes:
-    """Return the summary as UTF-8 Markdown; `link`: where report.html is to be found.
+def render(result: Result, base_url: str | None = None) -> bytes:
+    """Return the summary as UTF-8 Markdown; `base_url`: where the result folder can be opened; None: nothing is linked.
+
+    A relative link would lead a reader of a comment into the repository.
 
     What gates comes first, then what a baseline or a waiver lets through, then what could not be judged.
     """
     end, gate = exit_status(result), result.gate
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
-    findings = [(row, _excuse(row, rules.get(row["rule_id"]), result)) for row in result.findings.to_pylist()]
+    findings = [
+        (row, descriptions.excuse(result, row, rules.get(row["rule_id"]))) for row in result.findings.to_pylist()
+    ]
     findings.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
-    marks = {0: "passed", 1: "failed", 2: "a rule could not be run"}
-    target = quote(link, safe="/:?&=%+,;@~.-_!$")  # a link that cannot end early
+    marks = {0: "passed", 1: "failed", 2: "a rule could not be run", 130: "interrupted"}
+    target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # it cannot end early
     parts = _parts(
         "report.md.j2",
         outcome=end,
@@ -66,13 +69,14 @@ def render(result: Result, link: str = "report.html") -> bytes:
     kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
     if len(kept) < len(parts):
         kept.append(f"{plural(len(parts) - len(kept), 'part')} left out here for length, not for weight.")
-    return ("\n\n".join([*kept, f"[The whole report]({target})"]) + "\n").encode("utf-8", "replace")
+    kept.append(f"[The whole report]({target})" if target else "The whole report is report.html of the results.")
+    return ("\n\n".join(kept) + "\n").encode("utf-8", "replace")
 
 
 def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
     """Return two results' difference as Markdown."""
     summary, titles = descriptions.exit_summary(failing, fail_on), descriptions.DIFF_STATUS_TITLES
-    return "\n\n".join(_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate))
+    return "\n\n".join(_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate, target=None))
 
 
 def _parts(template: str, **values: Any) -> list[str]:
@@ -107,16 +111,6 @@ def code(words_: str) -> str:
     """Return an id as code, in a table too; a backtick in it becomes an apostrophe."""
     plain = " ".join(words_.split()).replace("`", "'").replace("|", "\\|")
     return f"`{plain}`" if plain else ""
-
-
-def _excuse(row: Row, rule: Row | None, result: Result) -> str:
-    """Return why a finding does not gate; '' where it does."""
-    if reason_not_gating := descriptions.reason_not_gating(result.gate, row["finding_id"]):
-        return reason_not_gating
-    if rule is None or rule["status"] != "stable":
-        return "draft" if rule is None else rule["status"]
-    severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
-    return "" if row["severity"] in severe else f"below --fail-on {result.fail_on}"
 
 
 def _undecided(result: Result) -> list[dict[str, Any]]:

@@ -20,6 +20,7 @@ LABELS: Final = {
     ExitCode.USAGE: "ERROR",
     ExitCode.LOSSY: "LOSSY",
     ExitCode.NOT_JUDGED: "NOT JUDGED",
+    ExitCode.INTERRUPTED: "PARTIAL",
 }
 
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+import pyarrow.compute as pc
+
 from drivelint.report import html, junit, markdown, sarif, summary, xqar
-from drivelint.result import gate, request
-from drivelint.result.files import parquet_bytes, publish
+from drivelint.result import folder, gate, request
+from drivelint.result.files import parquet_bytes
 from drivelint.result.schemas import TABLE_OF_FILE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from drivelint.result.model import Result
@@ -26,20 +29,53 @@ REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
 """Name -> file in the result folder, and what renders it: the same result, the same bytes."""
 
 
-def write(result: Result, out: Path) -> None:
-    """Write every result file of `check` into the folder `out`; `summary.json` appears last, when the others are there.
+MARK: Final = "summary.json"
+"""The file without which a folder is no result: it is written last."""
+RESULT_FILES: Final = (
+    *(f"{name}.parquet" for name in TABLE_OF_FILE),
+    *(name for name, _ in REPORT_FORMATS.values()),
+    *(gate.FILE, request.RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, folder.MANIFEST),
+    *("annotated/*.mcap", "annotated/viewer-layout.json"),
+)
+"""Globs of the names that the files of a result may have."""
 
+
+@contextmanager
+def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Path | None]:
+    """Prepare the folder `out` for a result and yield one within for the files that grow during a run; None: nothing is written.
+
+    Errors: `UsageError` where it has files of such names that drivelint did not write, and may not overwrite them; `OutputError`.
+    """
+    if out is None:
+        yield None
+    else:
+        with folder.working_folder(out, RESULT_FILES, overwrite=overwrite) as work:
+            yield work
+
+
+def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> None:
+    """Write every result file of `check` into the folder `out`, in place of an earlier result.
+
+    `work`: what `working_folder` gave, whose files are taken over. `summary.json` appears last, when the others are there.
     Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
     """
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     contents["report.html"] = html.render(replace(result, folder=out))
     contents["junit.xml"] = junit.render(result)
-    moved: dict[str, Path | None] = {"margins.parquet": result.margins_file}
-    moved |= {name: None for name, _ in REPORT_FORMATS.values() if name not in contents}  # of an earlier result
-    moved |= {gate.FILE: None, request.RUN_FILE: None}
     if result.gate is not None:
         contents[gate.FILE] = gate.render(result.gate)
     if result.asked is not None:
         contents[request.RUN_FILE] = request.render(result.asked, out)
-    contents["summary.json"] = summary.render(result)
-    publish(out, contents, moved)
+    contents[MARK] = summary.render(result)
+    moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
+    if work is not None:
+        moved |= _grown(work, result)
+    folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+
+
+def _grown(work: Path, result: Result) -> dict[str, Path]:
+    """Return name -> file, of those that grew during a run and are of its result."""
+    judged = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
+    files = [path for path in sorted(work.rglob("*")) if path.is_file() and not path.name.startswith(".")]
+    # a drive may be annotated before it turns out that it cannot be judged to its end
+    return {path.relative_to(work).as_posix(): path for path in files if path.suffix != ".mcap" or path.stem in judged}

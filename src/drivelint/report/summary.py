@@ -43,6 +43,8 @@ def content(result: Result) -> dict[str, Any]:
         "exit": {"code": int(end.code), "name": end.code.name.lower(), "why": end.why},
         "fail_on": result.fail_on,
         "strict": result.strict,
+        "required": list(result.required),
+        "interrupted": result.interrupted,
         "gate": None if result.gate is None else descriptions.gate_counts(result.gate),
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,

@@ -76,29 +76,31 @@ def prepare_folder(out: Path) -> None:
         raise _unwritable(out, error) from error
 
 
-def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]) -> None:
+def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None], mark: str | None = None) -> None:
     """Write files into the folder `out`, all of them complete on disk before the first gets its name.
 
     `contents`: name -> bytes; `moved`: name -> a finished file that is taken over, or None: what an earlier run left
-    under that name goes, because it is not of this run. Names are published in order, those of `moved` first.
+    under that name goes, because it is not of this run. Names are published in order, those of `moved` first. `mark`: the name
+    of the file that tells that the folder is whole: the earlier one goes before anything else changes.
     Errors: `OutputError` when the folder cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:
         out.mkdir(parents=True, exist_ok=True)
         for name, source in moved.items():
-            if source is None:
-                (out / name).unlink(missing_ok=True)
-                continue
-            temporary = out / f".{name}.{os.getpid()}.tmp"
-            shutil.move(source, temporary)
-            staged.append((temporary, out / name))
+            if source is not None:
+                staged.append(_temporary(out / name))
+                shutil.move(source, staged[-1][0])
         for name, content in contents.items():
-            temporary = out / f".{name}.{os.getpid()}.tmp"
-            staged.append((temporary, out / name))
-            temporary.write_bytes(content)
+            staged.append(_temporary(out / name))
+            staged[-1][0].write_bytes(content)
         for temporary, _ in staged:
             _sync(temporary)
+        for name in [mark] if mark else []:
+            (out / name).unlink(missing_ok=True)
+            _sync(out)
+        for name in [name for name, source in moved.items() if source is None]:
+            (out / name).unlink(missing_ok=True)
         for temporary, final in staged:
             temporary.replace(final)
         _sync(out)
@@ -107,6 +109,12 @@ def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]
     finally:
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
+
+
+def _temporary(final: Path) -> tuple[Path, Path]:
+    """Return the name beside a file under which it is written, and its own."""
+    final.parent.mkdir(exist_ok=True)
+    return final.with_name(f".{final.name}.{os.getpid()}.tmp"), final
 
 
 def _unwritable(out: Path, error: OSError) -> OutputError:

@@ -32,7 +32,15 @@ def load_result(folder: Path) -> Result:
     tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
     gate = gates.load(folder)
     try:
-        return Result(**tables, fail_on=summary["fail_on"], strict=summary["strict"], gate=gate, folder=folder)
+        return Result(
+            **tables,
+            fail_on=summary["fail_on"],
+            strict=summary["strict"],
+            required=tuple(summary.get("required", ())),  # older results say neither
+            interrupted=summary.get("interrupted", False),
+            gate=gate,
+            folder=folder,
+        )
     except DriveLintError as error:
         raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
 

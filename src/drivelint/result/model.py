@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import ExitCode
-from drivelint.phrases import plural
+from drivelint.phrases import listed, plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 
@@ -39,7 +39,8 @@ class Result:
 
     `scenes` to `opportunities`: the evidence for pictures and charts, empty where none was gathered.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
-    `fail_on`: critical, major, minor or never. `strict`: unknown is not good enough.
+    `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
+    `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
     `folder`: where its files lie or will lie, or None.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
@@ -59,6 +60,8 @@ class Result:
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
+    required: tuple[str, ...] = ()
+    interrupted: bool = False
     gate: Gate | None = None
     asked: RunRequest | None = None
     folder: Path | None = None
@@ -79,7 +82,7 @@ class Result:
 
 
 def exit_status(result: Result) -> ExitStatus:
-    """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0, and why.
+    """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
     """
@@ -88,19 +91,13 @@ def exit_status(result: Result) -> ExitStatus:
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
     """Yield what the run comes to, weightiest first."""
-    gating = _of_stable_rules(result, result.verdicts)
+    if result.interrupted:
+        yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
     if errors := _count(result.verdicts, "error"):
         yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
-    let_through = ""
-    if result.gate is None:
-        if failed := _count(_at_or_above(gating, result.fail_on), "fail"):
-            yield ExitStatus(
-                ExitCode.FAILED, f"{plural(failed, 'verdict')} failed at or above severity {result.fail_on}"
-            )
-    else:
-        stopped, let_through = _gate(result, result.gate, gating)
-        if stopped:
-            yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
+    stopped, let_through = _stopped(result), _let_through(result)
+    if stopped:
+        yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
@@ -109,8 +106,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
-    if result.strict and (unknown := _count(gating, "unknown")):
-        yield ExitStatus(ExitCode.NOT_JUDGED, f"{plural(unknown, 'verdict')} unknown, and --strict is set")
+    if (unknown := gating_unknowns(result)).num_rows:
+        yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
     if result.lossy:
         yield ExitStatus(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
     if result.fail_on == "never":
@@ -121,6 +118,39 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
         )
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+
+
+def partial_sentence(drives: pa.Table) -> str:
+    """Return how much of an interrupted run there is. `drives`: its table `drive`."""
+    judged = int(pc.sum(pc.equal(drives["status"], "judged")).as_py() or 0)
+    return f"partial: {judged} of {plural(drives.num_rows, 'drive')} judged, interrupted"
+
+
+def gating_findings(result: Result) -> pa.Table:
+    """Return the findings that make exit code 1: of stable rules, severe enough, neither waived nor in the baseline."""
+    rows = _severe(result, result.findings)
+    if (gate := result.gate) is None:
+        return rows
+    return rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
+
+
+def failures_without_finding(result: Result) -> pa.Table:
+    """Return the failed verdicts for whose drive, ego, rule and profile there is no finding.
+
+    Baseline and waivers let findings through, not verdicts: those of stable rules that are severe enough make exit code 1.
+    """
+    keys = ["drive_id", "ego_id", "rule_id", "profile"]
+    told = {tuple(row.values()) for row in result.findings.select(keys).to_pylist()}
+    rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "fail"))
+    return rows.filter(pa.array([tuple(row.values()) not in told for row in rows.select(keys).to_pylist()], pa.bool_()))
+
+
+def gating_unknowns(result: Result) -> pa.Table:
+    """Return the unknown verdicts that make exit code 4: those of every stable rule (`strict`), or of the required ones."""
+    rows = _of_stable_rules(result, result.verdicts)
+    rows = rows.filter(pc.equal(rows["verdict"], "unknown"))
+    required = pa.array(result.required, pa.string())
+    return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
 
 
 def off_map_reason(drive: Row) -> str | None:
@@ -142,30 +172,38 @@ def _of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
     return rows.filter(pc.is_in(rows["rule_id"], value_set=stable.combine_chunks()))
 
 
-def _at_or_above(rows: pa.Table, fail_on: str) -> pa.Table:
-    if fail_on == "never":
-        return rows.slice(0, 0)
-    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(SEVERITIES[: SEVERITIES.index(fail_on) + 1])))
+def _severe(result: Result, rows: pa.Table) -> pa.Table:
+    """Return the rows of stable rules at or above the severity that makes exit code 1."""
+    least = () if result.fail_on == "never" else SEVERITIES[: SEVERITIES.index(result.fail_on) + 1]
+    rows = _of_stable_rules(result, rows)
+    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(least, pa.string())))
 
 
-def _gate(result: Result, gate: Gate, gating: pa.Table) -> tuple[str, str]:
-    """Return what a gate stops ('' for nothing) and what it lets through, in words.
+def _stopped(result: Result) -> str:
+    """Return what makes exit code 1, in words; '' for nothing."""
+    found, bare = gating_findings(result).num_rows, _severe(result, failures_without_finding(result)).num_rows
+    new = "new finding" if result.gate is not None and result.gate.baseline is not None else "finding"
+    parts = [plural(found, new)] if found else []
+    parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
+    return " and ".join(parts)
 
-    It lets findings through, not verdicts: a failed verdict of a drive, ego, rule and profile without any finding is stopped.
-    """
-    findings = _at_or_above(_of_stable_rules(result, result.findings), result.fail_on)
-    ids = findings["finding_id"].to_pylist()
+
+def _let_through(result: Result) -> str:
+    """Return how many severe findings baseline and waivers let through, in words; '' without either."""
+    if (gate := result.gate) is None:
+        return ""
+    ids = _severe(result, result.findings)["finding_id"].to_pylist()
     waived = sum(gate.waiver(name) is not None for name in ids)
     known = sum(gate.waiver(name) is None and gate.in_baseline(name) for name in ids)
-    stopped = len(ids) - waived - known
-    keys = ["drive_id", "ego_id", "rule_id", "profile"]
-    told = {tuple(row.values()) for row in findings.select(keys).to_pylist()}
-    failed = _at_or_above(gating, result.fail_on)
-    failed = failed.filter(pc.equal(failed["verdict"], "fail")).select(keys)
-    bare = sum(tuple(row.values()) not in told for row in failed.to_pylist())
-    new = "new finding" if gate.baseline is not None else "finding"
-    parts = [plural(stopped, new)] if stopped else []
-    parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
     through = [f"{known} known"] if gate.baseline is not None else []
     through += [f"{waived} waived"] if gate.waivers else []
-    return " and ".join(parts), f" ({', '.join(through)})" if through else ""
+    return f" ({', '.join(through)})" if through else ""
+
+
+def _unknown_sentence(result: Result, unknown: pa.Table) -> str:
+    """Return how many verdicts are unknown that may not be; without `strict` also of which required rules."""
+    if result.strict:
+        return f"{plural(unknown.num_rows, 'verdict')} unknown, and --strict is set"
+    of_rules = pc.value_counts(unknown["rule_id"]).to_pylist()
+    told = [f"{each['counts']} of {each['values']}" for each in sorted(of_rules, key=lambda each: str(each["values"]))]
+    return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {listed(told)}"

@@ -85,6 +85,28 @@ def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
             con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 
+_cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
+"""Id of a connection -> those of its cursors that are open: interrupting the one does not interrupt the others."""
+
+
+@contextmanager
+def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
+    """Open a second connection to the database of `con`, which `interrupt` knows."""
+    with con.cursor() as other:
+        mine = _cursors.setdefault(id(con), set())
+        mine.add(other)
+        try:
+            yield other
+        finally:
+            mine.discard(other)
+
+
+def interrupt(con: duckdb.DuckDBPyConnection) -> None:
+    """End the statements that run on a connection and on its cursors; called from another thread."""
+    for each in (con, *_cursors.get(id(con), ())):
+        each.interrupt()
+
+
 def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Forbid a database to open files, use the network or change settings, before rules run in it.
 

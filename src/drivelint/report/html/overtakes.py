@@ -13,7 +13,7 @@ from drivelint.report.html.svg import Axis, num, percent, round_step
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from drivelint.result.text import Row
 
@@ -44,8 +44,11 @@ _BINS: Final = 12
 _PREFERRED: Final = "nominal"
 
 
-def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> dict[str, Any] | None:
-    """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none."""
+def overtake_views(records: Sequence[Row], starts: Mapping[str, int], judged: Collection[str]) -> dict[str, Any] | None:
+    """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none.
+
+    `judged`: the profiles that verdicts are about; any other is a what-if.
+    """
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
         return None
@@ -55,6 +58,7 @@ def overtake_views(records: Sequence[Row], starts: Mapping[str, int]) -> dict[st
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
     return {
         "profiles": profiles,
+        "what_ifs": sorted(set(profiles) - set(judged)),
         "overtakes": [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
         "n": len(records),
         "zones": _zones(listed, profiles, starts),

@@ -150,7 +150,9 @@ def content(result: Result) -> dict[str, Any]:
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
         "far_m": FAR_M,
-        "overtakes": overtake_views(result.overtakes.to_pylist(), starts),
+        "overtakes": overtake_views(
+            result.overtakes.to_pylist(), starts, {p for ps in result.rules["profiles"].to_pylist() for p in ps}
+        ),
         "opportunities": overtaking_opportunities(result.opportunities.to_pylist()),
         "n_rules": len(rules),
         "rule_groups": _rule_groups(result, rules),

@@ -1,0 +1,34 @@
+"""The help of `check`, its options under headings."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from typer.core import TyperCommand
+
+from drivelint.cli import options
+
+_GROUPS: Final = {
+    "Input": tuple(options.DRIVE_OPTIONS),
+    "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
+    "Gate": ("fail_on", "strict", "require", "confidence", "baseline", "waivers", "today"),
+    "Output": ("out", "overwrite", "format_", "margins", "keep_db", "annotate", "verbose", "quiet"),
+}
+"""Heading -> parameters, in the order of the command; an option that is in none comes last."""
+
+
+class GroupedCommand(TyperCommand):
+    """A command whose options stand in groups."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments and one section of options per group."""
+        groups: dict[str, list[tuple[str, str]]] = {name: [] for name in ("Arguments", *_GROUPS, "Other options")}
+        heading = {param: name for name, params in _GROUPS.items() for param in params}
+        for param in self.get_params(ctx):
+            if (record := param.get_help_record(ctx)) is not None:
+                is_option = param.param_type_name == "option"
+                groups[heading.get(param.name or "", "Other options") if is_option else "Arguments"].append(record)
+        for name, records in groups.items():
+            if records:
+                with formatter.section(name):
+                    formatter.write_dl(records)

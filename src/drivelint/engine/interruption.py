@@ -1,0 +1,60 @@
+"""Stops a run from another thread, so that what was judged until then can be kept."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from threading import Lock
+from typing import TYPE_CHECKING
+
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import duckdb
+
+
+class InterruptedRunError(Exception):
+    """A batch was given up because the run was interrupted."""
+
+
+class Interruption:
+    """Whether a run was interrupted. It ends the statements of a batch that is being judged, and no other ones."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._con: duckdb.DuckDBPyConnection | None = None
+        self.requested = False
+
+    def request(self) -> None:
+        """Interrupt the run; to be called again while it goes on, as an interrupt between two statements is lost."""
+        with self._lock:
+            self.requested = True
+            if self._con is not None:
+                store.interrupt(self._con)
+
+    @contextmanager
+    def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:
+        """Let statements on `con` be interrupted inside the block.
+
+        Errors: `InterruptedRunError` before it, or at its end whatever came of it: a rule that was interrupted looks like one that erred.
+        """
+        with self._lock:
+            if self.requested:
+                raise InterruptedRunError
+            self._con = con
+        try:
+            yield
+        except Exception as error:
+            self._release()
+            if self.requested:
+                raise InterruptedRunError from error
+            raise
+        else:
+            self._release()
+            if self.requested:
+                raise InterruptedRunError
+
+    def _release(self) -> None:
+        with self._lock:
+            self._con = None

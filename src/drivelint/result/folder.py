@@ -1,0 +1,95 @@
+"""The folder that `check --out` writes, replaced as one by a later run. What drivelint did not write there is never touched.
+
+`files.json` lists what drivelint wrote. A run works in a folder of its own within, so that one that ends early changes nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import UsageError
+from drivelint.phrases import listed
+from drivelint.result.files import prepare_folder, publish
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+MANIFEST: Final = "files.json"
+_KEY: Final = "written_by_drivelint"
+_WORK: Final = ".drivelint.work"
+
+
+@contextmanager
+def working_folder(out: Path, patterns: Sequence[str], *, overwrite: bool = False) -> Iterator[Path]:
+    """Make the folder `out` and yield an empty one within for the files of a run, which goes afterwards.
+
+    `patterns`: globs of the names that a result may have. Errors: `UsageError` where `out` is a file, or has such names that drivelint
+    did not write, unless they may be overwritten; `OutputError`.
+    """
+    prepare_folder(out)
+    present = _present(out, patterns)
+    foreign = sorted(present - _written(out) - {MANIFEST})
+    if foreign and not overwrite:
+        raise UsageError(
+            f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
+            "choose another folder, or replace it with --overwrite"
+        )
+    for left in out.glob(f"{_WORK}.*"):  # of a run that was killed
+        shutil.rmtree(left, ignore_errors=True)
+    work = out / f"{_WORK}.{os.getpid()}"
+    try:
+        work.mkdir()
+        yield work
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def replace(
+    out: Path,
+    contents: dict[str, bytes],
+    moved: dict[str, Path],
+    mark: str,
+    patterns: Sequence[str],
+    *,
+    overwrite: bool,
+) -> None:
+    """Replace the result in `out` by these files. It is whole when `mark` is there: until then no result is.
+
+    What drivelint wrote there earlier and these files lack goes; with `overwrite` whatever has the name of a result does.
+    Errors: `OutputError`.
+    """
+    names = {*contents, *moved}
+    present = _present(out, patterns) - {MANIFEST}
+    before = present if overwrite else present & _written(out)
+    # should the machine fail halfway, the next run knows both the old and the new files
+    publish(out, {MANIFEST: _manifest(before | names)}, {})
+    gone: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
+    publish(out, {MANIFEST: _manifest(names), **contents}, {**gone, **moved}, mark)
+    for folder in {(out / name).parent for name in gone} - {out}:
+        with suppress(OSError):  # somebody's file is there
+            folder.rmdir()
+
+
+def add(out: Path, name: str, content: bytes) -> None:
+    """Write one more file into the folder of a result. Errors: `OutputError`."""
+    publish(out, {MANIFEST: _manifest({*_written(out), name}), name: content}, {})
+
+
+def _present(out: Path, patterns: Sequence[str]) -> set[str]:
+    return {path.relative_to(out).as_posix() for pattern in patterns for path in out.glob(pattern)}
+
+
+def _written(out: Path) -> set[str]:
+    try:
+        return set(map(str, json.loads((out / MANIFEST).read_text(encoding="utf-8"))[_KEY]))
+    except (OSError, ValueError, KeyError, TypeError):
+        return set()  # whatever it is, it is not known to be drivelint's
+
+
+def _manifest(names: set[str]) -> bytes:
+    return (json.dumps({_KEY: sorted(names)}, indent=2, ensure_ascii=False) + "\n").encode()

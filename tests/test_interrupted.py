@@ -1,0 +1,183 @@
+"""Ctrl-C during a check keeps what was judged until then, and the result says that it is partial."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+import pyarrow.compute as pc
+import pytest
+
+from drivelint.engine import batch
+from drivelint.engine.interruption import Interruption
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from drivelint.result.load import load_result
+from drivelint.run import CheckOptions, check
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+OVERTAKE = ROOT / "fixtures" / "overtake"
+TRACES = tuple(str(OVERTAKE / f"{name}.csv") for name in ("collision", "near_miss", "safe"))
+"""In the order in which they are judged."""
+SECOND = "(SELECT DISTINCT drive_id::VARCHAR AS name FROM ego_state WHERE starts_with(drive_id::VARCHAR, 'near_miss'))"
+ENDLESS = f"""SELECT count(*) FROM {SECOND} JOIN range(1000000) a(i) ON sin(a.i) < 2 + length(name)
+JOIN range(1000000) b(i) ON sin(a.i + b.i) > 2 + length(name)"""
+"""A billion rows a second would take a quarter of an hour, and without that drive there is none."""
+RULE = f"""-- title = "not faster than 10 m/s"
+-- clause = "none"
+-- hypothesis = "is it slow?"
+-- kind = "invariant"
+-- derivation = "direct"
+-- severity = "minor"
+-- legal = "should"
+-- status = "draft"
+-- sense = "<="
+-- unit = "m/s"
+-- reads = ["ego_state"]
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state
+WHERE ({ENDLESS}) = 0
+"""
+
+
+@pytest.fixture
+def pack(tmp_path: Path) -> Path:
+    """Return a folder with a rule that never comes to an end on the second drive."""
+    (tmp_path / "packs" / "mine").mkdir(parents=True)
+    (tmp_path / "packs" / "mine" / "slow.sql").write_text(RULE, encoding="utf-8")
+    return tmp_path / "packs"
+
+
+class Stopper(Silent):
+    """Interrupts a run some time after so many drives were judged, as the command line does: again and again."""
+
+    def __init__(self, after: int, *, later_s: float = 0.0) -> None:
+        self.interruption, self._left, self._later_s, self._over = Interruption(), after, later_s, Event()
+
+    def advance(self, n: int = 1) -> None:
+        """Count a drive."""
+        self._left -= n
+        if self._left == 0 and not self._later_s:
+            self.interruption.request()
+
+    @contextmanager
+    def acting(self) -> Iterator[None]:
+        """Interrupt in the background while the block runs."""
+
+        def act() -> None:
+            while not self._over.wait(0.05):
+                if self._left <= 0:
+                    time.sleep(self._later_s)
+                    self.interruption.request()
+
+        thread = Thread(target=act)
+        thread.start()
+        try:
+            yield
+        finally:
+            self._over.set()
+            thread.join()
+
+
+def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = None) -> CheckOptions:
+    return CheckOptions(
+        traces=traces,
+        map=OVERTAKE / "road.xodr",
+        mapping=str(OVERTAKE / "mapping.toml"),
+        rules=("mine", "ukhc.r162.safe-distance-ahead"),
+        rules_dirs=(pack,),
+        out=out,
+        margins=out is not None,
+        keep_db=out is not None,
+    )
+
+
+@pytest.mark.parametrize("later_s", [0.0, 1.0], ids=["between two drives", "while one is judged"])
+def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
+    pack: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, later_s: float
+) -> None:
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)  # each drive is a batch
+    stopper = Stopper(1, later_s=later_s)
+    with stopper.acting():
+        partial = check(options(pack, out=tmp_path / "a"), stopper, stopper.interruption)
+    alone = check(options(pack, TRACES[:1], tmp_path / "b"), Silent())
+    assert partial.interrupted
+    for name in ("verdicts", "findings", "courses", "tracks", "scenes"):
+        assert getattr(partial, name).equals(getattr(alone, name)), name
+    assert set(partial.verdicts["verdict"].to_pylist()) <= {"pass", "fail", "unknown", "not_applicable"}
+    rows = partial.drives.select(["file_name", "status", "status_reason"]).to_pylist()
+    why = "the run was interrupted before this drive was judged"
+    assert sorted(tuple(row.values()) for row in rows) == [
+        ("collision.csv", "judged", None), ("near_miss.csv", "not_judged", why), ("safe.csv", "not_judged", why),
+    ]  # fmt: skip
+    assert partial.drives.filter(pc.equal(partial.drives["status"], "judged")).equals(alone.drives)
+    assert partial.margins_file is not None
+    assert alone.margins_file is not None
+    assert partial.margins_file.read_bytes() == alone.margins_file.read_bytes()
+    assert partial.asked is not None
+    write(partial, tmp_path / "out")
+    assert load_result(tmp_path / "out").interrupted
+
+
+def test_before_any_drive_is_judged_there_is_no_result(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    stopper = Stopper(0, later_s=0.01)
+    with stopper.acting(), pytest.raises(KeyboardInterrupt):
+        check(options(pack, TRACES[1:]), stopper, stopper.interruption)
+
+
+def run(code: str, *args: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", f"{code}\nfrom drivelint.cli import main\nmain()", *args],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src"), "COLUMNS": "120"},
+    )
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
+def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
+    args += ["--rules-dir", str(pack), "--rules", "mine", "--rules", "ukhc.r162.*"]
+    with run("from drivelint.engine import batch\nbatch.BATCH_STATES = 1", "check", *TRACES, *args) as process:
+        try:
+            until = time.monotonic() + 60
+            while not list(out.glob(".drivelint.work.*/annotated/collision*.mcap")) and time.monotonic() < until:
+                time.sleep(0.1)
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            said, err = process.communicate(timeout=30)
+        finally:
+            process.kill()
+    assert process.returncode == 130, err
+    assert "drivelint: interrupted: keeps what is judged" in err
+    sentence = "partial: 1 of 3 drives judged, interrupted"
+    assert said.splitlines()[2].startswith("PARTIAL")
+    assert f"exit 130: {sentence}" in said
+    assert json.loads((out / "summary.json").read_text())["exit"]["why"] == sentence
+    assert sentence in (out / "report.html").read_text()
+    assert [path.name.partition("-")[0] for path in (out / "annotated").glob("*.mcap")] == ["collision"]
+    assert not [path.name for path in out.iterdir() if path.name.startswith(".")]
+    name = f"ukhc.r162.safe-distance-ahead@{json.loads((out / 'run.json').read_text())['traces'].popitem()[0]}"
+    for asks in (["report", str(out), "--to", "markdown"], ["diff", str(out), str(out)]):
+        with run("", *asks) as process:
+            _, err = process.communicate(timeout=60)
+        assert f"{out}: {sentence}" in err, asks
+    assert sentence in (out / "report.md").read_text()
+    with run("", "explain", name, "--in", str(out), "--samples", "0") as process:
+        _, err = process.communicate(timeout=60)
+    assert (process.returncode, sentence in err) == (0, True), err
