@@ -12,6 +12,7 @@ from drivelint import catalogue
 from drivelint.annotate import Annotator
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.batch import Drive, RefusedLog, cut_batches, read_drives, sorted_logs
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
@@ -48,6 +49,7 @@ class CheckOptions(DriveInput):
     margins: bool = False
     keep_db: bool = False
     annotate: bool = True
+    robustness: bool = True
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
@@ -86,6 +88,7 @@ def check(settings: CheckOptions, progress: Progress) -> Result:
             keep_db=settings.keep_db,
             observers=observers,
             memory=memory,
+            errors=MeasurementErrors() if settings.robustness else None,
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []

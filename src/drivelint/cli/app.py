@@ -20,7 +20,7 @@ from drivelint.cli import options, results, rules, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
 from drivelint.cli.options import Texts, argument, option
-from drivelint.errors import DriveLintError, ExitCode
+from drivelint.errors import DriveLintError, ExitCode, UsageError
 
 app = typer.Typer(
     name="drivelint",
@@ -88,6 +88,24 @@ def check(
         bool,
         option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
     ] = True,
+    robustness: Annotated[
+        bool,
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "Count in how many copies of the drive with recording errors a critical or major finding stays.",
+        ),
+    ] = True,
+    confidence: Annotated[
+        float | None,
+        option(
+            "--confidence",
+            "SHARE",
+            "Only findings that stay in this share of their copies gate, such as 0.95. Default: all gate.",
+            min=0.0,
+            max=1.0,
+        ),
+    ] = None,
     baseline: options.Baseline = None,
     waivers: options.Waivers = None,
     today: options.Today = None,
@@ -104,9 +122,9 @@ def check(
     SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
     status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
 
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline or --waivers: something that is new
-    and that nobody answers for); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged (with --strict: some
-    rule unknown); 75 the machine failed, try again; 130 interrupted.
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
+    that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
+    judged (with --strict: some rule unknown); 75 the machine failed, try again; 130 interrupted.
     """
     from drivelint import run
     from drivelint.engine.memory import format_bytes, peak_bytes
@@ -117,7 +135,11 @@ def check(
     from drivelint.result.model import exit_status
     from drivelint.settings import SETTINGS_FILE
 
-    gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
+    if confidence is not None and not robustness:
+        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+    gate_inputs = GateInputs.from_files(
+        baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
+    )
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
@@ -132,6 +154,7 @@ def check(
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
+        robustness=robustness,
         memory=values.parse_memory(memory),
     )
     if out is not None:
