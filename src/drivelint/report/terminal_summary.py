@@ -15,6 +15,7 @@ from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import listed, plural
 from drivelint.result import counts
+from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
 from drivelint.result.text import number, seconds
 
@@ -90,7 +91,7 @@ def _severities(rows: list[Row]) -> str:
 
 
 def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
-    """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something."""
+    """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something, or may have."""
     code = exit_status(result).code
     label, style = _LABEL.get(code, ("?", "bold yellow"))
     decided = counts.total(result.verdicts)
@@ -101,10 +102,17 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     in_drives = len({row["drive_id"] for row in found})
     where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
     text.append(f"{_severities(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
-    if touched := {row["drive_id"] for row in found if _is_contact(row, rules)}:
+    contacts = [row for row in found if _is_contact(row, rules)]
+    touched = {row["drive_id"] for row in contacts if not doubt(row)}
+    if touched:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
+    if maybe := {row["drive_id"] for row in contacts} - touched:
+        text.append(f"; possible contact in {len(maybe)}", "red")
+    if doubtful := sum(bool(doubt(row)) for row in found):
+        text.append(f"; {doubtful} only possible", "default")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
-        text.append(f"; {through} known or waived", "default")
+        unless = "known, waived or only possible" if result.gate.confidence is not None else "known or waived"
+        text.append(f"; {through} {unless}", "default")
     return text
 
 
@@ -169,7 +177,10 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     if row["object_id"] is not None:
         parts.append(f"object {row['object_id']}")
     when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
-    return Text.assemble(when, ("CONTACT " if contact else "", "bold red"), "; ".join(parts))
+    what = "possible contact " if doubt(row) else "CONTACT "
+    if doubt(row) and not contact:
+        parts[0] = f"possibly {parts[0]}"
+    return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
 
 
 def _broken(found: list[Row]) -> Table:

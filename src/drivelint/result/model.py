@@ -155,7 +155,8 @@ def _gate(result: Result, gate: Gate, gating: pa.Table) -> tuple[str, str]:
     ids = findings["finding_id"].to_pylist()
     waived = sum(gate.waiver(name) is not None for name in ids)
     known = sum(gate.waiver(name) is None and gate.in_baseline(name) for name in ids)
-    stopped = len(ids) - waived - known
+    possible = sum(gate.is_possible(name) and gate.waiver(name) is None and not gate.in_baseline(name) for name in ids)
+    stopped = len(ids) - waived - known - possible
     keys = ["drive_id", "ego_id", "rule_id", "profile"]
     told = {tuple(row.values()) for row in findings.select(keys).to_pylist()}
     failed = _at_or_above(gating, result.fail_on)
@@ -166,4 +167,5 @@ def _gate(result: Result, gate: Gate, gating: pa.Table) -> tuple[str, str]:
     parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
     through = [f"{known} known"] if gate.baseline is not None else []
     through += [f"{waived} waived"] if gate.waivers else []
+    through += [f"{possible} only possible"] if gate.confidence is not None else []
     return " and ".join(parts), f" ({', '.join(through)})" if through else ""
