@@ -133,10 +133,13 @@ class Robustness:
             if isinstance(error, duckdb.OutOfMemoryException) and self._memory.lift_limit():
                 self._try(chunk)
                 return
-            found = {}
+            for question in chunk[0].questions:
+                question.known_whole, question.size = False, Window.SIZES  # it stays without an answer
+            return
         for window in chunk:
             for question in window.questions:
-                _take(question, window.numbers, found.get(id(question), {}))
+                kept = found.get(id(question), {})  # of both windows, where it is asked in two
+                _take(question, window.numbers, {number: kept[number] for number in window.numbers if number in kept})
 
     def _stays(self, chunk: Sequence[Window]) -> dict[int, dict[int, float | None]]:
         """Return question -> copy that keeps it -> its margin there."""

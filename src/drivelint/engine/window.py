@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 NEAR_M: Final = (25.0, 100.0)
 """For each size of window: actors that stay farther away from the rectangle around the ego's way are left out."""
 
+LONG_NS: Final = 10_000_000_000
+"""Of a longer stretch, what is farther away from its worst step is left out at first."""
+
 
 class Asked(Protocol):
     """A finding that copies are judged for."""
@@ -111,10 +114,11 @@ def _parts(numbers: range, goals: Sequence[int]) -> list[range]:
 
 
 def _span(question: Asked) -> tuple[int, int]:
-    """Return from when to when a finding's window is: around the worst step, or around all of what was judged."""
+    """Return from when to when a finding's window is: a little more than its stretch, or much more."""
     finding, ref = question.finding, question.finding["t_ref_ns"]
-    start, end = finding["t_worst_ns"], finding["t_worst_ns"]
-    before, after = 1_500_000_000, 500_000_000
+    worst = finding["t_worst_ns"]
+    start, end = max(finding["t_start_ns"], worst - LONG_NS), min(finding["t_end_ns"], worst + LONG_NS)
+    before, after = 2_000_000_000, 1_000_000_000
     if ref is not None:
         start, end = min(ref, finding["t_start_ns"]), max(ref, finding["t_end_ns"])
         before, after = 6_000_000_000, 6_000_000_000
