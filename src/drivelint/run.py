@@ -15,6 +15,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
@@ -56,6 +57,7 @@ class CheckOptions(DriveInput):
     annotate: bool = True
     evidence: bool = False
     """Gather what reports show without `out`, too."""
+    robustness: bool = True
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
 
@@ -102,6 +104,7 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
             observers=observers,
             memory=memory,
             interruption=interruption,
+            errors=MeasurementErrors() if settings.robustness else None,
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []

@@ -111,6 +111,24 @@ def check(
         bool,
         option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
     ] = True,
+    robustness: Annotated[
+        bool,
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "Count in how many copies of the drive with recording errors a critical or major finding stays.",
+        ),
+    ] = True,
+    confidence: Annotated[
+        float | None,
+        option(
+            "--confidence",
+            "SHARE",
+            "Only findings that stay in this share of their copies gate, such as 0.95. Default: all gate.",
+            min=0.0,
+            max=1.0,
+        ),
+    ] = None,
     baseline: options.Baseline = None,
     waivers: options.Waivers = None,
     today: options.Today = None,
@@ -127,9 +145,10 @@ def check(
     SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
     status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
 
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline or --waivers: something that is new
-    and that nobody answers for); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged (with --strict or
-    --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged until then is kept.
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
+    that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
+    judged (with --strict or --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged
+    until then is kept.
     """
     from drivelint import run
     from drivelint.engine.interruption import Interruption
@@ -140,7 +159,11 @@ def check(
     from drivelint.result.model import exit_status
     from drivelint.settings import SETTINGS_FILE
 
-    gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out)
+    if confidence is not None and not robustness:
+        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+    gate_inputs = GateInputs.from_files(
+        baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
+    )
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
@@ -155,6 +178,7 @@ def check(
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
+        robustness=robustness,
         memory=values.parse_memory(memory),
     )
     interruption = Interruption()

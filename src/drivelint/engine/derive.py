@@ -12,11 +12,11 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
-from drivelint.sql.derivations import needed
+from drivelint.sql.derivations import ALWAYS_NEEDED, needed
 from drivelint.sql.statements import statement, texts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
 
     from drivelint.sql.derivations import Derivation
 
@@ -27,14 +27,24 @@ ONE_WORKER_STATES: Final = 1_000_000
 _EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
 
 
-def derive(con: duckdb.DuckDBPyConnection, tables: Iterable[str], *, of_the_map: bool) -> None:
+def derive(
+    con: duckdb.DuckDBPyConnection,
+    tables: Iterable[str],
+    *,
+    of_the_map: bool,
+    also: Iterable[str] = ALWAYS_NEEDED,
+    given: Collection[str] = (),
+) -> None:
     """Fill the library tables behind `tables`: those of the map, whose own tables get their geometries, or those of the drives.
 
+    `also`: tables that are wanted whatever the rules read. `given`: tables that are filled already.
     Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
     transaction, whose rows the other connections do not see.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
-    todo = {step.table: step for step in needed(tables) if step.of_the_map is of_the_map}
+    todo = {
+        step.table: step for step in needed(tables, also) if step.of_the_map is of_the_map and step.table not in given
+    }
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]

@@ -16,6 +16,7 @@ from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
+from drivelint.engine.robustness import Robustness
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
+    from drivelint.engine.copies import MeasurementErrors
 
 
 class BatchObserver(Protocol):
@@ -43,6 +45,7 @@ class JudgingSession:
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
+    `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
     """
 
     def __init__(
@@ -57,6 +60,7 @@ class JudgingSession:
         observers: Sequence[BatchObserver] = (),
         memory: Memory | None = None,
         interruption: Interruption | None = None,
+        errors: MeasurementErrors | None = None,
     ) -> None:
         self._con = con
         self._rules = rules
@@ -65,6 +69,11 @@ class JudgingSession:
         self._tables = {table for rule in rules for table in rule.reads}
         self._memory = memory or Memory(con, None)
         self._interruption = interruption or Interruption()
+        self._robustness = None
+        if errors:
+            self._robustness = Robustness(
+                con, rules, params, errors=errors, memory=self._memory, load=self._load, forget=self._forget_copies
+            )
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
@@ -115,6 +124,8 @@ class JudgingSession:
         self._seen.update(drive.trace.drive_id for drive in drives)
         if self._margins:
             self._margins.add(self._con, self._memory)
+        if self._robustness:
+            self._robustness.judge(drives)
         store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
 
     def _judge(self, drives: Sequence[Drive]) -> bool:
@@ -184,7 +195,7 @@ class JudgingSession:
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
         store.recreate_with_enums(
-            self._con, store.tables_of_lifetime("drive", "part"), (d.trace.drive_id for d in drives), _actors(drives)
+            self._con, store.tables_of_lifetime("drive", "part"), _drive_ids(drives), _actors(drives)
         )
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
@@ -217,12 +228,16 @@ class JudgingSession:
             self._kept_maps.update(new)
 
     def _forget(self, ids: Sequence[str]) -> None:
+        self._forget_copies(ids)
+        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # parts of it may be there
+            self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
+
+    def _forget_copies(self, ids: Sequence[str]) -> None:
+        """Delete what the database has of these drives; a kept one never had copies."""
         store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
-        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # parts of it may be there
-            self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
 def _on_map(drive: Drive) -> pa.Table:
@@ -231,7 +246,11 @@ def _on_map(drive: Drive) -> pa.Table:
     found: dict[str, str | float | None] = {"environment_id": place}
     if geo:
         found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
-    return with_columns(log, {name: [value] for name, value in found.items()})
+    return with_columns(log, {name: [value] * log.num_rows for name, value in found.items()})
+
+
+def _drive_ids(drives: Iterable[Drive]) -> list[str]:
+    return [each for drive in drives for each in drive.trace.tables["data_log"]["drive_id"].to_pylist()]
 
 
 def _actors(drives: Iterable[Drive]) -> set[str]:

@@ -11,13 +11,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint import catalogue
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import MeasurementErrors, verdict_sensitivity
+from drivelint.explain.sensitivity import for_verdict, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
@@ -88,7 +89,7 @@ def explain(request: ExplainRequest) -> Explanation:
             if part is not drive:
                 sandbox = opened.enter_context(case.sandbox([part]))
             found = verdict_changes(case, sandbox, now)
-            errors = request.errors.for_verdict(row["verdict"])
+            errors = for_verdict(request.errors, row["verdict"])
             if errors.samples:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
     rule = case.rule

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import duckdb
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from drivelint.arrays import with_columns
 from drivelint.engine.derive import derive
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.catalogue import Rule
-    from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Row
 
@@ -113,24 +110,3 @@ class Sandbox:
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""
         return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
-
-
-def renamed(trace: Trace, drive_id: str) -> Trace:
-    """Return a trace under another name."""
-    name = pa.scalar(drive_id, pa.string())
-    tables = {t: with_columns(rows, {"drive_id": pa.repeat(name, len(rows))}) for t, rows in trace.tables.items()}
-    return replace(trace, drive_id=drive_id, tables=tables)
-
-
-def crop(drive: Drive, from_ns: int, to_ns: int) -> Drive:
-    """Return the part of a drive between two times."""
-    tables = dict(drive.trace.tables)
-    for name in ("actor_state", "signal_state", "declared_event"):
-        t_ns = tables[name]["t_ns"]
-        tables[name] = tables[name].filter(pc.and_(pc.greater_equal(t_ns, from_ns), pc.less_equal(t_ns, to_ns)))
-    seen = pc.unique(tables["actor_state"]["actor_id"])
-    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
-    span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
-    about = {"t_start_ns": [span["min"]], "t_end_ns": [span["max"]], "n_states": [tables["actor_state"].num_rows]}
-    tables["data_log"] = with_columns(tables["data_log"], about)
-    return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from drivelint.engine.copies import crop
 from drivelint.explain import evidence
-from drivelint.explain.sandbox import Sandbox, crop
+from drivelint.explain.sandbox import Sandbox
 from drivelint.result.counts import grouped
 from drivelint.sql import store
 

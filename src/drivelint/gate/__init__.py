@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
 from drivelint.gate import descriptions, diff, waivers
+from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.gate import ComparedFinding, Difference, Gate, Waiver
 
 if TYPE_CHECKING:
@@ -29,10 +30,18 @@ class GateInputs:
     baseline: Result | None = None
     baseline_name: str = "baseline"
     waivers: tuple[Waiver, ...] = ()
+    confidence: float | None = None
 
     @classmethod
     def from_files(
-        cls, baseline: Path | None, waiver_file: Path | None, settings_file: Path | None, today: date, out: Path | None
+        cls,
+        baseline: Path | None,
+        waiver_file: Path | None,
+        settings_file: Path | None,
+        today: date,
+        out: Path | None,
+        *,
+        confidence: float | None = None,
     ) -> GateInputs | None:
         """Return the gate inputs that these files hold; None if no file gives any.
 
@@ -44,24 +53,28 @@ class GateInputs:
         said = waivers.read(waiver_file) if waiver_file else []
         if settings_file and settings_file.is_file():
             said += waivers.read(settings_file, only_waivers=False)
-        if baseline is None and not said:
+        if baseline is None and not said and confidence is None:
             return None
         if baseline is not None and out is not None and baseline.resolve() == out.resolve():
             raise UsageError(
                 f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
             )
         if baseline is None:
-            return cls(today, waivers=tuple(said))
-        return cls(today, load_result(baseline), baseline.resolve().name, tuple(said))
+            return cls(today, waivers=tuple(said), confidence=confidence)
+        return cls(today, load_result(baseline), baseline.resolve().name, tuple(said), confidence)
 
     def apply_to(self, result: Result) -> Result:
-        """Return the result with its gate: difference to the baseline and applied waivers."""
+        """Return the result with its gate: difference to the baseline, applied waivers, and findings that are only possible."""
         stated, waived = waivers.apply(self.waivers, result, self.today)
         difference = None
         if self.baseline is not None:
             difference = diff.compare(self.baseline, result, self.baseline_name, "this result")
         today = self.today.isoformat() if self.waivers else None
-        return replace(result, gate=Gate(today, difference, stated, waived))
+        possible: list[str] = []
+        if self.confidence is not None:
+            rows = result.findings.select(["finding_id", "n_copies", "n_stays"]).to_pylist()
+            possible = sorted(row["finding_id"] for row in rows if certainty(row, self.confidence) == POSSIBLE)
+        return replace(result, gate=Gate(today, difference, stated, waived, self.confidence, tuple(possible)))
 
 
 def compare_results(

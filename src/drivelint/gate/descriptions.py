@@ -148,7 +148,11 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
         return waiver_reason(waiver)
-    return "known: the baseline has it" if gate and gate.in_baseline(finding_id) else ""
+    if gate and gate.in_baseline(finding_id):
+        return "known: the baseline has it"
+    if gate and gate.is_possible(finding_id):
+        return f"possible: less than {100 * (gate.confidence or 0.0):g} % of its copies with recording errors keep it"
+    return ""
 
 
 def excuse(result: Result, row: Row, rule: Row | None) -> str:
@@ -168,6 +172,8 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
         "today": gate.today,
         "baseline": None if gate.baseline is None else {"name": gate.baseline.base_name} | gate.baseline.counts(),
         "waived_findings": len(gate.waived),
+        "confidence": gate.confidence,
+        "possible_findings": len(gate.possible),
         "waivers": {state: states[state] for state in ("active", "expired", "unmatched")},
         "notes": list(waiver_warnings(gate)),
     }

@@ -13,6 +13,7 @@ from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import anchor
 from drivelint.result import counts
+from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status
 from drivelint.result.text import utc_at
 from drivelint.result.text_templates import text_template
@@ -83,6 +84,7 @@ def _parts(template: str, **values: Any) -> list[str]:
     """Return the parts of a report as a template makes them."""
     filters: dict[str, Any] = {
         "code": code,
+        "doubt": doubt,
         "escaped": escaped,
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,

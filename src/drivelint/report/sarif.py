@@ -14,6 +14,7 @@ from urllib.parse import quote
 from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.result import counts
+from drivelint.result.certainty import certainty, doubt
 from drivelint.result.model import exit_status
 from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, utc_at, with_count
 
@@ -89,7 +90,7 @@ class _Run:
         measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
         who = f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}"
-        said = [f"{rule['title']}: {row['reason']}", measured, who]
+        said = [f"{rule['title']}: {row['reason']}", measured, who, f"({doubt(row)})" if doubt(row) else ""]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
@@ -107,6 +108,8 @@ class _Run:
                 "t_utc": utc_at(row["t_worst_ns"], drive),
                 **{name: row[name] for name in ("observed", "required", "margin", "unit")},
                 **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
+                **{name: row[name] for name in ("n_copies", "n_stays")},
+                "certainty": certainty(row),
             },
         }
         if gate is not None:

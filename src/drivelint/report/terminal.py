@@ -15,6 +15,7 @@ from rich.text import Text
 from drivelint.phrases import listed
 from drivelint.report import terminal_summary
 from drivelint.result import counts
+from drivelint.result.certainty import doubt
 from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
@@ -141,6 +142,8 @@ def _measured(
             table.add_row("", Text(where, style="bold"))
             previous = where
         when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(rule_name(row))
+        if doubt(row):
+            rule.append(f" ({doubt(row)})", style="yellow")
         if wide:
             numbers = (number(row[name], row["unit"]) for name in ("observed", "required", "margin"))
             table.add_row(when, rule, Text(row["object_id"] or ""), *numbers)

@@ -18,6 +18,7 @@ from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import LABELS, by_severity, outcome_label
 from drivelint.report.worst_first import is_contact, worst_first
 from drivelint.result import counts
+from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
 from drivelint.result.text import number, seconds
 
@@ -85,7 +86,7 @@ def _rules(result: Result) -> dict[str, Any]:
 
 
 def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
-    """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something."""
+    """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something, or may have."""
     label = outcome_label(result, len(found))
     text = Text(f"{label}  ", _STYLE_OF.get(label, _CAREFUL))
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
@@ -94,10 +95,17 @@ def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
     text.append(f"{by_severity(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
     if (ended := exit_status(result)).code == ExitCode.NOT_JUDGED:
         text.append(f"; {ended.why}", "default")  # no findings, but not because nothing was wrong
-    if touched := {row["drive_id"] for row in found if is_contact(row, rules)}:
+    contacts = [row for row in found if is_contact(row, rules)]
+    touched = {row["drive_id"] for row in contacts if not doubt(row)}
+    if touched:
         text.append(f"; CONTACT in {len(touched)}", "bold red")
+    if maybe := {row["drive_id"] for row in contacts} - touched:
+        text.append(f"; possible contact in {len(maybe)}", "red")
+    if doubtful := sum(bool(doubt(row)) for row in found):
+        text.append(f"; {doubtful} only possible", "default")
     if result.gate is not None and (through := result.findings.num_rows - len(found)):
-        text.append(f"; {through} known or waived", "default")
+        unless = "known, waived or only possible" if result.gate.confidence is not None else "known or waived"
+        text.append(f"; {through} {unless}", "default")
     return text
 
 
@@ -165,7 +173,10 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     if row["object_id"] is not None:
         parts.append(f"object {row['object_id']}")
     when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
-    return Text.assemble(when, ("CONTACT " if contact else "", "bold red"), "; ".join(parts))
+    what = "possible contact " if doubt(row) else "CONTACT "
+    if doubt(row) and not contact:
+        parts[0] = f"possibly {parts[0]}"
+    return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
 
 
 def _broken(found: list[Row]) -> Table:

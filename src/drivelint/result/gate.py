@@ -119,12 +119,16 @@ class Gate:
     """The baseline and the waivers that keep a finding from failing a run.
 
     `today`: the date that waivers were held against, None without waivers. `waived`: finding_id -> index of its waiver.
+    `confidence`: the share of its copies that must keep a finding that may fail a run; None: it is not asked. `possible`: the ids
+    of findings of which fewer do.
     """
 
     today: str | None = None
     baseline: Difference | None = None
     waivers: tuple[Waiver, ...] = ()
     waived: dict[str, int] = field(default_factory=dict)
+    confidence: float | None = None
+    possible: tuple[str, ...] = ()
 
     @cached_property
     def _standing(self) -> dict[str, ComparedFinding]:
@@ -147,8 +151,16 @@ class Gate:
         return entry is not None and entry.standing != "new"
 
     def is_gating(self, finding_id: str) -> bool:
-        """Return whether a finding may fail a run: it is neither waived nor in the baseline."""
-        return finding_id not in self.waived and not self.in_baseline(finding_id)
+        """Return whether a finding may fail a run: it is neither waived nor in the baseline nor only possible."""
+        return finding_id not in self.waived and not self.in_baseline(finding_id) and not self.is_possible(finding_id)
+
+    def is_possible(self, finding_id: str) -> bool:
+        """Return whether too few of a finding's copies keep it for the asked confidence."""
+        return finding_id in self._possible
+
+    @cached_property
+    def _possible(self) -> frozenset[str]:
+        return frozenset(self.possible)
 
 
 @dataclass(frozen=True)

@@ -189,7 +189,7 @@ def _stopped(result: Result) -> str:
 
 
 def _let_through(result: Result) -> str:
-    """Return how many severe findings baseline and waivers let through, in words; '' without either."""
+    """Return how many severe findings baseline, waivers and confidence let through, in words; '' without any of these."""
     if (gate := result.gate) is None:
         return ""
     ids = _severe(result, result.findings)["finding_id"].to_pylist()
@@ -197,6 +197,9 @@ def _let_through(result: Result) -> str:
     known = sum(gate.waiver(name) is None and gate.in_baseline(name) for name in ids)
     through = [f"{known} known"] if gate.baseline is not None else []
     through += [f"{waived} waived"] if gate.waivers else []
+    if gate.confidence is not None:
+        possible = [n for n in ids if gate.is_possible(n) and gate.waiver(n) is None and not gate.in_baseline(n)]
+        through.append(f"{len(possible)} only possible")
     return f" ({', '.join(through)})" if through else ""
 
 

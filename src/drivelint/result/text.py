@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
+from drivelint.result.certainty import doubt
+
 NONE: Final = "-"
 
 Row = Mapping[str, Any]
@@ -72,9 +74,9 @@ def comparison(row: Row) -> str:
 
 
 def line(row: Row, start_ns: int | None) -> str:
-    """Return a verdict or finding in one line: when, who, what was measured (once, if the reason tells it too), why."""
+    """Return a verdict or finding in one line: when, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
     measured = "" if row["reason_measures"] else comparison(row)
-    parts = [f"{seconds(row['t_worst_ns'], start_ns)}: {subject(row)}", measured, row["reason"]]
+    parts = [f"{seconds(row['t_worst_ns'], start_ns)}: {subject(row)}", measured, row["reason"], doubt(row)]
     return "; ".join(part for part in parts if part)
 
 

@@ -72,7 +72,7 @@ def with_sources(tables: Iterable[str]) -> set[str]:
     return found
 
 
-def needed(tables: Iterable[str]) -> list[Derivation]:
+def needed(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
     """Return the derivations behind these tables, in order."""
-    wanted = with_sources([*tables, *ALWAYS_NEEDED])
+    wanted = with_sources([*tables, *also])
     return [d for name, d in derivations().items() if name in wanted]

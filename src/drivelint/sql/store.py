@@ -110,8 +110,9 @@ def interrupt(con: duckdb.DuckDBPyConnection) -> None:
 def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Forbid a database to open files, use the network or change settings, before rules run in it.
 
-    What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` alone can be set:
-    a batch that is out of memory is tried again with more. One that is locked already stays as it is.
+    What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` and `threads` alone can be
+    set: a batch that is out of memory is tried again with more, and few rows are best done by one thread. One that is locked already
+    stays as it is.
     """
     if con.execute("SELECT current_setting('lock_configuration')").fetchall()[0][0]:
         return
@@ -119,11 +120,22 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
         "allow_persistent_secrets=false",
         "autoinstall_known_extensions=false",
         "autoload_known_extensions=false",
-        "allowed_configs=['memory_limit']",
+        "allowed_configs=['memory_limit', 'threads']",
         "enable_external_access=false",
         "lock_configuration=true",
     ):
         con.execute(f"SET {setting}")
+
+
+@contextmanager
+def one_thread(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
+    """Let a database use one thread only: of statements on few rows, others take a quarter more time and finish no sooner."""
+    (before,) = con.execute("SELECT current_setting('threads')").fetchall()[0]
+    con.execute("SET threads=1")
+    try:
+        yield
+    finally:
+        con.execute(f"SET threads={int(before)}")
 
 
 def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
