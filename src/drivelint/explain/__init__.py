@@ -122,11 +122,10 @@ def explain(request: ExplainRequest) -> Explanation:
 
 def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictContext:
     """Return the rule of a verdict, as it was set in that run."""
-    known = catalogue.load_rules(asked.rules_dirs)
     rule_id = target.verdict_row["rule_id"]
-    if rule_id not in known:
+    rule = catalogue.load_rule(rule_id, asked.rules_dirs)
+    if rule is None:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
-    rule = known[rule_id]
     mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}

@@ -26,6 +26,8 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+ONE_CORE_STATES: Final = 100_000
+"""States up to which a statement on several cores takes no less time, and a fifth more of the cores'."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
@@ -42,7 +44,8 @@ class VerdictContext:
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a database with these drives, derived for the rule."""
-        with store.workspace(self.memory) as con:
+        states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
+        with store.workspace(self.memory, threads=1 if states <= ONE_CORE_STATES else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
