@@ -76,6 +76,7 @@ def explain(request: ExplainRequest) -> Explanation:
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
+        parts = evidence.requirement_parts(case.rule, target, sandbox, case.params, decides)
         missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         rows = evidence.rows_read(
@@ -106,6 +107,7 @@ def explain(request: ExplainRequest) -> Explanation:
         others=target.others,
         asks=_asks(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
+        parts=parts,
         sql=evidence.sql_with_values(rule, case.params),
         params=[
             {"name": name, "value": case.params[name], "unit": p.unit, "why": p.why, "source": p.source}

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.explain.model import Step, TableRows
+from drivelint.catalogue.requirement_parts import read_parts
+from drivelint.explain.model import Part, Step, TableRows
 from drivelint.reasons import reason_text
 from drivelint.sql import store
 
@@ -64,6 +66,24 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
         for step in judged.steps
         if start <= step["t_ns"] <= end and all(step[key] == value for key, value in same.items())
     ]
+
+
+def requirement_parts(
+    rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
+) -> list[Part]:
+    """Return what the requirement at one time is made of, as the rule's author says; empty: not said, or not as much as is required."""
+    row, found = target.verdict_row, read_parts(rule)
+    if found is None or row["required"] is None or t_ns is None:
+        return []
+    keys = {"ego_id": row["ego_id"], "t_ns": t_ns, "object_id": row["object_id"], "profile": row["profile"]}
+    keys = {name: keys[name] for name in found.keys if keys.get(name) is not None}
+    bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
+    where = " AND ".join(f"{name} = $_{name}" for name in keys)
+    for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
+        parts = [Part(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None]
+        if parts and math.isclose(sum(part.value for part in parts), row["required"], rel_tol=1e-6, abs_tol=1e-6):
+            return parts
+    return []
 
 
 def rows_read(

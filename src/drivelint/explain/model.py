@@ -26,6 +26,14 @@ class TableRows(NamedTuple):
     more: int
 
 
+class Part(NamedTuple):
+    """One of the parts that a requirement is the sum of."""
+
+    name: str
+    what: str
+    value: float
+
+
 class Change(NamedTuple):
     """The nearest change of one number that changes the verdict; `found` None: none was found between `low` and `high`."""
 
@@ -71,6 +79,8 @@ class Explanation:
     asks: str | None
     """What the reason asks to record or to provide."""
     decides_ns: int | None
+    parts: list[Part]
+    """What the verdict's `required` is made of; empty: not known."""
     sql: dict[str, str]
     params: list[Row]
     rows: list[TableRows]

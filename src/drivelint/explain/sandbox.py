@@ -171,9 +171,9 @@ class Sandbox:
                 self.con.execute(f"DELETE FROM {derivation.table}")
                 self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
 
-    def query(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
+    def query(self, sql: str, values: Sequence[Any] | Mapping[str, Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""
-        return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
+        return [dict(row) for row in self.con.execute(sql, values).to_arrow_table().to_pylist()]
 
 
 def _cut(items: Sequence[_T], size: int) -> Iterator[Sequence[_T]]:
