@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from rich.console import Console
 
@@ -145,8 +147,6 @@ def test_a_finding_is_found_by_the_beginning_of_its_id(folder: Path) -> None:
 
 
 def _findings(folder: Path) -> list[dict[str, Any]]:
-    import pyarrow.parquet as pq
-
     return list(pq.read_table(folder / "findings.parquet").to_pylist())
 
 
@@ -245,6 +245,22 @@ def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     assert "(oncoming, parked): after a jump they stand in one place" in flat(said(found))
 
 
+def test_an_object_whose_track_has_ended_is_shown_where_it_was_last(tmp_path: Path) -> None:
+    head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
+    at = {name: i for i, name in enumerate(head.split(","))}
+    rows = [line.split(",") for line in lines]
+    kept = [row for row in rows if row[at["actor"]] != "parked" or float(row[at["time_s"]]) < 7.0]
+    log = tmp_path / "short.csv"
+    log.write_text("\n".join([head, *(",".join(row) for row in kept)]) + "\n", encoding="utf-8")
+    check(tmp_path / "out", traces=(str(log),), rules=(RULES[1],), params=())
+    found = of(tmp_path / "out", "contact-signature", object_id="parked")
+    assert found.verdict["verdict"] == "unknown"
+    assert found.decides_ns == 7_000_000_000
+    (pair,) = [rows for rows in found.rows if rows.table == "pair"]
+    assert [row["t_ns"] for row in pair.rows] == [pair.at_ns] == [6_900_000_000]
+    assert "pair at 6.90 s (object parked has no row then; this is its last one before):" in flat(said(found))
+
+
 def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
     errors = MeasurementErrors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
     order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, VerdictFilter(), errors=errors)
@@ -256,6 +272,26 @@ def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path)
     other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, 4)).sensitivity
     assert other is not None
     assert other.counts != first.counts
+
+
+@pytest.mark.parametrize(("n_stays", "told"), [(97, "Sure: a finding in 97"), (53, "Only possible: a finding in 53")])
+def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_stays: int, told: str) -> None:
+    check(tmp_path, traces=(str(OVERTAKE / "collision.csv"),), rules=("ukhc.no-collision",), params=())
+    file = tmp_path / "findings.parquet"
+    written = pq.read_table(file)
+    for name, value in (("n_copies", 100), ("n_stays", n_stays)):
+        at = written.schema.get_field_index(name)
+        values = pa.array([value] * written.num_rows, written.schema.field(at).type)
+        written = written.set_column(at, written.schema.field(at), values)
+    pq.write_table(written, file)
+    for name in ("no-collision", written["finding_id"][0].as_py()):
+        found = explain(ExplainRequest(name, tmp_path))
+        assert found.sensitivity is not None
+        assert (found.sensitivity.counts, found.sensitivity.samples) == ({"fail": n_stays}, 100)
+        assert f"{told} of 100 copies of the drive with errors like the recording's" in flat(said(found))
+    other = explain(ExplainRequest("no-collision", tmp_path, errors=MeasurementErrors(samples=2))).sensitivity
+    assert other is not None
+    assert (other.samples, other.certainty) == (2, None)
 
 
 def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:

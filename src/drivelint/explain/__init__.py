@@ -17,7 +17,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import MeasurementErrors, verdict_sensitivity
+from drivelint.explain.sensitivity import MeasurementErrors, sensitivity_of_check, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
@@ -85,13 +85,13 @@ def explain(request: ExplainRequest) -> Explanation:
         found: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            part, span = sufficient_part(case, drive, now)
-            if part is not drive:
-                sandbox = opened.enter_context(case.sandbox([part]))
-            found = verdict_changes(case, sandbox, now)
+            part, span, sandbox = sufficient_part(case, drive, sandbox, now, opened)
+            if case.rule.version == row["rule_version"] and now == row["verdict"]:
+                sensitivity = sensitivity_of_check(target.worst, request.errors)
             errors = request.errors.for_verdict(row["verdict"])
-            if errors.samples:
+            if errors.samples and sensitivity is None:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
+            found = verdict_changes(case, sandbox, now)
     rule = case.rule
     drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     about = {name: drive[name] for name in _DRIVE}

@@ -18,11 +18,13 @@ from drivelint.arrays import floats, with_columns
 from drivelint.engine.batch import BATCH_STATES, Drive
 from drivelint.explain.model import Sensitivity
 from drivelint.explain.sandbox import renamed
+from drivelint.result.certainty import certainty
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from drivelint.arrays import Floats
+    from drivelint.explain.model import Row
     from drivelint.explain.verdict_context import VerdictContext
 
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
@@ -41,6 +43,14 @@ class MeasurementErrors:
     def for_verdict(self, verdict: str) -> MeasurementErrors:
         """Return these errors with a number of copies: few for an unknown verdict, which small errors seldom decide."""
         return self if self.samples is not None else replace(self, samples=10 if verdict == "unknown" else 100)
+
+
+def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
+    """Return in how many copies `check` found what it found; None: it judged none, or others are asked for."""
+    if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
+        return None
+    counts, not_told = {"fail": finding["n_stays"]}, (None, None, None, None)
+    return Sensitivity(finding["n_copies"], *not_told, counts, None, None, certainty(finding))
 
 
 def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[list[Drive]]:
