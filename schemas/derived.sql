@@ -649,7 +649,13 @@ CREATE TABLE overtake_sda (
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
     zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
-    reason VARCHAR                    -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
+    reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
+    pull_out_m DOUBLE,                -- of sda_m, which its parts add up to: what the ego drives to pull out; NULL: sda_m is what was driven, or undefined
+    passing_m DOUBLE,                 -- of sda_m: what it drives beside the vehicle being passed; NULL: as pull_out_m
+    cut_in_m DOUBLE,                  -- of sda_m: what it drives to cut in; NULL: as pull_out_m
+    oncoming_m DOUBLE,                -- of sda_m: what the OV drives meanwhile; NULL: as pull_out_m
+    covered_m DOUBLE,                 -- of sda_m: what the ego and the OV covered while the ego was out; NULL: sda_m is no more than the formula's, or undefined
+    stopping_m DOUBLE                 -- of sda_m: the OV's stopping distance; NULL: undefined
 );
 
 -- lifetime: part

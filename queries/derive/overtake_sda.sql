@@ -71,7 +71,8 @@ required_distance AS (
     -- The driven distance counts only if it is at least DA: then it shows that DA was too small. If DA is larger, the overtake had enough,
     -- and only the formula counts. For an overtake that was not completed, the distance that would have been enough is not known.
     SELECT
-        *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
+        *, CASE WHEN da_m <= driven_m THEN greatest(planned_m, driven_m) ELSE planned_m END AS sda_m,
+        coalesce(da_m <= driven_m AND (planned_m IS NULL OR driven_m > planned_m), false) AS is_driven, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
     FROM planned_distance
 ),
 -- Of several oncoming vehicles, one that leaves too little comes before one of which this is not known; then the one that leaves the least.
@@ -82,6 +83,9 @@ worst_ov AS (
         PARTITION BY drive_id, ego_id, occurrence, profile
         ORDER BY CASE WHEN da_m <= sda_m AND NOT has_sped_up THEN 0 WHEN da_m > sda_m THEN 2 ELSE 1 END, da_m - sda_m, ov_id
     ) = 1
+),
+passing AS (
+    SELECT *, passing_time_s(lane_width_m, beta_rad, headroom_m, clearance_m, l_av_m, span_m, v_av_mps, v_vbp_mps) AS passing_s FROM worst_ov
 )
 SELECT
     drive_id, ego_id, occurrence, profile, t0_ns, ov_id,
@@ -107,5 +111,13 @@ SELECT
         WHEN ov_id IS NULL THEN why('no_oncoming', {'free_m': da_m})
         WHEN da_m <= sda_m AND sda_m = driven_m THEN why('out_of_lane', {'out_s': out_s})
         WHEN ov_id <> nearest_id THEN why('later_oncoming_worse', {'object_id': ov_id, 'nearest_id': nearest_id, 'da_m': da_m, 'sda_m': sda_m})
-    END AS reason
-FROM worst_ov
+    END AS reason,
+    CASE WHEN sda_m IS NOT NULL AND NOT is_driven THEN lane_width_m / tan(beta_rad) END AS pull_out_m,
+    CASE WHEN sda_m IS NOT NULL AND NOT is_driven THEN v_av_mps * passing_s END AS passing_m,
+    CASE WHEN sda_m IS NOT NULL AND NOT is_driven THEN lane_width_m / tan(theta_rad) END AS cut_in_m,
+    CASE WHEN sda_m IS NOT NULL AND NOT is_driven THEN
+        v_ov_mps * (pull_out_time_s(lane_width_m, beta_rad, v_av_mps) + passing_s + pull_out_time_s(lane_width_m, theta_rad, v_av_mps))
+    END AS oncoming_m,
+    CASE WHEN sda_m IS NOT NULL AND is_driven THEN driven_m - stopping_distance_m(v_ov_mps) END AS covered_m,
+    CASE WHEN sda_m IS NOT NULL THEN stopping_distance_m(v_ov_mps) END AS stopping_m
+FROM passing

@@ -48,7 +48,7 @@ WITH _verdict_with_rule AS (
         'of_hidden': d.of_hidden, 'of_lanes': d.of_lanes} AS key,
         lack(p.off_level, p.x_m, p.y_m, p.yaw_rad, p.length_m, p.width_m) AS lack, CASE
         WHEN e.x_m + e.y_m + e.yaw_rad IS NULL THEN ego_lacks(e.x_m + e.y_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
-        WHEN p.off_level THEN why('object_off_level', {'object_id': p.object_id})
+        WHEN p.off_level THEN why('object_off_level', {'object_id': p.object_id, 'z_m': h.z_m, 'ego_z_m': e.z_m})
         WHEN p.object_id IS NOT NULL AND lack IS NOT NULL THEN why('object_lacks', {'object_id': p.object_id, 'lack': lack})
         WHEN p.object_id IS NULL AND o.to_ns < d.t_ns THEN why('track_ends', {'object_id': d.object_id, 't_ns': o.to_ns})
         WHEN p.object_id IS NULL AND o.from_ns > d.t_ns THEN why('track_begins', {'object_id': d.object_id, 't_ns': o.from_ns})
@@ -69,6 +69,7 @@ WITH _verdict_with_rule AS (
     FROM _unexplained_verdict d
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
+    LEFT JOIN state_dynamics h ON h.drive_id = d.drive_id AND h.actor_id = CASE WHEN p.off_level THEN d.object_id END AND h.t_ns = d.t_ns
     LEFT JOIN _nearest_hidden n USING (drive_id, ego_id, t_ns)
     LEFT JOIN _speedless b USING (drive_id, ego_id, t_ns)
     LEFT JOIN _ahead f USING (drive_id, ego_id, t_ns)

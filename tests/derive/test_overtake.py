@@ -385,6 +385,16 @@ def test_safe_distance_ahead_is_the_papers_formula(
             LANE, row["pull_out_angle_rad"], row["cut_in_angle_rad"], k, o["v_av_mps"], o["v_vbp_mps"], o["v_ov_mps"]
         )
         assert row["sda_m"] == pytest.approx(expected, rel=1e-9)
+        assert sum_of_parts(row) == pytest.approx(expected, rel=1e-9)
+        assert row["pull_out_m"] == pytest.approx(LANE / math.tan(row["pull_out_angle_rad"]))
+        assert row["cut_in_m"] == pytest.approx(LANE / math.tan(row["cut_in_angle_rad"]))
+        assert row["covered_m"] is None
+        # the two come nearer to each other by what both drive
+        manoeuvre = row["pull_out_m"] / math.cos(row["pull_out_angle_rad"]) + row["cut_in_m"] / math.cos(
+            row["cut_in_angle_rad"]
+        )
+        seconds_out = (manoeuvre + row["passing_m"]) / o["v_av_mps"]
+        assert row["oncoming_m"] == pytest.approx(o["v_ov_mps"] * seconds_out)
         spare = o["da_m"] - expected
         assert row["spare_m"] == pytest.approx(spare)
         assert row["spare_s"] == pytest.approx(spare / (o["v_av_mps"] + o["v_ov_mps"]))
@@ -394,6 +404,12 @@ def test_safe_distance_ahead_is_the_papers_formula(
             assert row["zone"] is None
             continue
         assert row["zone"] == ("A" if spare <= 0 else "B" if seconds < 0.5 else "C" if seconds <= 2.5 else "D")
+
+
+def sum_of_parts(row: dict[str, Any]) -> float:
+    """What is required, from its parts: NULL is none."""
+    names = ("pull_out_m", "passing_m", "cut_in_m", "oncoming_m", "covered_m", "stopping_m")
+    return sum(row[name] or 0.0 for name in names)
 
 
 def test_the_observed_profile_takes_what_this_overtake_had() -> None:
@@ -408,6 +424,7 @@ def test_the_observed_profile_takes_what_this_overtake_had() -> None:
     mean = (made[k3 - 1] - made[k0 - 1]) / (0.1 * (k3 - k0))
     expected = safe_distance(LANE, *angles, k, mean, o["v_vbp_mps"], o["v_ov_mps"])
     assert row["sda_m"] == pytest.approx(expected, rel=1e-6)
+    assert sum_of_parts(row) == pytest.approx(row["sda_m"], rel=1e-9)
 
 
 @pytest.mark.parametrize(("far", "verdict"), [(700.0, ("unknown", "pass")), (200.0, ("fail", "fail"))])

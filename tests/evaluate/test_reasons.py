@@ -87,6 +87,18 @@ def test_an_object_of_which_something_is_not_known(tmp_path: Path, lacks: dict[s
     assert row["reason"] == f"A value that the rule needs is not known at 0.100 s; {because}."
 
 
+def test_the_heights_of_an_object_that_may_be_on_another_level_are_told(tmp_path: Path) -> None:
+    sql = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0 AS required FROM pair"
+    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": sql})
+    pair = {"t_s": [0.0, 0.1], "object_id": "o", "clearance_m": [3, None], "off_level": [False, True]}
+    ego = {"t_s": [0.0, 0.1], "x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0, "speed_mps": 3.0, "z_m": [0.5, 0.6]}
+    object_ = {"t_s": [0.0, 0.1], "actor_id": "o", "x_m": 1.0, "y_m": 0.0, "z_m": [7.0, 7.21]}
+    (row,) = verdicts(rule, {"ego_state": ego, "pair": pair, "state_dynamics": object_})
+    assert (
+        "may be over or under the road (its height is 7.2 m then, the ego's 0.6 m): record the heights" in row["reason"]
+    )
+
+
 def test_what_the_log_lacks_where_a_reference_point_has_no_time(tmp_path: Path) -> None:
     header = (
         EXECUTION

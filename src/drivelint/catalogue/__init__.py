@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from drivelint.catalogue.header import Conditions, Header, Param, json_schema
-from drivelint.catalogue.load import Rule, load_rules, read_rule
+from drivelint.catalogue.load import Rule, load_rule, load_rules, read_rule
 from drivelint.catalogue.select import parse_params, required_rules, select_rules
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "Param",
     "Rule",
     "json_schema",
+    "load_rule",
     "load_rules",
     "parse_params",
     "read_rule",

@@ -87,6 +87,15 @@ def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     return dict(sorted(rules.items()))
 
 
+def load_rule(rule_id: str, dirs: Sequence[Path] = ()) -> Rule | None:
+    """Return one rule of the shipped packs and the folders in `dirs`, without reading the others; None: there is none of this id.
+
+    Errors: `RuleError` with file and line, and for a folder without rules.
+    """
+    files = (file for root in (folder("queries") / "assertions", *dirs) for file in rule_files(root))
+    return next((read_rule(file) for file in files if rule_id_of(file) == rule_id), None)
+
+
 def rule_files(root: Path) -> list[Path]:
     """Return the rule files of a folder, which holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`).
 

@@ -18,7 +18,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import for_verdict, verdict_sensitivity
+from drivelint.explain.sensitivity import for_verdict, sensitivity_of_check, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
@@ -77,6 +77,7 @@ def explain(request: ExplainRequest) -> Explanation:
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _decides(target, series, now)
+        parts = evidence.requirement_parts(case.rule, target, sandbox, case.params, decides)
         missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
         condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         rows = evidence.rows_read(
@@ -85,13 +86,13 @@ def explain(request: ExplainRequest) -> Explanation:
         found: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            part, span = sufficient_part(case, drive, now)
-            if part is not drive:
-                sandbox = opened.enter_context(case.sandbox([part]))
-            found = verdict_changes(case, sandbox, now)
+            part, span, sandbox = sufficient_part(case, drive, sandbox, now, opened)
+            if case.rule.version == row["rule_version"] and now == row["verdict"]:
+                sensitivity = sensitivity_of_check(target.worst, request.errors)
             errors = for_verdict(request.errors, row["verdict"])
-            if errors.samples:
+            if errors.samples and sensitivity is None:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
+            found = verdict_changes(case, sandbox, now)
     rule = case.rule
     drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     about = {name: drive[name] for name in _DRIVE}
@@ -107,6 +108,7 @@ def explain(request: ExplainRequest) -> Explanation:
         others=target.others,
         asks=_asks(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
+        parts=parts,
         sql=evidence.sql_with_values(rule, case.params),
         params=[
             {"name": name, "value": case.params[name], "unit": p.unit, "why": p.why, "source": p.source}
@@ -123,11 +125,10 @@ def explain(request: ExplainRequest) -> Explanation:
 
 def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictContext:
     """Return the rule of a verdict, as it was set in that run."""
-    known = catalogue.load_rules(asked.rules_dirs)
     rule_id = target.verdict_row["rule_id"]
-    if rule_id not in known:
+    rule = catalogue.load_rule(rule_id, asked.rules_dirs)
+    if rule is None:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
-    rule = known[rule_id]
     mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}

@@ -1,21 +1,28 @@
-"""The nearest value of each parameter and profile number that would change the verdict."""
+"""The nearest value of each parameter and profile number that would change the verdict.
+
+The searches of all numbers run side by side: each says which values it wants to know the verdict at, and all of these are judged
+at once.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.errors import DriveLintError
 from drivelint.explain.model import Change
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Generator, Iterator, Sequence
 
     from drivelint.explain.sandbox import Sandbox
     from drivelint.explain.verdict_context import VerdictContext
 
+    Search = Generator[Sequence[float], dict[float, str], Change]
+
 SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
+_NEAR_FACTORS: Final = 3
+"""So many of them are judged first: most verdicts that change do so there."""
 _HALVINGS: Final = 8
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
@@ -26,54 +33,83 @@ _PROFILE: Final = {
 
 
 class _Number(NamedTuple):
+    """A number that is varied. `column`: of a profile, None for a parameter. `halvings`: how many are judged at once."""
+
     name: str
     what: str
     unit: str
     now: float
     most: float
-    judge: Callable[[float], str]
+    column: str | None
+    halvings: int
 
 
 def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
-    """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first."""
-    found = [_nearest(number, verdict) for number in _numbers(context, sandbox)]
+    """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first.
+
+    The tables of `sandbox` that follow from the profiles are of no use afterwards.
+    """
+    found = [
+        *_search(list(_parameters(context)), verdict, lambda asked: _with_parameters(context, sandbox, asked)),
+        *_search(
+            list(_profile_numbers(context, sandbox)), verdict, lambda asked: _with_profiles(context, sandbox, asked)
+        ),
+    ]
     return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
 
 
-def _numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
+def _parameters(context: VerdictContext) -> Iterator[_Number]:
     for name, param in context.rule.params.items():
         now = context.params[name]
-        if isinstance(now, bool) or not isinstance(now, int | float):
-            continue
+        if not isinstance(now, bool) and isinstance(now, int | float):
+            # a value more costs as much as half of an evaluation's beginning and end
+            yield _Number(name, param.why, param.unit, float(now), math.inf, None, halvings=2)
 
-        def with_param(value: float, name: str = name) -> str:
-            try:
-                return context.judge(sandbox, {**context.params, name: value})
-            except DriveLintError:  # no value for this parameter, such as a window of less than nothing
-                return "error"
 
-        yield _Number(name, param.why, param.unit, float(now), math.inf, with_param)
+def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
     profile = context.target.verdict_row["profile"]
     if not context.rule.per_profile or profile is None:
         return
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():
             now = row[column]
-            if now is None:
-                continue  # the profile that this overtake itself had
+            if now is not None:  # else the profile that this overtake itself had
+                most = math.pi / 2 if unit == "rad" else math.inf
+                # a value more is a row more, which costs next to nothing
+                yield _Number(f"{profile}.{column}", what, unit, float(now), most, column, halvings=4)
 
-            def with_profile(value: float, column: str = column) -> str:
-                sandbox.set_profile(profile, column, value)
-                return context.judge(sandbox)
 
-            most = math.pi / 2 if unit == "rad" else math.inf
+def _with_parameters(context: VerdictContext, sandbox: Sandbox, asked: Sequence[tuple[_Number, float]]) -> list[str]:
+    judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in asked])
+    return ["error" if each is None else context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
+
+
+def _with_profiles(context: VerdictContext, sandbox: Sandbox, asked: Sequence[tuple[_Number, float]]) -> list[str]:
+    changed = [(number.column, value) for number, value in asked if number.column is not None]
+    judged = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], changed)
+    return [context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
+
+
+def _search(
+    numbers: Sequence[_Number], verdict: str, judge: Callable[[Sequence[tuple[_Number, float]]], list[str]]
+) -> list[Change]:
+    """Return the nearest change of each number. `judge` returns the verdict for each number and value."""
+    found: list[Change] = []
+    running: list[tuple[_Number, Search, dict[float, str] | None]] = [(n, _nearest(n, verdict), None) for n in numbers]
+    while running:
+        asked: list[tuple[_Number, Search, Sequence[float]]] = []
+        for number, search, told in running:
             try:
-                yield _Number(f"{profile}.{column}", what, unit, float(now), most, with_profile)
-            finally:
-                sandbox.set_profile(profile, column, now)
+                asked.append((number, search, next(search) if told is None else search.send(told)))
+            except StopIteration as end:
+                found.append(end.value)
+        flat = [(number, value) for number, _, values in asked for value in values]
+        verdicts = iter(judge(flat) if flat else [])
+        running = [(number, search, {v: next(verdicts) for v in values}) for number, search, values in asked]
+    return found
 
 
-def _nearest(number: _Number, verdict: str) -> Change:
+def _nearest(number: _Number, verdict: str) -> Search:
     """Look outwards on both sides at once until the verdict changes on one, then halve the last stretch there."""
     scale = abs(number.now) or 1.0
     least = 0.0 if number.now >= 0 else -math.inf  # a number that is not negative stays so
@@ -81,16 +117,19 @@ def _nearest(number: _Number, verdict: str) -> Change:
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
     none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
+    told: dict[float, str] = {}
     for n in range(len(SEARCH_FACTORS)):
+        if n in {0, _NEAR_FACTORS}:
+            told |= yield [v for values in sides for v in values[n : _NEAR_FACTORS if n == 0 else None]]
         edges: list[Change] = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
                 continue
-            becomes = number.judge(values[n])
+            becomes = told[values[n]]
             if becomes == "error":
                 shut.add(side)  # no value beyond it means anything
             elif not _same(becomes, verdict):
-                value, beyond = _edge(number, values, n, becomes)
+                value, beyond = yield from _edge(number, values, n, becomes, told)
                 edges.append(none._replace(found=value, becomes=becomes, beyond=beyond))
         if edges:
             return min(edges, key=lambda edge: (abs((edge.found or 0.0) - number.now), edge.found))
@@ -108,26 +147,45 @@ def _same(becomes: str, verdict: str) -> bool:
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 
-def _edge(number: _Number, values: list[float], at: int, becomes: str) -> tuple[float, bool]:
+def _edge(
+    number: _Number, values: list[float], at: int, becomes: str, told: dict[float, str]
+) -> Generator[Sequence[float], dict[float, str], tuple[float, bool]]:
     """Return the nearest value on one side that changes the verdict, and whether those further away agree."""
     near, far = (values[at - 1] if at else number.now), values[at]
-    for _ in range(_HALVINGS):
-        middle = (near + far) / 2
-        if number.judge(middle) == becomes:
-            far = middle
-        else:
-            near = middle
+    for _ in range(_HALVINGS // number.halvings):
+        halved = yield list(_middles(near, far, number.halvings))
+        for _ in range(number.halvings):
+            middle = (near + far) / 2
+            near, far = (near, middle) if halved[middle] == becomes else (middle, far)
     further = values[at + 1 : at + 3] or [values[at]]
-    return _round(number, far, becomes), all(number.judge(v) == becomes for v in further)
+    short = _short_values(number, far)
+    told = told | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in told])
+    beyond = all(told[v] == becomes for v in further)
+    for value in short:
+        if value not in told:
+            told |= yield [value]
+        if told[value] == becomes:
+            return value, beyond
+    return far, beyond
 
 
-def _round(number: _Number, far: float, becomes: str) -> float:
-    """Return a short number at or just beyond `far`, at which the verdict is the same."""
+def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
+    """Yield every value that so many halvings of a stretch may come to."""
+    if halvings:
+        middle = (near + far) / 2
+        yield middle
+        yield from _middles(near, middle, halvings - 1)
+        yield from _middles(middle, far, halvings - 1)
+
+
+def _short_values(number: _Number, far: float) -> list[float]:
+    """Return the short numbers at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))
+    found = []
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(0.05 * abs(far - number.now), 1e-9) and number.judge(value) == becomes:
-            return value
-    return far
+        if abs(value - far) <= max(0.05 * abs(far - number.now), 1e-9):
+            found.append(value)
+    return found

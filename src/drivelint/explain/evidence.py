@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.explain.model import Step, TableRows
+from drivelint.catalogue.requirement_parts import read_parts
+from drivelint.explain.model import Part, Step, TableRows
 from drivelint.reasons import reason_text
 from drivelint.sql import store
 
@@ -20,6 +22,8 @@ MAX_ROWS: Final = 6
 """Rows shown of one table."""
 CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
+TRACK_TABLES: Final = ("pair",)
+"""Tables with a row at each step of an object's track. Where the track has ended, its last row says where the object was."""
 SERIES_PADDING_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
 _NAMED = re.compile(r"\$(\w+)")
@@ -66,6 +70,24 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
     ]
 
 
+def requirement_parts(
+    rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
+) -> list[Part]:
+    """Return what the requirement at one time is made of, as the rule's author says; empty: not said, or not as much as is required."""
+    row, found = target.verdict_row, read_parts(rule)
+    if found is None or row["required"] is None or t_ns is None:
+        return []
+    keys = {"ego_id": row["ego_id"], "t_ns": t_ns, "object_id": row["object_id"], "profile": row["profile"]}
+    keys = {name: keys[name] for name in found.keys if keys.get(name) is not None}
+    bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
+    where = " AND ".join(f"{name} = $_{name}" for name in keys)
+    for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
+        parts = [Part(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None]
+        if parts and math.isclose(sum(part.value for part in parts), row["required"], rel_tol=1e-6, abs_tol=1e-6):
+            return parts
+    return []
+
+
 def rows_read(
     rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, missing_signal: str | None, condition: str | None
 ) -> list[TableRows]:
@@ -93,21 +115,42 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
         terms["ego_id = ?"] = [row["ego_id"]]
     if "profile" in columns and row["profile"] is not None:
         terms["profile IS NOT DISTINCT FROM ?"] = [row["profile"]]
-    if t_ns is not None:
-        terms |= _at_time(columns, t_ns)
     who = [column for column in _OBJECTS if column in columns and row["object_id"] is not None]
     if who:
         terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
-    values = [value for some in terms.values() for value in some]
-    where = f" WHERE {' AND '.join(terms)}" if terms else ""
-    # a table of the catalogue's own list, never a word of a user
-    ours = [row["ego_id"], row["object_id"] or ""] if "actor_id" in columns else []  # their rows come first
+    at_time = {} if t_ns is None else _at_time(columns, t_ns)
+    found = _selected(sandbox, table, columns, terms | at_time, row)
+    if not found.rows and at_time and who and table in TRACK_TABLES:
+        track = sandbox.query(f"SELECT t_ns FROM {table}{_where(terms)} ORDER BY t_ns", _values(terms))
+        times = [each["t_ns"] for each in track]
+        nearest = max((t for t in times if t < t_ns), default=min(times, default=None)) if t_ns is not None else None
+        if nearest is not None:
+            found = _selected(sandbox, table, columns, terms | _at_time(columns, nearest), row)
+            return found._replace(at_ns=nearest)
+    return found
+
+
+def _selected(
+    sandbox: Sandbox, table: str, columns: list[str], terms: Mapping[str, list[Any]], verdict: Mapping[str, Any]
+) -> TableRows:
+    """Return the rows of a table for which these terms hold: of the catalogue's own tables and columns, never a word of a user."""
+    where, values = _where(terms), _values(terms)
+    # the rows of the ego and the object come first
+    ours = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
     first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
     everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_ROWS}", [*values, *ours])
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     # the keys that are the same everywhere are left out
     plain = [{column: each[column] for column in each if column not in {"drive_id", "ego_id"}} for each in everything]
     return TableRows(table, plain, max(0, n - len(everything)))
+
+
+def _where(terms: Mapping[str, list[Any]]) -> str:
+    return f" WHERE {' AND '.join(terms)}" if terms else ""
+
+
+def _values(terms: Mapping[str, list[Any]]) -> list[Any]:
+    return [value for some in terms.values() for value in some]
 
 
 def _at_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:

@@ -19,11 +19,23 @@ class Step(NamedTuple):
 
 
 class TableRows(NamedTuple):
-    """Rows of one library table that the rule read at the deciding step; `more` were left out."""
+    """Rows of one library table that the rule read at the deciding step; `more` were left out.
+
+    `at_ns`: the time of the rows where the object has none at the deciding step: its last one before, or else its first.
+    """
 
     table: str
     rows: list[Row]
     more: int
+    at_ns: int | None = None
+
+
+class Part(NamedTuple):
+    """One of the parts that a requirement is the sum of."""
+
+    name: str
+    what: str
+    value: float
 
 
 class Change(NamedTuple):
@@ -43,17 +55,22 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How often each verdict came out over copies of the drive with random errors."""
+    """How often each verdict came out over copies of the drive with random errors.
+
+    `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with errors like the recording's; all that is known
+    of them is how many are `fail`. None: these copies were judged with the errors given here.
+    """
 
     samples: int
-    seed: int
-    position_m: float
-    time_s: float
-    map_m: float
+    seed: int | None
+    position_m: float | None
+    time_s: float | None
+    map_m: float | None
     counts: dict[str, int]
     from_ns: int | None
     to_ns: int | None
     """What of the drive was judged; None: all of it."""
+    certainty: str | None = None
 
 
 @dataclass(frozen=True)
@@ -71,6 +88,8 @@ class Explanation:
     asks: str | None
     """What the reason asks to record or to provide."""
     decides_ns: int | None
+    parts: list[Part]
+    """What the verdict's `required` is made of; empty: not known."""
     sql: dict[str, str]
     params: list[Row]
     rows: list[TableRows]

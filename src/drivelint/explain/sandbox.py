@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 import duckdb
+import msgspec
 import pyarrow as pa
 
 from drivelint.arrays import with_columns
+from drivelint.engine.batch import BATCH_STATES
 from drivelint.engine.derive import derive
 from drivelint.engine.memory import Memory
+from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate
+from drivelint.evaluate.sql_fragments import Binding
+from drivelint.result.counts import grouped
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
     from drivelint.explain.model import Row
 
+_T = TypeVar("_T")
 _JUDGED: Final = ("verdict", "finding", "margin")
 _READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
@@ -52,6 +58,8 @@ class Sandbox:
         self.drive_id = drives[0].trace.drive_id
         self.con = con
         self._memory = Memory(con, memory)
+        states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
+        self._at_once = max(1, BATCH_STATES // max(1, states))
         self._insert("profile", profiles)
         self._fill(drives)
         self._derive()
@@ -84,21 +92,74 @@ class Sandbox:
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
-        return self._memory.run_job(lambda _con: self._judged(params))
+        return self._run({self._rule.id: params})[self._rule.id]
 
-    def _judged(self, params: Mapping[str, object]) -> Judgement:
+    def judge_each(self, settings: Sequence[Mapping[str, object]]) -> list[Judgement | None]:
+        """Judge by the rule with each of these parameters; None: they are none, such as a window of less than nothing.
+
+        Many at once: to begin and end an evaluation takes as long as to judge by four rules.
+        """
+        valid = [no for no, params in enumerate(settings) if self._is_valid(params)]
+        found: dict[str, Judgement] = {}
+        for some in _cut(valid, self._at_once):
+            found |= self._run({f"{self._rule.id}~{no}": settings[no] for no in some})
+        return [found.get(f"{self._rule.id}~{no}") for no in range(len(settings))]
+
+    def _run(self, given: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+        return self._memory.run_job(lambda _con: self._judged(given))
+
+    def _is_valid(self, params: Mapping[str, object]) -> bool:
+        try:
+            Binding(self._rule, 0, params)
+        except UsageError:
+            return False
+        return True
+
+    def judge_profiles(
+        self, params: Mapping[str, object], profile: str, changed: Sequence[tuple[str, float]]
+    ) -> list[Judgement]:
+        """Judge by the rule with a profile of which one number is another, for each (column, value)."""
+        return [
+            judged for some in _cut(changed, self._at_once) for judged in self._judged_profiles(params, profile, some)
+        ]
+
+    def _judged_profiles(
+        self, params: Mapping[str, object], profile: str, changed: Sequence[tuple[str, float]]
+    ) -> list[Judgement]:
+        names = [f"{profile}~{no}" for no in range(len(changed))]
+        for name, (column, value) in zip(names, changed, strict=True):
+            self.con.execute(
+                f"INSERT INTO profile SELECT * REPLACE (? AS profile, ? AS {column}) FROM profile WHERE profile = ?",
+                [name, value, profile],
+            )
+        try:
+            self._derive_from_profiles()
+            judged = self.judge(params)
+        finally:
+            self.con.execute("DELETE FROM profile WHERE list_contains(?, profile)", [names])
+        verdicts, steps = (grouped(rows, lambda row: row["profile"]) for rows in judged)
+        return [
+            Judgement(*([{**row, "profile": profile} for row in rows.get(name, [])] for rows in (verdicts, steps)))
+            for name in names
+        ]
+
+    def _judged(self, given: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+        """Judge by the rule under several names, each with its parameters."""
         for table in _JUDGED:
             self.con.execute(f"DELETE FROM {table}")
-        given = {self._rule.id: params}
-        evaluate(self.con, [self._rule], given, margins=True, may_retry=self._memory.limited)
-        return Judgement(
-            self.query("SELECT * FROM verdict ORDER BY drive_id, t_start_ns, occurrence, profile, object_id"),
-            self.query("SELECT * FROM margin ORDER BY drive_id, t_ns, profile, object_id, ref_id"),
+        rules = [msgspec.structs.replace(self._rule, id=name) for name in given]
+        evaluate(self.con, rules, given, margins=True, may_retry=self._memory.limited)
+        verdicts, steps = (
+            grouped(self.query(f"SELECT * FROM {table} ORDER BY drive_id, {order}"), lambda row: row["rule_id"])
+            for table, order in (
+                ("verdict", "t_start_ns, occurrence, profile, object_id"),
+                ("margin", "t_ns, profile, object_id, ref_id"),
+            )
         )
+        return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in given}
 
-    def set_profile(self, profile: str, column: str, value: float) -> None:
-        """Give one number of a profile another value, and derive anew what follows from it."""
-        self.con.execute(f"UPDATE profile SET {column} = ? WHERE profile = ?", [value, profile])
+    def _derive_from_profiles(self) -> None:
+        """Derive anew what follows from the profiles."""
         stale: set[str] = set()
         for derivation in needed(self._rule.reads):
             # the profiles are given, not derived: `reads` does not name them
@@ -107,6 +168,11 @@ class Sandbox:
                 self.con.execute(f"DELETE FROM {derivation.table}")
                 self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")
 
-    def query(self, sql: str, values: Sequence[Any] = ()) -> list[Row]:
+    def query(self, sql: str, values: Sequence[Any] | Mapping[str, Any] = ()) -> list[Row]:
         """Return the rows of a query as dictionaries."""
-        return [dict(row) for row in self.con.execute(sql, list(values)).to_arrow_table().to_pylist()]
+        return [dict(row) for row in self.con.execute(sql, values).to_arrow_table().to_pylist()]
+
+
+def _cut(items: Sequence[_T], size: int) -> Iterator[Sequence[_T]]:
+    for start in range(0, len(items), size):
+        yield items[start : start + size]

@@ -6,14 +6,15 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Final
 
 from drivelint.engine.batch import BATCH_STATES
-from drivelint.engine.copies import copies
+from drivelint.engine.copies import MeasurementErrors, copies
 from drivelint.explain.model import Sensitivity
+from drivelint.result.certainty import certainty
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from drivelint.engine.batch import Drive
-    from drivelint.engine.copies import MeasurementErrors
+    from drivelint.explain.model import Row
     from drivelint.explain.verdict_context import VerdictContext
 
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
@@ -22,6 +23,14 @@ _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 def for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
     """Return errors with a number of copies: few for an unknown verdict, which small errors seldom decide."""
     return errors if errors.samples is not None else replace(errors, samples=10 if verdict == "unknown" else 100)
+
+
+def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
+    """Return in how many copies `check` found what it found; None: it judged none, or others are asked for."""
+    if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
+        return None
+    counts, not_told = {"fail": finding["n_stays"]}, (None, None, None, None)
+    return Sensitivity(finding["n_copies"], *not_told, counts, None, None, certainty(finding))
 
 
 def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:

@@ -21,11 +21,15 @@ _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 @dataclass(frozen=True)
 class Target:
-    """The verdict to explain, the finding of it that was named, and the other verdicts of its rule in the drive."""
+    """The verdict to explain, the finding of it that was named, and the other verdicts of its rule in the drive.
+
+    `worst`: the named finding, or else the one with the verdict's worst step; None: the verdict is no fail.
+    """
 
     verdict: Row
     finding: Row | None
     others: list[Row]
+    worst: Row | None
 
     @property
     def verdict_row(self) -> Row:
@@ -62,7 +66,7 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
         exact = name if name in meant else _only(name, meant, "findings")
         finding = next(row for row in findings if row["finding_id"] == exact)
         row = min(_under(finding, verdicts), key=_order)
-        return Target(row, finding, _others(row, verdicts))
+        return Target(row, finding, _others(row, verdicts), finding)
     rule, _, drive = name.partition("@")
     rule = _rule(rule, sorted({row["rule_id"] for row in verdicts}), ids)
     rows = [row for row in verdicts if row["rule_id"] == rule]
@@ -70,7 +74,7 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
         drive = _meant(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
     row = min(_asked(rows, wanted, result.start_times), key=_order)
-    return Target(row, None, _others(row, verdicts))
+    return Target(row, None, _others(row, verdicts), _worst_finding(row, findings))
 
 
 def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
@@ -86,6 +90,12 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
     if not (exact or rows):
         raise UsageError(f"finding {finding['finding_id']}: no verdict belongs to it: check the drives again")
     return exact or rows
+
+
+def _worst_finding(row: Row, findings: Iterable[Row]) -> Row | None:
+    """Return the finding with the worst step of a verdict."""
+    same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id", "object_id", "t_worst_ns")
+    return next((f for f in findings if row["verdict"] == "fail" and all(f[key] == row[key] for key in same)), None)
 
 
 def _asked(rows: list[Row], wanted: VerdictFilter, starts: dict[str, int | None]) -> list[Row]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import textwrap
 from dataclasses import asdict
@@ -28,6 +29,10 @@ EXPLAIN_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 PLOT_HEIGHT: Final = 8
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
+_SMALL: Final = 0.1
+_GREAT: Final = 1e6
+_MEASURED: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
+"""A number with more than two decimals, and a unit after it."""
 _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
@@ -42,6 +47,7 @@ def to_json(found: Explanation) -> str:
     plain = {"explain_schema": EXPLAIN_SCHEMA, **asdict(found)}
     plain["series"] = [list(step) for step in found.series]
     plain["rows"] = [rows._asdict() for rows in found.rows]
+    plain["parts"] = [part._asdict() for part in found.parts]
     plain["changes"] = [change._asdict() for change in found.changes]
     return json.dumps(finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
@@ -54,12 +60,12 @@ def render(found: Explanation, width: int) -> Group:
     sections = [
         ("What happened", said["happened"]),
         ("What would decide it", said["decides"]),
+        ("How sure it is", said["sure"]),
+        ("What would change it", said["changes"]),
+        ("Margin over time" if found.rule["sense"] != "holds" else "Over time", _series(found, width)),
+        ("What it was judged on", said["rows"]),
         ("What the rule asks", said["asks"]),
         ("How it was judged", [*said["judged"], *_sql(found)]),
-        ("What it was judged on", said["rows"]),
-        ("Margin over time" if found.rule["sense"] != "holds" else "Over time", _series(found, width)),
-        ("What would change it", said["changes"]),
-        ("How sure it is", said["sure"]),
     ]
     for heading, lines in sections:
         if lines:
@@ -94,7 +100,9 @@ def _prose(found: Explanation) -> dict[str, list[str]]:
         # a line break in a value ends no line of the template
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
         cells=lambda row, table: _cells(found, table, row),
+        at_least=_rounded_up,
         measure=_measure,
+        rounded=_rounded_sentence,
         seconds=lambda t_ns: seconds(t_ns, start_ns),
         value=_value,
     )
@@ -179,4 +187,21 @@ def _value(value: Any) -> str:
         return "not known"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return _rounded(value) if isinstance(value, float) else str(value)
+
+
+def _rounded(value: float) -> str:
+    """Return a number with two decimals; one that is nearly nothing without them, with two digits."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:g}"
+    return f"{value:.2g}" if abs(value) < _SMALL else f"{value:.2f}" if abs(value) < _GREAT else f"{value:.6g}"
+
+
+def _rounded_up(value: float) -> float:
+    """Return the least number with two decimals that is not less: a change by so much is enough."""
+    return math.ceil(round(value * 100, 6)) / 100 if value >= _SMALL else value
+
+
+def _rounded_sentence(text: str) -> str:
+    """Return a sentence with its measured values as they are elsewhere here; JSON has it as it was written."""
+    return _MEASURED.sub(lambda match: _rounded(float(match[0])), text)

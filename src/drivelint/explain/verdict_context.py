@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -27,6 +27,8 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+ONE_CORE_STATES: Final = 100_000
+"""States up to which a statement on several cores takes no less time, and a fifth more of the cores'."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
@@ -43,7 +45,8 @@ class VerdictContext:
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a database with these drives, derived for the rule."""
-        with store.workspace(self.memory) as con:
+        states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
+        with store.workspace(self.memory, threads=1 if states <= ONE_CORE_STATES else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
@@ -70,24 +73,31 @@ def lacks_signal(row: Row) -> bool:
     return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 
 
-def sufficient_part(context: VerdictContext, drive: Drive, verdict: str) -> tuple[Drive, tuple[int, int] | None]:
-    """Return the shortest tried part of a drive with the same verdict, and its interval; None for the whole drive."""
+def sufficient_part(
+    context: VerdictContext, drive: Drive, sandbox: Sandbox, verdict: str, opened: ExitStack
+) -> tuple[Drive, tuple[int, int] | None, Sandbox]:
+    """Return the shortest tried part of a drive with the same verdict, its interval (None for the whole drive) and a sandbox with it.
+
+    `sandbox` has the whole drive. `opened` closes one of a part.
+    """
     span = context.target.span
     if span is None or verdict == "not_applicable":
-        return drive, None
+        return drive, None, sandbox
     log = drive.trace.tables["data_log"].to_pylist()[0]
     for margin in CROP_MARGINS_NS:
         part = (max(log["t_start_ns"], span[0] - margin), min(log["t_end_ns"], span[1] + margin))
         if part == (log["t_start_ns"], log["t_end_ns"]):
             break
         small = crop(drive, *part)
-        with context.sandbox([small]) as sandbox:
-            judged = sandbox.judge(context.params)
-            if context.verdicts_on(judged, [sandbox.drive_id]) == [verdict] and _same_numbers(
+        with ExitStack() as tried:
+            of_part = tried.enter_context(context.sandbox([small]))
+            judged = of_part.judge(context.params)
+            if context.verdicts_on(judged, [of_part.drive_id]) == [verdict] and _same_numbers(
                 context, evidence.judged_steps(context.rule, context.target, judged)
             ):
-                return small, part
-    return drive, None
+                opened.push(tried.pop_all())
+                return small, part, of_part
+    return drive, None, sandbox
 
 
 def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:

@@ -17,6 +17,7 @@ from drivelint.sql.store import column_comments, lifetimes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
@@ -44,35 +45,48 @@ class Derivation:
 @cache
 def derivations() -> dict[str, Derivation]:
     """Return every derivation, in an order in which each can be run after those before it."""
-    found: dict[str, Derivation] = {}
-    files = sorted((folder("queries") / "derive").glob("*.sql"))
-    names = {file.stem for file in files}
-    for file in files:
-        if file.stem not in column_comments():
-            raise DriveLintError(f"{file}: no table {file.stem!r} in schemas/")
-        sql = file.read_text(encoding="utf-8")
-        tree = syntax.parse_select(sql, str(file))
-        found[file.stem] = Derivation(
-            file.stem, sql, syntax.tables_read(tree) & names - {file.stem}, syntax.tables_needing_rows(tree)
-        )
-    if missing := sorted(column_comments("derived").keys() - names - _GIVEN):
+    if missing := sorted(column_comments("derived").keys() - _files().keys() - _GIVEN):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
         )
-    order = TopologicalSorter({name: sorted(d.reads) for name, d in found.items()}).static_order()
-    return {name: found[name] for name in order}
+    return {each.table: each for each in _with_sources(_files())}
+
+
+@cache
+def _files() -> dict[str, Path]:
+    return {file.stem: file for file in sorted((folder("queries") / "derive").glob("*.sql"))}
+
+
+@cache
+def _derivation(table: str) -> Derivation:
+    """Return the derivation of one table. To read the syntax of all takes longer than to judge a short drive."""
+    file = _files()[table]
+    if table not in column_comments():
+        raise DriveLintError(f"{file}: no table {table!r} in schemas/")
+    sql = file.read_text(encoding="utf-8")
+    tree = syntax.parse_select(sql, str(file))
+    reads = syntax.tables_read(tree) & _files().keys() - {table}
+    return Derivation(table, sql, reads, syntax.tables_needing_rows(tree))
+
+
+def _with_sources(tables: Iterable[str]) -> list[Derivation]:
+    """Return the derivations of those of these tables that are derived, and of all that they read, in order."""
+    graph: dict[str, list[str]] = {}
+    todo = [table for table in tables if table in _files()]
+    while todo:
+        table = todo.pop()
+        if table not in graph:
+            graph[table] = sorted(_derivation(table).reads)
+            todo += graph[table]
+    return [_derivation(table) for table in TopologicalSorter(dict(sorted(graph.items()))).static_order()]
 
 
 def with_sources(tables: Iterable[str]) -> set[str]:
     """Return these tables and the library tables from which they are derived."""
-    found = set(tables)
-    for name, derivation in reversed(derivations().items()):
-        if name in found:
-            found |= derivation.reads
-    return found
+    tables = list(tables)
+    return {*tables, *(each.table for each in _with_sources(tables))}
 
 
 def needed(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
     """Return the derivations behind these tables, in order."""
-    wanted = with_sources([*tables, *also])
-    return [d for name, d in derivations().items() if name in wanted]
+    return _with_sources([*tables, *also])

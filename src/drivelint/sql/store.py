@@ -70,13 +70,17 @@ def connect(
 
 
 @contextmanager
-def workspace(memory: int | None) -> Iterator[duckdb.DuckDBPyConnection]:
+def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
 
-    None: beyond 80 % of the machine's. Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
+    None: beyond 80 % of the machine's. `threads`: cores that a statement may take, None: all.
+    Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
     """
     limit = None if memory is None else f"{memory}B"
-    with TemporaryDirectory(prefix="drivelint-") as spill, connect(memory_limit=limit, spill=Path(spill)) as con:
+    with (
+        TemporaryDirectory(prefix="drivelint-") as spill,
+        connect(threads=threads, memory_limit=limit, spill=Path(spill)) as con,
+    ):
         try:
             yield con
         except duckdb.OutOfMemoryException as error:

@@ -1,0 +1,74 @@
+"""`<rule>.parts.toml`, beside a rule that has one: what its requirement is made of, for readers of one verdict.
+
+    sql = "SELECT drive_id, ego_id, t_ns, thinking_m, braking_m FROM ..."
+
+    [parts]
+    thinking_m = "thinking"
+    braking_m = "braking"
+
+The SELECT has a row for each place at which the rule may require something: its keys (`object_id` and `profile` too, where the
+requirement depends on them) and its parts, which add up to what is required there; NULL is no part of it. It reads what the rule
+reads, and its parameters.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from drivelint.catalogue.check import check_query
+from drivelint.errors import RuleError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.catalogue.load import Rule
+
+KEYS: Final = ("drive_id", "ego_id", "t_ns", "object_id", "profile")
+_REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})
+
+
+class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a requirement is made of: column of `sql` -> what it is, in words."""
+
+    sql: str
+    parts: dict[str, str]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys of its rows."""
+        return tuple(key for key in KEYS if key in (check_query(self.sql, "parts").columns or ()))
+
+    @property
+    def parameters(self) -> frozenset[str]:
+        """The rule's parameters that it binds."""
+        return check_query(self.sql, "parts").parameters
+
+
+def parts_path(rule: Rule) -> Path:
+    """Return the file of the parts of a rule's requirement, which need not be there."""
+    return rule.path.with_suffix(".parts.toml")
+
+
+def read_parts(rule: Rule) -> RequirementParts | None:
+    """Return what a rule's requirement is made of; None: no file says it.
+
+    Errors: `RuleError` for a file that cannot be understood, or that reads, binds or returns what it may not.
+    """
+    file = parts_path(rule)
+    if not file.is_file():
+        return None
+    try:
+        found = msgspec.toml.decode(file.read_bytes(), type=RequirementParts)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise RuleError(f"{file}: {error}: write sql and [parts], as beside ukhc.r162.safe-distance-ahead") from error
+    query = check_query(found.sql, str(file))
+    if strange := sorted(query.tables - set(rule.reads)):
+        raise RuleError(f"{file}: reads {strange[0]!r}, which the rule does not read")
+    if strange := sorted(query.parameters - rule.params.keys()):
+        raise RuleError(f"{file}: ${strange[0]} is no parameter of the rule")
+    columns = set(query.columns or ())
+    if not columns >= _REQUIRED or columns - set(KEYS) != found.parts.keys():
+        raise RuleError(f"{file}: the SELECT must return drive_id, ego_id, t_ns and the columns that [parts] names")
+    return found
