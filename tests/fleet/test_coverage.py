@@ -34,6 +34,14 @@ def test_each_rule_has_one_standing() -> None:
     assert (found.rules[0].drives_unknown, found.rules[0].occasions) == (1, 1)
 
 
+def test_a_log_that_is_there_twice_is_one_drive() -> None:
+    words = [verdict("fail", drive_id=name, profile=None) for name in ("a", "b")]
+    with duckdb.connect() as con:
+        audits.add_rows(con, [drive("a"), drive("b")], words, [], [rule(profiles=[])])
+        (found,) = coverage(con).rules
+    assert (found.drives, found.drives_failed) == (1, 1)
+
+
 def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
     way = {"ego_id": "1", "km": 60.0, "hours": 1.0, "engaged_km": 60.0, "engaged_hours": 1.0, "n_steps": 9}
     drives = [
@@ -42,6 +50,7 @@ def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
         drive("c", sha256="c", exposure=[way]),
     ]
     words = [verdict("fail", drive_id="a"), verdict("pass", drive_id="a"), verdict("unknown", drive_id="c")]
+    words += [verdict("not_applicable", drive_id="b")]
     with duckdb.connect() as con:
         audits.add_rows(con, drives, words, [], [rule()])
         found = coverage(con)

@@ -150,6 +150,11 @@ def test_measured_situations_are_tags() -> None:
     assert (slow.tag_value, fast.tag_value) == ("0 to 15 km/h", "90 km/h and more")
 
 
+def test_an_ego_without_steps_is_counted_and_has_no_way() -> None:
+    rate = only([ego_drive("a"), drive("b", sha256="b")], [said("a", "pass"), said("b", "unknown", ego_id="")], [])
+    assert (rate.egos_judged, rate.egos_unknown, rate.km, rate.km_unknown, rate.n_unknown) == (1, 1, 100, 0, 1)
+
+
 def test_possible_findings_are_told() -> None:
     rate = only(
         [ego_drive("a")],

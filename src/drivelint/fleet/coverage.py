@@ -20,7 +20,10 @@ never happened; never_in_force: every drive was in another nation, in other cond
 
 @dataclass(frozen=True)
 class RuleCoverage:
-    """In how many drives a rule was decided. A drive in which it was decided once and unknown once counts for both."""
+    """In how many drives a rule was decided; a log that is there twice is one drive.
+
+    A drive in which it was decided once and unknown once counts for both.
+    """
 
     rule_id: str
     profile: str | None
@@ -74,8 +77,9 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
     Failures of one rule by situation are `rates(con, by=SITUATION)`.
     """
-    profiled = statement("fleet/profiled", of=of)
-    rules = con.execute(statement("fleet/rule_coverage", of=of, profiled=profiled)).fetchall()
+    parts = {"subject": statement("fleet/subject", of=of, value=value_of(None), without="")}
+    parts["profiled"] = statement("fleet/profiled", of=of)
+    rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
     situations = [each for name, values in SITUATIONS.items() for each in _situation(con, of, name, values)]
     return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), CANNOT_TELL)
 

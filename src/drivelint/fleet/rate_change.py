@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from drivelint.fleet.intervals import CONFIDENCE, holm
+from drivelint.fleet.intervals import holm
 from drivelint.fleet.rates import OTHER, rates
 
 if TYPE_CHECKING:
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.rates import Rate
 
-LEAST_P: Final = 1 - CONFIDENCE
+ALLOWED_FALSE_CALLS: Final = 0.05
+"""The chance that any rule is called if the rates of no rule differ."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class RateChange:
     @property
     def is_called(self) -> bool:
         """Whether the rates differ, as far as 5 % of false calls in all rules together are allowed."""
-        return self.corrected is not None and self.corrected <= LEAST_P
+        return self.corrected is not None and self.corrected <= ALLOWED_FALSE_CALLS
 
 
 def compare_rates(

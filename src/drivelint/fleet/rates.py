@@ -128,4 +128,4 @@ def _check_tag(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
         is None
     ):
         tags = con.execute(f"SELECT DISTINCT unnest(map_keys(tags)) FROM {of}drives ORDER BY ALL").fetchall()
-        raise UsageError(f"no drive has the tag {by!r}; {hint(by, [tag for (tag,) in tags])}")
+        raise UsageError(f"no drive has the tag {by!r}; {hint(by, [*(tag for (tag,) in tags), *SITUATIONS])}")
