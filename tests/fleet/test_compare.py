@@ -107,15 +107,15 @@ def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
                 status="not_judged" if lost else "judged",
             )
         )
-        for _ in range(0 if lost else rng.integers(0, 6)):
+        for _ in range(0 if lost else rng.integers(0, 10)):
             who: dict[str, Any] = {
                 "drive_id": name,
-                "ego_id": str(rng.choice(["1", "1", "2"])),
-                "rule_id": str(rng.choice(["r1", "r1", "r2"])),
+                "ego_id": str(rng.choice(["1"] * 9 + ["2"])),
+                "rule_id": str(rng.choice(["r1"] * 4 + ["r2"])),
             }
             who |= {
-                "profile": [None, "nominal"][rng.integers(0, 2)],
-                "object_id": [None, "3", "3", "4"][rng.integers(0, 4)],
+                "profile": [None, "nominal", "nominal", "nominal"][rng.integers(0, 4)],
+                "object_id": [None, "3", "3", "3", "3", "3", "4"][rng.integers(0, 7)],
             }
             first, length = (rng.integers(0, 50, 2) * SECOND) // 5 if rng.random() < 0.5 else (SECOND, 2 * SECOND)
             a, b = start + first, start + first + length
@@ -130,7 +130,7 @@ def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
             }
             verdicts.append(verdict(word, **(who | times | more)))
             if word == "fail":
-                ident = f"{no}-{len(findings) % 7}"
+                ident = f"{no}-{sum(row['drive_id'] == name for row in findings[-9:])}"
                 row = finding(**(who | times | at | {"occurrence": len(findings), "finding_id": ident}))
                 findings.append(row | {"severity": str(rng.choice(["critical"] * 9 + ["minor"]))})
     order = ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence")
@@ -142,7 +142,7 @@ def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
 @pytest.mark.parametrize("seed", range(2))
 def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    base, new = random_result(rng, 600, "a"), random_result(rng, 600, "b")
+    base, new = random_result(rng, 800, "a"), random_result(rng, 800, "b")
     found = by_sql(base, new)
     assert found == by_gate(base, new)
     assert {standing for standing, *_ in found} == {"new", "fixed", "changed", "unchanged", "unknown", "lost"}
@@ -230,6 +230,16 @@ def test_logs_of_one_name_are_matched_by_their_content() -> None:
         ("unchanged", "a", "a"),
         ("unchanged", "b", "b"),
     }
+
+
+def test_a_log_that_is_there_twice_is_matched_once_each() -> None:
+    def fleet(order: str) -> Result:
+        drives = [drive(f"log-{n}", file_name="log.mcap", sha256=sha) for n, sha in enumerate(order)]
+        rows = [finding(drive_id=row["drive_id"], finding_id=row["sha256"]) for row in drives]
+        return result([verdict("fail", drive_id=row["drive_id"]) for row in rows], rows, drives=drives)
+
+    told = by_sql(fleet("aab"), fleet("baa"))
+    assert told == {("unchanged", "a", "a", "fail"): 2, ("unchanged", "b", "b", "fail"): 1}
 
 
 def test_holm_is_the_textbooks() -> None:
