@@ -1,0 +1,31 @@
+-- The drives that two audits share: by the content of the log, else by an id, else by a file stem that only one drive of each audit has.
+CREATE OR REPLACE TEMP TABLE same_drive AS
+WITH base_drive AS (
+    SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
+        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+    FROM {base}drives
+), new_drive AS (
+    SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
+        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+    FROM {new}drives
+), by_content AS (
+    SELECT b.key AS base_key, n.key AS new_key FROM base_drive b JOIN new_drive n ON n.sha256 = b.sha256 AND n.nth = b.nth
+), base_rest AS (
+    SELECT b.* FROM base_drive b ANTI JOIN by_content k ON k.base_key = b.key
+), new_rest AS (
+    SELECT n.* FROM new_drive n ANTI JOIN by_content k ON k.new_key = n.key
+), by_id AS (
+    SELECT b.key AS base_key, n.key AS new_key
+    FROM (FROM base_rest QUALIFY count(*) OVER (PARTITION BY drive_id) = 1) b
+    JOIN (FROM new_rest QUALIFY count(*) OVER (PARTITION BY drive_id) = 1) n ON n.drive_id = b.drive_id
+), by_stem AS (
+    SELECT b.key AS base_key, n.key AS new_key
+    FROM (SELECT r.* FROM base_rest r ANTI JOIN by_id k ON k.base_key = r.key QUALIFY count(*) OVER (PARTITION BY r.stem) = 1) b
+    JOIN (SELECT r.* FROM new_rest r ANTI JOIN by_id k ON k.new_key = r.key QUALIFY count(*) OVER (PARTITION BY r.stem) = 1) n ON n.stem = b.stem
+), matched AS (
+    FROM by_content UNION ALL FROM by_id UNION ALL FROM by_stem
+)
+-- What differs between the two, NULL where it is not known: the log, the map, and the software that drove.
+SELECT m.base_key, m.new_key, n.sha256 IS NOT DISTINCT FROM b.sha256 AS same_log, n.sha256 <> b.sha256 AS data,
+    n.map_sha256 IS DISTINCT FROM b.map_sha256 AS map, n.tags['release'] <> b.tags['release'] AS software
+FROM matched m JOIN {base}drives b ON b.key = m.base_key JOIN {new}drives n ON n.key = m.new_key

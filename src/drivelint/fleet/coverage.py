@@ -1,0 +1,96 @@
+"""What a fleet's drives covered: the rules that were decided, and the situations that occurred."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag, value_of
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import duckdb
+
+STANDINGS: Final = ("decided", "never_decided", "never_triggered", "never_in_force", "not_run")
+"""What a fleet says about a rule. never_decided: it applied, or may have, and each time it was unknown; never_triggered: what it is about
+never happened; never_in_force: every drive was in another nation, in other conditions, or without the automated driver."""
+
+
+@dataclass(frozen=True)
+class RuleCoverage:
+    """In how many drives a rule was decided; a log that is there twice is one drive.
+
+    A drive in which it was decided once and unknown once counts for both.
+    """
+
+    rule_id: str
+    profile: str | None
+    standing: str
+    drives: int
+    drives_decided: int
+    drives_failed: int
+    drives_unknown: int
+    drives_not_triggered: int
+    occasions: int
+
+
+@dataclass(frozen=True)
+class SituationCoverage:
+    """What happened at one value of a situation, over all rules; `value` None: of drives of which it is not known.
+
+    A value with no ego never occurred in a drive of which it is known; if there are drives of which it is not, it may have.
+    `km`, `hours`: all of the way, also what no rule judged. `occasions`: verdicts that passed or failed.
+    """
+
+    situation: str
+    value: str | None
+    egos: int = 0
+    km: float = 0.0
+    hours: float = 0.0
+    occasions: int = 0
+    occasions_failed: int = 0
+    occasions_unknown: int = 0
+    findings: int = 0
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """The rules by what the fleet says about them; the situations with those that never occurred; and what the tables cannot tell."""
+
+    rules: tuple[RuleCoverage, ...]
+    situations: tuple[SituationCoverage, ...]
+    cannot_tell: Mapping[str, str]
+
+    def with_standing(self, standing: str) -> list[RuleCoverage]:
+        """Return the rules of one of `STANDINGS`."""
+        return [rule for rule in self.rules if rule.standing == standing]
+
+    def never_occurred(self) -> list[SituationCoverage]:
+        """Return the situations in which no drive is known to have been."""
+        return [each for each in self.situations if not each.egos and each.value is not None]
+
+
+def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
+    """Return what the drives covered, by the views whose names begin with `of`.
+
+    Failures of one rule by situation are `rates(con, by=SITUATION)`.
+    """
+    parts = {"subject": statement("fleet/subject", of=of, value=value_of(None), without="")}
+    parts["profiled"] = statement("fleet/profiled", of=of)
+    rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
+    situations = [each for name, values in SITUATIONS.items() for each in _situation(con, of, name, values)]
+    return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), CANNOT_TELL)
+
+
+def _situation(con: duckdb.DuckDBPyConnection, of: str, name: str, values: tuple[str, ...]) -> list[SituationCoverage]:
+    """Return one row per value that is known or occurred, in the order of `values`; last that of drives of which it is not known."""
+    subject = statement("fleet/subject", of=of, value=value_of(name), without="")
+    rows: list[tuple[Any, ...]] = con.execute(
+        statement("fleet/situation", of=of, subject=subject), bound_tag(name)
+    ).fetchall()
+    told = {row[0]: SituationCoverage(name, *row) for row in rows}
+    order = dict.fromkeys([*values, *(value for value in told if value is not None)])
+    found = [told.get(value, SituationCoverage(name, value)) for value in order]
+    return [*found, told[None]] if None in told else found

@@ -1,0 +1,58 @@
+"""What a fleet's logs and maps lack, and how much would be judged if it were recorded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from drivelint.fleet.situations import value_of
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+
+@dataclass(frozen=True)
+class MissingSignal:
+    """A signal that rules require and drives do not have: a forecast of what recording it would decide, and at most so much.
+
+    `*_alone`: where nothing else that the rule requires is missing; the others need further signals, too. Where the signal is there, a rule
+    may still be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive.
+    """
+
+    signal: str
+    rules: int
+    rules_alone: int
+    drives: int
+    drives_alone: int
+    km: float
+    km_alone: float
+    judgements: int
+    judgements_alone: int
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """A reason of unknown verdicts though all required signals are there, such as an ego that is not placed for a while."""
+
+    reason_code: str
+    cause_code: str | None
+    rules: int
+    drives: int
+    verdicts: int
+
+
+@dataclass(frozen=True)
+class Missing:
+    """What is not decided for want of a signal, and for other reasons; both with the most frequent first."""
+
+    signals: tuple[MissingSignal, ...]
+    others: tuple[Undecided, ...]
+
+
+def missing(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
+    """Return what the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
+    subject = statement("fleet/subject", of=of, value=value_of(None), without="")
+    signals = con.execute(statement("fleet/missing", of=of, subject=subject)).fetchall()
+    others = con.execute(statement("fleet/undecided", of=of, subject=subject)).fetchall()
+    return Missing(tuple(MissingSignal(*row) for row in signals), tuple(Undecided(*row) for row in others))

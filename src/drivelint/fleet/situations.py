@@ -1,0 +1,38 @@
+"""The situations by which a fleet's drives are told apart, as far as the tables of an audit tell them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from drivelint.drive.conditions import CONDITION_VALUES
+from drivelint.sql.statements import statement
+
+MEASURED: Final = {
+    "speed_band": ("0 to 15 km/h", "15 to 30 km/h", "30 to 60 km/h", "60 to 90 km/h", "90 km/h and more"),
+    "traffic": ("less than 1 other", "1 to 5 others", "5 to 20 others", "20 others and more"),
+}
+"""Situation that is computed from a drive's exposure and states -> its values, in order."""
+_STATEMENTS: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
+SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED}
+"""Situation -> its values. Those that are no measured ones are tags, conditions given to `check`, or what the log says."""
+CANNOT_TELL: Final = {
+    "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
+    "road type, as the map has it": "only a road type that was given for the whole drive is known",
+    "speed at each moment": "the band is that of the mean speed of a drive",
+    "density of the traffic": "the number of recorded actors depends on how far the sensors see",
+}
+"""What the tables of an audit do not tell -> why, or what to look at instead."""
+
+
+def value_of(by: str | None) -> str:
+    """Return the SQL of a drive's value of a tag or situation; it reads `d`, the drive, and `ego`, the exposure of an ego."""
+    if by is None:
+        return "NULL::VARCHAR"
+    name = _STATEMENTS.get(by, "value_of_tag")
+    _, _, sql = statement(f"fleet/{name}").partition("\n")
+    return sql.strip()
+
+
+def bound_tag(by: str | None) -> dict[str, str]:
+    """Return what `value_of(by)` binds."""
+    return {} if by is None or by in MEASURED else {"by": by}

@@ -1,0 +1,100 @@
+"""Which verdicts of a fleet would be others with another value of a rule's parameter, from what is stored of them.
+
+A verdict stores the observed value of its worst step only. That is enough where the rule compares an observed value, which the parameter
+has no part in, with the parameter itself. Every other rule or parameter needs a new check.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from drivelint.errors import UsageError
+from drivelint.fleet.situations import bound_tag, value_of
+from drivelint.phrases import hint
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+    from drivelint.catalogue import Rule
+
+
+class Flip(NamedTuple):
+    """Number of verdicts of a profile and value of a tag that become another or stay; `becomes` None: only a new check can tell."""
+
+    profile: str | None
+    tag_value: str | None
+    was: str
+    becomes: str | None
+    n: int
+
+
+class WhatIf(NamedTuple):
+    """What another value of a parameter does to the verdicts; `needs_check`: why only a new check can tell of any; None: it need not."""
+
+    rule_id: str
+    param: str
+    value: float
+    needs_check: str | None
+    verdicts: tuple[Flip, ...] = ()
+
+    @property
+    def flips(self) -> tuple[Flip, ...]:
+        """The verdicts that are known to become another one."""
+        return tuple(each for each in self.verdicts if each.becomes not in {None, each.was})
+
+    @property
+    def not_known(self) -> int:
+        """Number of verdicts of which only a new check can tell."""
+        return sum(each.n for each in self.verdicts if each.becomes is None)
+
+
+def what_if(
+    con: duckdb.DuckDBPyConnection, rule: Rule, param: str, value: float, by: str | None = None, *, of: str = ""
+) -> WhatIf:
+    """Return the verdicts of a rule with another value of a parameter, by profile and value of a tag.
+
+    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not told: a verdict that fails
+    may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
+    """
+    if why := needs_check(rule, param):
+        return WhatIf(rule.id, param, value, why)
+    subject = statement("fleet/subject", of=of, value=value_of(by), without="")
+    # as an evaluation rounds them
+    required = round(value, 9) if rule.sense in {">=", "<="} else value
+    bound = {
+        "rule_id": rule.id,
+        "rule_version": rule.version,
+        "value": required,
+        "is_bound": rule.has_column("at_least"),
+    }
+    bound["proven"] = "pass" if rule.sense.startswith(">") else "fail"
+    con.execute(statement("fleet/what_if", of=of, subject=subject, sense=rule.sense), bound | bound_tag(by))
+    rows = con.execute(statement("fleet/flips")).fetchall()
+    return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
+
+
+def needs_check(rule: Rule, param: str) -> str | None:
+    """Return why stored verdicts do not tell what another value of a parameter does; None: they do."""
+    if param not in rule.params:
+        raise UsageError(f"rule {rule.id} has no parameter {param!r}; {hint(param, rule.params)}")
+    default = rule.params[param].default
+    if isinstance(default, bool | str):
+        return f"{param} is no number"
+    if (
+        rule.sense == "holds"
+        or rule.kind not in {"invariant", "execution"}
+        or rule.combine != "each"
+        or rule.quantifier != "always"
+    ):
+        return "its verdict is more than one observed value against one required value"
+    text = re.sub(r"--.*", "", "\n".join(rule.sections.values()))
+    condition = re.sub(r"--.*", "", rule.sections["condition"])
+    is_required = re.search(rf",\s*\${param}\s+AS\s+required\s*(,|FROM\b)", condition)
+    elsewhere = len(re.findall(rf"\${param}\b", text)) > 1 or len(re.findall(r"\brequired\b", condition)) > 1
+    if not is_required or elsewhere or re.search(r"\bUNION\b", condition):
+        return f"{param} is not the required value alone: it also decides what is observed, or when the rule applies"
+    if param in {rule.window_s, rule.exempt_after_s, rule.merge_gap_s}:
+        return f"{param} is also a time that decides which steps count"
+    return None
