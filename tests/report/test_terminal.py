@@ -128,15 +128,19 @@ def test_what_must_be_less_is_not_said_to_need_as_much() -> None:
     assert any("CONTACT 43.21 m/s2, at most 12.00 m/s2" in line for line in lines)
 
 
+def test_a_contact_is_told_by_how_fast_both_came_nearer() -> None:
+    found = finding(rule_id="ukhc.no-collision", observed=-0.1, required=0.0, closing_mps=10.44)
+    lines = summary(result([verdict("fail")], [found], rules=[rule(), COLLISION]))
+    assert any("CONTACT object 3; closing at 10.44 m/s" in line for line in lines)
+
+
 def test_warnings_of_the_data_are_named() -> None:
     quality = [
         {"check_id": name, "severity": "warning", "actor_id": None, "n": 1, "t_first_ns": None, "message": name}
         for name in ("teleport", "assumed_motion", "malformed_row", "no_position")
     ]
     lines = summary(result([verdict("pass")], drives=[drive(quality=quality)]))
-    assert any(
-        line.endswith("data: 4 warnings (assumed motion, malformed row, no position and 1 more)") for line in lines
-    )
+    assert any("log: assumed_motion; 4 warnings (assumed motion, malformed row and 2 more)" in line for line in lines)
 
 
 def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:

@@ -161,17 +161,23 @@ def _cell(n: int, style: str) -> Text:
 
 
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
-    """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end."""
+    """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end.
+
+    A contact is told by whom the ego met and how fast they came nearer.
+    """
     contact = is_contact(row, rules)
+    who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
-    if row["observed"] is not None and row["required"] is not None:
+    if contact and row["closing_mps"] is not None:
+        parts = [*who, f"closing at {number(row['closing_mps'], 'm/s')}"]
+        who = []
+    elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
         limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
         parts.append(f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{profile}")
     if not contact:
         parts.append(rules[row["rule_id"]]["title"])
-    if row["object_id"] is not None:
-        parts.append(f"object {row['object_id']}")
+    parts += who
     when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
     what = "possible contact " if doubt(row) else "CONTACT "
     if doubt(row) and not contact:
