@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pyarrow.compute as pc
@@ -58,7 +59,8 @@ def test_the_rows_are_those_of_check(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
     logs = (str(drives.manifest.parent / "logs"),)
-    result = run.check(run.CheckOptions(traces=logs, map=drives.road, rules=(fleet.RULE,), annotate=False), Silent())
+    options = run.CheckOptions(traces=logs, map=drives.road, rules=(fleet.RULE,), annotate=False, robustness=False)
+    result = run.check(options, Silent())
     out, _ = undisturbed
     for table, rows in (("verdicts", result.verdicts), ("findings", result.findings), ("drives", result.drives)):
         (file,) = (out / "tables" / table).iterdir()
@@ -66,6 +68,20 @@ def test_the_rows_are_those_of_check(
         names = ["drive_id"] if table == "drives" else ["drive_id", "rule_id", "occurrence"]
         order = [(name, "ascending") for name in names]
         assert own.sort_by(order).to_pylist() == rows.sort_by(order).to_pylist()
+
+
+def test_copies_are_judged_where_asked(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 6, seed=3)
+    assert few.planted
+    logs = (str(few.manifest.parent / "logs"),)
+    result = run.check(run.CheckOptions(traces=logs, map=few.road, rules=(fleet.RULE,), annotate=False), Silent())
+    told = {row["drive_id"]: (row["n_copies"], row["n_stays"]) for row in result.findings.to_pylist()}
+    asking = replace(SETTINGS, robustness=True)
+    request = AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out"), settings=asking)
+    audit(request, Silent(), InThisProcess())
+    rows = asked(tmp_path / "out", "SELECT drive_id, n_copies, n_stays FROM findings")
+    assert {row["drive_id"]: (row["n_copies"], row["n_stays"]) for row in rows} == told
+    assert all(n_copies for n_copies, _ in told.values())
 
 
 def test_tags_of_the_manifest_are_in_the_table_of_drives(undisturbed: tuple[Path, AuditSummary]) -> None:

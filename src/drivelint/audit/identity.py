@@ -49,10 +49,10 @@ def rule_table(settings: JudgeSettings) -> pa.Table:
 
 
 def run_id(settings: JudgeSettings) -> str:
-    """Return the hash of rules, their parameters, profiles, and versions. Errors: as `rule_table`."""
+    """Return the hash of rules, their parameters, profiles, whether copies are judged, and versions. Errors: as `rule_table`."""
     rules = rule_table(settings).select(["rule_id", "rule_version", "params", "profiles"]).to_pylist()
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles).to_pylist()
-    return digest([versions(), rules, profiles])
+    return digest([versions(), rules, profiles, settings.robustness])
 
 
 class OptionHashes:

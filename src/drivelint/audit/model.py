@@ -28,6 +28,7 @@ class JudgeSettings:
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
+    robustness: bool = False
     memory: int | None = None
 
 

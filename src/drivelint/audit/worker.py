@@ -22,6 +22,7 @@ from drivelint.audit.store import open_store
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog, refused
 from drivelint.engine.batch import drive_with_map
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import load_profiles, profile_table
@@ -57,7 +58,8 @@ class Judge:
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         store.insert(self._con, "profile", profiles)
         self._stable = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
-        self._session = JudgingSession(self._con, rules, params, None, memory=Memory(self._con, memory))
+        errors = MeasurementErrors() if settings.robustness else None
+        self._session = JudgingSession(self._con, rules, params, None, memory=Memory(self._con, memory), errors=errors)
         self._library, self._maps = cache(MapLibrary), cache(self._map)
         self._home = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))
         self._folder = self._home

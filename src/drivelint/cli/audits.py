@@ -27,6 +27,14 @@ def audit(
     profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
     param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
     rules_dir: options.RulesDirs = None,
+    robustness: Annotated[
+        bool,
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "Judge copies with recording errors to tell how sure each finding is, as check does: half as long again. Default: not.",
+        ),
+    ] = False,
     fail_on: Annotated[
         options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
     ] = "critical",
@@ -92,6 +100,7 @@ def audit(
             profiles=tuple(profile or ()),
             params=tuple(param or ()),
             rules_dirs=tuple(rules_dir or ()),
+            robustness=robustness,
             memory=values.parse_memory(memory),
         ),
         fail_on=fail_on,
