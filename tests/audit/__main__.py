@@ -1,37 +1,103 @@
-"""`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables."""
+"""`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables.
+
+`python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of driver
+and workers grows with the drives. `workers DRIVES`: what a second worker brings.
+"""
 
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pyarrow.parquet as pq
+
 from tests.audit import fleet
-from tests.audit.kills import audit_with_kills
+from tests.audit.kills import audit_with_kills, children
+from tests.audit.plan import plan
 
 
-def main() -> None:
+def kills(n_drives: int, n_kills: int) -> None:
     """Print what was seen; exit 1 where the tables differ."""
-    _, _, n_drives, n_kills = sys.argv
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
-        drives = fleet.write(Path(home) / "fleet", int(n_drives))
+        drives = fleet.write(Path(home) / "fleet", n_drives)
         begin = time.monotonic()
-        code, killed = audit_with_kills(drives.command(Path(home) / "killed"), int(n_kills), 20.0)
+        code, killed = audit_with_kills(drives.command(Path(home) / "killed"), n_kills, 20.0)
         print(f"with {killed} kills: exit {code}, {time.monotonic() - begin:.0f} s")
         begin = time.monotonic()
-        done = subprocess.run(
-            [sys.executable, "-m", "drivelint", *drives.command(Path(home) / "whole")], check=False, capture_output=True
-        )
+        done = _run(drives.command(Path(home) / "whole"))
         print(f"undisturbed: exit {done.returncode}, {time.monotonic() - begin:.0f} s")
         told = [json.loads((Path(home) / name / "summary.json").read_text("utf-8")) for name in ("killed", "whole")]
         for each in told:
             print(json.dumps(each, sort_keys=True))
-        print(f"planted contacts: {len(drives.planted)}")
+        found = _run(
+            ["sql", str(Path(home) / "killed"), "SELECT DISTINCT file_name FROM findings JOIN drives USING (key)"]
+        )
+        names = {name for name in found.stdout.decode().split() if name.endswith(".parquet")}
+        print(
+            f"planted contacts: {len(drives.planted)}, all shown of {len(names)} are planted: {names <= drives.planted}"
+        )
         sys.exit(int(told[0]["digest"] != told[1]["digest"]))
 
 
+def memory(n_drives: int) -> None:
+    """Print the memory of driver and workers as the audit goes on."""
+    with TemporaryDirectory(prefix="drivelint-audit-") as home:
+        drives = fleet.write(Path(home) / "fleet", n_drives)
+        out = Path(home) / "out"
+        running = subprocess.Popen([sys.executable, "-m", "drivelint", *drives.command(out)], stdout=subprocess.DEVNULL)
+        told = 0
+        while running.poll() is None:
+            time.sleep(1.0)
+            loose = sum(1 for _ in out.glob("receipts/*/*.json"))
+            packed = sum(pq.read_metadata(file).num_rows for file in out.glob("tables/receipts/*.parquet"))
+            n = max(loose, packed) if loose + packed > n_drives else loose + packed  # while it packs, both have some
+            if n >= told + n_drives // 20:
+                told = n
+                sizes = [_rss(pid) for pid in (running.pid, *children(running.pid))]
+                print(
+                    f"{n:>7} drives: driver {sizes[0]:.0f} MB, workers {', '.join(f'{size:.0f}' for size in sizes[1:])} MB",
+                    flush=True,
+                )
+
+
+def workers(n_drives: int) -> None:
+    """Print the seconds that one and two workers take."""
+    with TemporaryDirectory(prefix="drivelint-audit-") as home:
+        drives = fleet.write(Path(home) / "fleet", n_drives)
+        taken = []
+        for n in (1, 2):
+            begin = time.monotonic()
+            _run(drives.command(Path(home) / f"out{n}", "--workers", str(n)))
+            taken.append(time.monotonic() - begin)
+            print(f"{n} workers: {taken[-1]:.1f} s", flush=True)
+        print(f"two are {taken[0] / taken[1]:.2f} times as fast as one")
+
+
+def _run(words: list[str]) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run([sys.executable, "-m", "drivelint", *words], check=False, capture_output=True)
+
+
+def _rss(pid: int) -> float:
+    """Return the resident memory of a process in MB (Linux); 0 if it has ended."""
+    try:
+        told = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    except OSError:
+        return 0.0
+    found = re.search(r"VmRSS:\s+(\d+) kB", told)
+    return int(found[1]) / 1e3 if found else 0.0
+
+
 if __name__ == "__main__":
-    main()
+    command, *numbers = sys.argv[1:]
+    first, *rest = map(int, numbers)
+    if command == "kills":
+        kills(first, *rest)
+    elif command == "plan":
+        print("\n".join(plan(first)))
+    else:
+        {"memory": memory, "workers": workers}[command](first)

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that a process has started, and those that these have (Linux)."""
-    try:
-        told = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
-    except OSError:
-        return []
-    return [found for child in map(int, told) for found in (child, *children(child))]
+    """Return the processes that a process's threads have started, and those that these have (Linux)."""
+    found: list[int] = []
+    for task in Path(f"/proc/{pid}/task").glob("*/children"):
+        with suppress(OSError):
+            found += [int(child) for child in task.read_text(encoding="ascii").split()]
+    return [each for child in found for each in (child, *children(child))]
 
 
 def audit_with_kills(command: Sequence[str], n_kills: int, seconds: float, seed: int = 0) -> tuple[int, int]:

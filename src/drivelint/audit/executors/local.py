@@ -5,8 +5,9 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from concurrent.futures import FIRST_COMPLETED, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures import TimeoutError as TookTooLongError
+from concurrent.futures.process import BrokenProcessPool
 from typing import TYPE_CHECKING
 
 from pebble import ProcessExpired, ProcessPool
@@ -28,14 +29,9 @@ class LocalPool:
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
         self._workers = workers or _cores()
+        self._memory = memory
         self._timeout_s = timeout_s
-        self._pool = ProcessPool(
-            max_workers=self._workers,
-            max_tasks=TASKS_PER_WORKER,
-            initializer=_begin,
-            initargs=(memory, os.getpid()),
-            context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
-        )
+        self._pool = self._started()
         self._running: dict[Future[list[Receipt]], Task] = {}
 
     @property
@@ -50,8 +46,22 @@ class LocalPool:
 
     def wait(self) -> list[Outcome]:
         """See `Executor.wait`."""
-        ended = wait(self._running, return_when=FIRST_COMPLETED).done if self._running else ()
+        ended = wait(self._running, return_when=FIRST_COMPLETED).done if self._running else set()
+        if any(isinstance(future.exception(), BrokenProcessPool) for future in ended):
+            # a worker died between two tasks, and the pool has given up all of them
+            self.close()
+            self._pool = self._started()
+            ended = set(self._running)
         return [_outcome(future, self._running.pop(future)) for future in ended]
+
+    def _started(self) -> ProcessPool:
+        return ProcessPool(
+            max_workers=self._workers,
+            max_tasks=TASKS_PER_WORKER,
+            initializer=_begin,
+            initargs=(self._memory, os.getpid()),
+            context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
+        )
 
     def close(self) -> None:
         """See `Executor.close`."""
@@ -62,6 +72,8 @@ class LocalPool:
 def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
     try:
         return Outcome(task, future.result())
+    except (BrokenProcessPool, CancelledError):
+        return Outcome(task, lost="the workers died")
     except ProcessExpired as error:
         return Outcome(task, lost=f"the worker died (exit code {error.exitcode})")
     except TookTooLongError:
