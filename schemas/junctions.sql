@@ -67,9 +67,17 @@ CREATE TABLE conflict (
     angle_rad DOUBLE NOT NULL,        -- where the other enters: its heading against the ego's way there, -pi..pi: near pi oncoming, negative: it comes from the left
     ego_speed_mps DOUBLE,             -- ego's speed on entering
     speed_mps DOUBLE,                 -- its speed on entering
-    decel_mps2 DOUBLE,                -- its strongest mean deceleration over 0.5 s from 4 s before the ego's entry until its own entry (positive: it slowed); NULL: not seen whole, or it entered before that
+    decel_mps2 DOUBLE,                -- its strongest mean deceleration over 0.5 s from 4 s before the ego's entry until its own entry (positive: it slowed); that of an impact with the ego does not count; NULL: not seen whole, or it entered before that
     junction_id VARCHAR,              -- junction that the ego's front is in on entering the area; NULL: none, or no map
     crossing_id VARCHAR               -- pedestrian crossing that the ego's box is on then; NULL: none, or no map
+);
+
+-- lifetime: part
+CREATE TABLE impact (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR NOT NULL,       -- another actor
+    t_ns BIGINT NOT NULL              -- first step at which it or the ego loses or gains speed by 12 m/s2 or more since the step before (somebody who may be on foot: loses) with the boxes 0.5 m or less apart, or a step up to 0.5 s before at which that began
 );
 
 -- lifetime: part
@@ -83,7 +91,7 @@ CREATE TABLE forced_braking (
     t_ego_in_ns BIGINT NOT NULL,      -- first step of the ego on that ground, from t_from on
     t_ego_out_ns BIGINT NOT NULL,     -- last one
     speed_mps DOUBLE NOT NULL,        -- its speed at t_from
-    decel_mps2 DOUBLE NOT NULL,       -- its strongest mean deceleration over 0.5 s (or one period) until the ego has left
+    decel_mps2 DOUBLE NOT NULL,       -- its strongest mean deceleration over 0.5 s (or one period) until the ego has left, and before an impact of the two
     pet_s DOUBLE NOT NULL,            -- post-encroachment time that there would have been at that speed; negative: both there at once
     angle_rad DOUBLE NOT NULL,        -- its way against the ego's where it would have come to it first, see conflict
     other_cause VARCHAR,              -- why it may not be the ego that it braked for: incomplete (it has no heading or size: taken for a car that heads where it goes), let_go (the ego stood, and not on that ground, as it began), somebody_else (before it or across its way), signal (a line, or a light not seen to be green), bend (too tight for its speed); NULL: nothing else is seen

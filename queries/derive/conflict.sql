@@ -149,13 +149,13 @@ moving_encounter AS MATERIALIZED (
 -- The mean deceleration over the half second before each sample, where all of that was seen.
 object_braking AS (
     SELECT
-        drive_id, ego_id, object_id, n, max(decel_mps2) AS decel_mps2,
+        drive_id, ego_id, object_id, n, max(decel_mps2) FILTER (coalesce(t_ns < t_impact_ns, true)) AS decel_mps2,
         -- The whole period was seen.
         bool_and(coalesce(gap_ns <= max_gap_ns, true)) AND min(t_ns) - (t_ego_in_ns - 4_000_000_000) <= period_ns
             AND max(t_ns) = t_object_in_ns AND bool_and(speed_mps IS NOT NULL) AS is_whole
     FROM (
         SELECT
-            m.drive_id, m.ego_id, m.object_id, m.n, m.t_ego_in_ns, m.t_object_in_ns, s.t_ns, s.speed_mps, c.max_gap_ns, c.period_ns,
+            m.drive_id, m.ego_id, m.object_id, m.n, m.t_ego_in_ns, m.t_object_in_ns, i.t_ns AS t_impact_ns, s.t_ns, s.speed_mps, c.max_gap_ns, c.period_ns,
             s.t_ns - lag(s.t_ns) OVER w AS gap_ns,
             CASE WHEN s.t_ns - first_value(s.t_ns) OVER half >= 500_000_000 - c.period_ns // 2 THEN
                 (first_value(s.speed_mps) OVER half - s.speed_mps) / ((s.t_ns - first_value(s.t_ns) OVER half) / 1e9)
@@ -164,6 +164,7 @@ object_braking AS (
         JOIN clock c USING (drive_id, ego_id)
         JOIN state_dynamics s ON s.drive_id = m.drive_id AND s.actor_id = m.object_id
             AND s.t_ns >= m.t_ego_in_ns - 4_000_000_000 AND s.t_ns <= m.t_object_in_ns
+        LEFT JOIN impact i ON i.drive_id = m.drive_id AND i.ego_id = m.ego_id AND i.object_id = m.object_id
         WINDOW
             w AS (PARTITION BY m.drive_id, m.ego_id, m.object_id, m.n ORDER BY s.t_ns),
             half AS (

@@ -195,7 +195,9 @@ braking_for_ego AS MATERIALIZED (
         min(w.t_stop_ns) AS t_stop_ns
     FROM taken_ground t
     JOIN braking b USING (drive_id, object_id, t_from_ns)
-    LEFT JOIN first_stop w USING (drive_id, object_id, t_from_ns)
+    LEFT JOIN impact i USING (drive_id, ego_id, object_id)
+    -- Who stands after an impact has not stopped by braking.
+    LEFT JOIN first_stop w ON w.drive_id = t.drive_id AND w.object_id = t.object_id AND w.t_from_ns = t.t_from_ns AND coalesce(w.t_stop_ns < i.t_ns, true)
     GROUP BY t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, b.is_gentle
     HAVING NOT b.is_gentle AND t.t_from_ns >= min(t.t_ego_first_ns) - forced_apart_ns()
         -- An oncoming driver sees the ego from afar and stops before the ego is there.
@@ -271,6 +273,8 @@ hardest_braking AS (
     SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns, max(s.decel_mps2) AS decel_mps2
     FROM braking_for_ego l
     JOIN braking_sample s ON s.drive_id = l.drive_id AND s.object_id = l.object_id AND s.t_ns >= l.t_from_ns AND s.t_ns <= least(l.t_to_ns, l.t_ego_out_ns)
+    LEFT JOIN impact i ON i.drive_id = l.drive_id AND i.ego_id = l.ego_id AND i.object_id = l.object_id
+    WHERE coalesce(s.t_ns < i.t_ns, true)
     GROUP BY ALL
 )
 SELECT

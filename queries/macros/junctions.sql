@@ -58,6 +58,12 @@ CREATE OR REPLACE MACRO piece_distance_m(x, y, x0, y0, tx, ty, a, b) AS
     sqrt(
         ((x - x0) * tx + (y - y0) * ty - greatest(a, least(b, (x - x0) * tx + (y - y0) * ty))) ** 2 + ((y - y0) * tx - (x - x0) * ty) ** 2
     );
+-- An impact: two boxes are this near, and one of the two loses or gains speed faster than dry tyres can. As in the rule contact-signature.
+CREATE OR REPLACE MACRO impact_within_m() AS 0.5;
+CREATE OR REPLACE MACRO tyre_mps2() AS 12.0;
+-- The jolt of a pair. Who may be on foot only loses speed: recorded speeds of pedestrians jump.
+CREATE OR REPLACE MACRO jolt_mps2(actor_class, accel_mps2, ego_accel_mps2) AS
+    greatest(-accel_mps2, CASE WHEN NOT may_walk(actor_class) THEN accel_mps2 END, abs(ego_accel_mps2));
 -- A deceleration that is more than letting off the accelerator: the least that any rule asks about.
 CREATE OR REPLACE MACRO least_braking_mps2() AS 1.5;
 -- Our default: a deceleration that is not noise. A driver who sees from far away that they must wait lets the vehicle roll out.

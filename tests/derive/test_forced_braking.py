@@ -180,6 +180,32 @@ def test_who_has_to_stop_for_the_ego_round_an_obstruction(hand: str) -> None:
     assert verdicts(scene, GIVE_WAY) == [("fail", "p")]
 
 
+def crashing(hand: str, by: float) -> Drive:
+    """Return a head-on crash beside the parked car at 15 s; the oncoming driver brakes from 13.5 s on by `by` m/s2; then both stand."""
+    way = road(((600.0, 0.0),), hand)
+    t = times(END)
+    s = 50 + 10 * np.minimum(t, 15.0)
+    ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
+    parked = standing("p", way, t, 200.0, way.own)
+    gone = way_of(np.where(t > 15, 0.0, stopping(t, 12.0, 13.5, by)), 0.0, t)
+    other = moving("o", way, t, 204.78 + gone[-1] - gone, way.other)
+    return drive([ego, parked, other], way.environment)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_the_deceleration_of_a_crash_is_no_braking(hand: str) -> None:
+    """Who did not brake is not said to have, though it lost 12 m/s; who braked by 3 m/s2 is not said to have braked harder."""
+    scene = crashing(hand, by=0.0)
+    assert [row["object_id"] for row in rows(derived(scene, tables=["impact"]), "FROM impact")] == ["o"]
+    assert forced(scene) == []
+    (told,) = [row for row in judged([scene], rules=[GIVE_WAY]) if row["ego_id"] == "ego"]
+    assert (told["verdict"], told["object_id"]) == ("fail", "p")
+    assert "braked" not in told["reason"]
+    (row,) = forced(crashing(hand, by=3.0))
+    assert row["decel_mps2"] == pytest.approx(3.0, abs=0.3)
+    assert row["waited"] is False  # it was stopped, it did not stop
+
+
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_stops_far_away_or_softly_is_not_forced(hand: str) -> None:
     assert verdicts(passing(hand, from_m=590.0, at=14.0), GIVE_WAY) == [("pass", "p")]

@@ -1,13 +1,13 @@
 -- title = "Giving way to oncoming traffic when passing an obstruction"
 -- clause = "UKHC R163: give way to oncoming vehicles before you pass parked vehicles or other obstructions on your side of the road"
--- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle come close, have to brake, or have to wait?"
+-- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle come close, hit the ego, have to brake, or have to wait?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "major"
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["clock", "conflict", "ego_state", "forced_braking", "hidden", "overtake", "pair", "unplaced"]
+-- reads = ["clock", "conflict", "ego_state", "forced_braking", "hidden", "impact", "overtake", "pair", "unplaced"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.pet_s]
@@ -40,6 +40,9 @@
 --
 -- [reasons.came_by]
 -- says = "{object_id} came by with {room_m:.2f} m between"
+--
+-- [reasons.ran_into]
+-- says = "the ego and {object_id} ran into each other"
 --
 -- [reasons.braked_and_stood]
 -- says = "{braked}, and it stood until the ego had left or was about to leave"
@@ -91,18 +94,20 @@ braking_result AS (
     FROM oncoming_braking
     GROUP BY ref_id
 ),
--- Oncoming vehicles that came by with hardly any room. A vehicle that reached over the line itself leaves the result open.
+-- Oncoming vehicles that came by with hardly any room, or ran into the ego. A vehicle that reached over the line itself leaves the result
+-- open.
 close_meeting AS (
-    SELECT ref_id, CASE WHEN bool_or(is_too_close) THEN true END AS is_violation, min({'room_m': clearance_m, 'object_id': object_id}) AS least
+    SELECT ref_id, CASE WHEN bool_or(is_too_close) THEN true END AS is_violation, min({'passes': NOT is_impact, 'room_m': clearance_m, 'object_id': object_id}) AS least
     FROM (
         SELECT
-            r.ref_id, p.object_id, p.clearance_m,
-            p.speed_mps > standing_mps() AND e.speed_mps + p.speed_mps > $closing_mps AND is_vehicle(p.actor_class)
+            r.ref_id, p.object_id, p.clearance_m, i.t_ns IS NOT NULL AS is_impact,
+            (i.t_ns IS NOT NULL OR p.speed_mps > standing_mps() AND e.speed_mps + p.speed_mps > $closing_mps) AND is_vehicle(p.actor_class)
                 AND CASE WHEN NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) THEN true END AS is_too_close
         FROM reference r
         JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns >= r.t_ns AND p.t_ns <= r.t_end_ns
         JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
-        WHERE p.clearance_m < $close_m AND abs(p.heading_diff_rad) >= $oncoming_rad
+        LEFT JOIN impact i ON i.drive_id = p.drive_id AND i.ego_id = p.ego_id AND i.object_id = p.object_id AND i.t_ns = p.t_ns
+        WHERE (p.clearance_m < $close_m OR i.t_ns IS NOT NULL) AND abs(p.heading_diff_rad) >= $oncoming_rad
     )
     WHERE is_too_close IS DISTINCT FROM false
     GROUP BY ref_id
@@ -133,7 +138,8 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
                     FILTER (c.pet_s < $pet_s).words,
                 min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2})})
                     FILTER (c.decel_mps2 > $decel_mps2).words)
-        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true THEN why('came_by', m.least)
+        WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true 
+            THEN CASE WHEN m.least.passes THEN why('came_by', m.least) ELSE why('ran_into', m.least) END
         WHEN f.words IS NOT NULL THEN f.words
         WHEN o.t3_ns IS NULL THEN why('return_unseen')
         WHEN v.ref_id IS NOT NULL THEN why('object_lacks_unbroken', v.unplaced)
