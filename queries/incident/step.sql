@@ -5,11 +5,15 @@ SELECT
     p.x_m AS object_x_m, p.y_m AS object_y_m, p.yaw_rad AS object_yaw_rad, p.length_m AS object_length_m, p.width_m AS object_width_m,
     CASE WHEN p.x_m IS NOT NULL THEN p.speed_mps END AS object_speed_mps,
     CASE WHEN p.x_m IS NOT NULL THEN o.vx_mps END AS object_vx_mps, CASE WHEN p.x_m IS NOT NULL THEN o.vy_mps END AS object_vy_mps,
-    p.d_m AS object_lane_offset_m, CASE WHEN NOT p.clearance_is_bound THEN p.clearance_m END AS clearance_m
+    p.d_m AS object_lane_offset_m, p.heading_diff_rad, CASE WHEN NOT p.clearance_is_bound THEN p.clearance_m END AS clearance_m,
+    x.t0_ns AS out_since_ns
 FROM ego_state e
 JOIN state_dynamics v ON v.drive_id = e.drive_id AND v.actor_id = e.ego_id AND v.t_ns = e.t_ns
 LEFT JOIN (FROM pair WHERE object_id = $object_id) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
 -- The other actor may have samples at other times.
 ASOF LEFT JOIN (FROM state_dynamics WHERE actor_id = $object_id) o ON o.drive_id = e.drive_id AND o.t_ns <= e.t_ns
+-- How long the ego has been out of its lane. No rule may have asked for it: the table is empty then.
+LEFT JOIN (FROM excursion WHERE ego_id = $ego_id) x ON x.drive_id = e.drive_id AND e.t_ns >= x.t0_ns AND e.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
 WHERE e.ego_id = $ego_id
+QUALIFY row_number() OVER (PARTITION BY e.t_ns ORDER BY x.t0_ns NULLS LAST) = 1
 ORDER BY e.t_ns

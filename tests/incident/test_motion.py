@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from drivelint.incident.motion import Motion, second_by_second, slowings
+from drivelint.incident.motion import Motion, second_by_second, slowing_known, slowings
 
 STEP_S = 0.1
 
@@ -24,6 +24,7 @@ def steps(v: np.ndarray, x: np.ndarray, other_x: float, other_v: float = 0.0) ->
         "object_yaw_rad": np.zeros(n), "object_length_m": np.full(n, 4.0), "object_width_m": np.full(n, 2.0),
         "object_speed_mps": np.full(n, abs(other_v)), "object_vx_mps": np.full(n, other_v), "object_vy_mps": np.zeros(n),
         "object_lane_offset_m": np.ones(n), "clearance_m": np.full(n, np.nan),
+        "heading_diff_rad": np.zeros(n), "out_since_ns": np.full(n, np.nan),
     }  # fmt: skip
     return pa.table({name: pa.array(values, from_pandas=True) for name, values in columns.items()})
 
@@ -45,6 +46,13 @@ def test_when_and_how_hard() -> None:
     assert found.mean_mps2 == pytest.approx(4.0, abs=0.15)
 
 
+def test_slowing_that_began_before_the_recording() -> None:
+    """The first half second of the recording is part of it, though nothing before tells how hard it was."""
+    (found,) = slowings(braking(at_s=-1.0, mps2=2.0, lasts_s=3.0), 0, 0.0)
+    assert found.start_s == pytest.approx(-10.0)
+    assert found.from_mps == pytest.approx(18.0)
+
+
 def test_what_is_no_braking_and_what_is_over() -> None:
     assert slowings(braking(at_s=2.0, mps2=0.9), 0, 0.0) == []
     (over,) = slowings(braking(at_s=2.0, mps2=3.0, lasts_s=1.0), 0, 0.0)
@@ -59,8 +67,17 @@ def test_gap_closing_and_side() -> None:
     ahead = 300.0 - 100.0
     assert motion.gap[i] == pytest.approx(ahead - 4.0)
     assert motion.closing[i] == pytest.approx(20.0 * ahead / math.hypot(ahead, 1.0))
-    assert motion.relative[i] == pytest.approx(20.0)
-    assert motion.aside[i] == pytest.approx(1.0)
+    assert motion.turn[i] == 0.0
+
+
+def test_no_slowing_is_said_only_where_all_of_it_is_known() -> None:
+    v = np.full(101, 20.0)
+    x = np.arange(101) * 2.0
+    assert slowing_known(Motion.of_steps(steps(v, x, 300.0), 10_000_000_000), 0, 0.0)
+    v[50] = np.nan
+    assert not slowing_known(Motion.of_steps(steps(v, x, 300.0), 10_000_000_000), 0, 0.0)
+    short = Motion.of_steps(steps(np.full(4, 20.0), x[:4], 300.0), 300_000_000)
+    assert not slowing_known(short, 0, 0.0)
 
 
 def test_rows_that_the_log_does_not_have() -> None:

@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint import cli
+from drivelint import catalogue, cli
+from drivelint.drive.trace import EgoSize
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, render, write_incident
+from drivelint.incident.command import commands
 from drivelint.incident.sheet import content
+from drivelint.incident.sizes import size_source
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions
@@ -112,8 +115,8 @@ def test_it_says_that_the_log_gives_the_same_finding(collision: dict[str, Any]) 
     assert collision["again"]["finding_id"] == collision["row"]["finding_id"]
 
 
-def test_commands_give_the_finding_again(
-    collision: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_commands_give_the_same_sheet_again(
+    case_of: CaseOf, collision: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("collision.csv", "road.xodr", "mapping.toml"):
         shutil.copy(OVERTAKE / name, tmp_path / name)
@@ -124,6 +127,71 @@ def test_commands_give_the_finding_again(
             cli.main()
     written = list((tmp_path / "again" / "incidents").iterdir())
     assert [file.name for file in written] == [f"{collision['row']['finding_id']}.html"]
+    assert written[0].read_bytes() == render(case_of("no-collision@collision"))  # files are named without their folders
+
+
+def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    stable = case.result.rules["rule_id"].to_pylist()
+
+    def selected(asked_for: list[str]) -> list[str]:
+        words = shlex.split(commands(case.asked, case.finding, asked_for)[0])
+        return [word for i, word in enumerate(words) if {"--rules", "--ignore"} & {word, words[i - 1]}]
+
+    ukhc = {rule.id for rule in catalogue.load_rules().values() if rule.pack == "ukhc" and rule.status == "stable"}
+    assert selected(sorted(ukhc)) == []
+    assert selected(sorted(ukhc - {"ukhc.no-collision"})) == ["--ignore", "ukhc.no-collision"]
+    assert selected(stable[:1]) == ["--rules", stable[0]]
+
+
+def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -> None:
+    at = round(first_contact(recorded) - 0.1, 3)
+    ego, other = recorded["ego"][at], recorded["oncoming"][at]
+    assert f"A at {ego.speed:.1f} m/s; B at {other.speed:.1f} m/s; head-on, closing at" in collision["story"]
+    left = re.search(r"A left its lane at ([\d.]+) s with ([\d.]+) m between the boxes", collision["story"])
+    assert left is not None
+    t, free = (float(n) for n in left.groups())
+    # the line in the middle of the road is y = 0; 5 cm over it count
+    over = min(t for t, state in recorded["ego"].items() if state.box.bounds[1] < -0.05)
+    assert t == pytest.approx(over, abs=0.11)
+    assert free == pytest.approx(gap(recorded["ego"][round(t, 3)], recorded["oncoming"][round(t, 3)]), abs=0.006)
+
+
+def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
+    """A title is true where its rule is kept: unquoted, "rule broken: No collision" reads as none."""
+    page = render(case_of("no-collision@collision")).decode()
+    text = re.sub(r"<[^>]+>", "", page)
+    assert "rule broken: \u201cNo collision\u201d" in text
+    assert re.search(r"(?<!\u201c)No collision", text.partition("</style>")[2].partition("Incident sheet")[2]) is None
+    assert "not who is at fault" in text
+    assert "Rules of: UK Highway Code, whatever country" in text
+    assert "required 0.00 m" not in text
+
+
+def test_who_was_only_hit(collision: dict[str, Any]) -> None:
+    told = {party["id"]: party["only_hit"] for party in collision["conduct"]}
+    assert told["ego"] is False
+    assert all(certain in " ".join(collision["conduct"][0]["broken"].shown) for certain in ("; sure,", " of "))
+
+
+def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -> None:
+    lines = [line for party in collision["conduct"] for line in party["broken"].shown]
+    assert not any("braked" in line for line in lines)
+
+
+def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
+    asked = case_of("no-collision@collision").asked
+    assert "carla-testbench" in size_source(replace(asked, mapping="carla-testbench"), ego=False)
+    assert "--ego-size" in size_source(replace(asked, ego_size=EgoSize(4.0, 1.8)), ego=True)
+    assert size_source(replace(asked, mapping=None, ego_size=EgoSize(4.0, 1.8)), ego=False) == ""
+
+
+def test_a_clip_says_so(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    drive = {**case.finding.drive, "file_name": "collision-clip-0a1b2c3d.mcap"}
+    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    assert "of a clip, cut from the log collision" in page
+    assert "of a clip" not in render(case).decode()
 
 
 def test_same_case_same_bytes(folder: Path, case_of: CaseOf) -> None:
@@ -136,7 +204,7 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
     assert not told["contact"]
     (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]
     required = [line["name"] for line in chart["lines"] if line["kind"] == "limit"]
-    assert "required: Safe distance ahead before overtaking [nominal]" in required
+    assert "required: \u201cSafe distance ahead before overtaking\u201d (planned as nominal)" in required
     assert "Contact" not in told["what"]
     assert told["contacts"]  # the same two touch later in that drive
 
@@ -145,6 +213,11 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
 def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> None:
     case = case_of("no-collision@collision")
     row = {**case.finding.row, "n_copies": None if stays is None else 100, "n_stays": stays}
+    alone = replace(case.result, findings=case.result.findings.slice(0, 0))
+    surest = render(replace(case, finding=replace(case.finding, row=row))).decode()
+    assert ("the contact is <b>sure</b> by" in surest) is (stays == 53)  # as the speeds say
+    assert "Possible contact" not in surest
+    case = replace(case, result=alone)
     page = render(replace(case, finding=replace(case.finding, row=row))).decode()
     assert said in page
     assert (f"{stays} of 100 copies" in page) is (stays is not None)

@@ -6,15 +6,18 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from drivelint import catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from drivelint.incident.finding import NamedFinding
     from drivelint.result.request import RunRequest
 
 
-def commands(asked: RunRequest, finding: NamedFinding) -> list[str]:
-    """Return the check of the one log by the one rule, and the report. Files are named without their folders."""
+def commands(asked: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) -> list[str]:
+    """Return the check of the one log by the rules of the run, and the report. Files are named without their folders."""
     row, drive = finding.row, finding.drive
     words = ["drivelint", "check", drive["file_name"]]
     if asked.map is not None:
@@ -23,17 +26,30 @@ def commands(asked: RunRequest, finding: NamedFinding) -> list[str]:
         words += ["--map", drive["map_name"] or "MAP"]
     words += _options(asked)
     if row["ego_id"]:
-        words += ["--ego", row["ego_id"]]
-    words += ["--rules", row["rule_id"]]
-    for profile in asked.profiles or DEFAULT_PROFILES if row["profile"] is not None else ():
+        words += ["--ego", row["ego_id"] if len(drive["exposure"]) == 1 else "all"]
+    words += _rules(asked, rule_ids)
+    for profile in asked.profiles if tuple(asked.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
     for setting in asked.params:
-        if setting.partition("=")[0].strip().rpartition(".")[0] == row["rule_id"]:
-            words += ["--param", setting]
+        words += ["--param", setting]
     for folder in asked.rules_dirs:
         words += ["--rules-dir", folder.name]
     name = row["finding_id"]
     return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
+
+
+def _rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:
+    """Return the shortest options that select these rules."""
+    known, wanted = catalogue.load_rules(asked.rules_dirs), set(rule_ids)
+    found = [[word for rule_id in sorted(wanted) for word in ("--rules", rule_id)]]
+    for chosen in (
+        [],
+        *(["--rules", pack] for pack in sorted({known[rule_id].pack for rule_id in wanted & known.keys()})),
+    ):
+        selected = {rule.id for rule in catalogue.select_rules(known, chosen[1:], ())}
+        if wanted <= selected:
+            found.append([*chosen, *(word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))])
+    return min(found, key=len)
 
 
 def _options(asked: RunRequest) -> list[str]:

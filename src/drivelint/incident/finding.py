@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
+from drivelint.incident.words import CONTACT
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _SAME: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
 
 

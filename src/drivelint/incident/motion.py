@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 BEFORE_S: Final = 15
 AFTER_S: Final = 2
 """The table runs from 15 s before the moment to 2 s after it."""
+MOST_ROWS: Final = BEFORE_S + AFTER_S + 2
+"""Rows of the table at most: its seconds, the moment, and the last step before a contact."""
 SLOWING_MPS2: Final = 1.0
 """Who slows by less, as a mean of half a second, may coast."""
 _MEAN_S: Final = 0.5
@@ -30,8 +32,8 @@ class Motion:
     """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
 
     `t`: seconds from the moment; `gap`: box to box in m, negative: depth of overlap; `closing`: speed at which the line
-    between the box centres shortens; `relative`: length of the difference of the velocities; `aside`: how far the other's
-    centre is left of the ego's axis; `lane_offset`: left of the middle of the ego's lane, as the ego drives.
+    between the box centres shortens; `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as
+    the ego drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
     """
 
     t: Floats
@@ -39,13 +41,13 @@ class Motion:
     lane_offset: tuple[Floats, Floats]
     gap: Floats
     closing: Floats
-    relative: Floats
-    aside: Floats
+    turn: Floats
+    out_since: Floats
 
     @classmethod
     def of_steps(cls, steps: pa.Table, moment_ns: int) -> Motion:
         """Return the motion in rows of `queries/incident/step.sql`."""
-        c = {name: floats(steps[name]) for name in steps.column_names if name != "t_ns"}
+        c = {name: floats(steps[name]) for name in steps.column_names if name not in {"t_ns", "out_since_ns"}}
         east, north = c["object_x_m"] - c["x_m"], c["object_y_m"] - c["y_m"]
         de, dn = c["object_vx_mps"] - c["vx_mps"], c["object_vy_mps"] - c["vy_mps"]
         far = np.hypot(east, north)
@@ -58,8 +60,8 @@ class Motion:
             lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
             gap=np.where(np.isnan(exact), _apart(c), exact),
             closing=closing,
-            relative=np.hypot(de, dn),
-            aside=north * np.cos(c["yaw_rad"]) - east * np.sin(c["yaw_rad"]),
+            turn=np.abs(c["heading_diff_rad"]),
+            out_since=(floats(steps["out_since_ns"]) - moment_ns) / 1e9,
         )
 
     @property
@@ -85,6 +87,14 @@ class Motion:
         if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_S).any():
             return float("nan")
         return float((v[i] - np.interp(start, t, v)) / over_s)
+
+
+def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
+    """Whether every half second of the 15 s before `until_s`, as far as recorded, tells if a party slowed."""
+    t = motion.t
+    begin = max(float(t[0]), until_s - BEFORE_S)
+    steps = np.flatnonzero((t >= begin + _MEAN_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
+    return bool(steps) and not any(np.isnan(motion.acceleration(party, i, _MEAN_S)) for i in steps)
 
 
 class Slowing(NamedTuple):
@@ -116,10 +126,9 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
             runs.append([i])
     found = []
     for run in runs:
-        # the mean of the half second before says that it has begun by then
-        first = run[0]
-        while first > 0 and t[run[0]] - t[first - 1] <= _MEAN_S + 1e-9 and v[first - 1] > v[first]:
-            first -= 1
+        # the mean of the half second before says that it has begun by then: where the speed was highest
+        within = np.flatnonzero((t >= t[run[0]] - _MEAN_S - 1e-9) & (t <= t[run[0]]))
+        first = int(within[::-1][np.argmax(v[within[::-1]])])
         found.append(
             Slowing(float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run))
         )
@@ -149,7 +158,6 @@ def _row(motion: Motion, i: int, t: float, last_before: bool) -> dict[str, Any]:
         "offset": [float(v[i]) for v in motion.lane_offset],
         "gap": float(motion.gap[i]),
         "closing": float(motion.closing[i]),
-        "aside": float(motion.aside[i]),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from dataclasses import dataclass
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final
@@ -11,14 +12,16 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.incident.command import commands
-from drivelint.incident.conduct import conduct, measured
+from drivelint.incident.conduct import conduct
 from drivelint.incident.judge import same_finding
-from drivelint.incident.motion import BEFORE_S, Motion, second_by_second, slowings
+from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowing_known, slowings
 from drivelint.incident.record import held_elements
+from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
+from drivelint.incident.words import CONTACT, closing, contact, how_sure, measured, minus, profile, speed, story
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
-from drivelint.result.certainty import certainty
+from drivelint.result.certainty import POSSIBLE, SURE, certainty
 from drivelint.result.text import number, seconds, utc_at
 
 if TYPE_CHECKING:
@@ -38,7 +41,8 @@ SPAN_S: Final = (15, 7)
 """What each party did is told from so long before the moment to so long after it."""
 LETTERS: Final = ("A", "B")
 _NO_NUMBER: Final = "-"
-_KMH, _MPH = 3.6, 1 / 0.44704
+_CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
+"""Name of a clip that `convert --clip` cut, see `clip.py`."""
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 
@@ -63,11 +67,19 @@ def content(case: Case) -> dict[str, Any]:
     before = motion.last_before(0.0) if finding.is_contact else None
     at = motion.at(0.0) if before is None else before
     before_s = None if before is None else float(motion.t[before])
+    until_s = 0.0 if before_s is None else before_s
+    slowed = [slowings(motion, no, until_s) for no in range(len(finding.parties))]
+    offset_s = (finding.moment_ns - finding.start_ns) / 1e9
+    rows = second_by_second(motion, before_s)
     return {
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
         "what": _what(finding),
+        "story": story(motion, at, slowed, closing_mps=row["closing_mps"], offset_s=offset_s),
+        "clip_of": _clip_of(finding.drive["file_name"]),
+        "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
+        "profile": profile(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
         "worst": seconds(row["t_worst_ns"], finding.start_ns),
         "stretch": None
@@ -77,41 +89,27 @@ def content(case: Case) -> dict[str, Any]:
         "road_id": _road_of(case),
         "contact": finding.is_contact,
         "before": None if before_s is None else f"{-before_s:.2f} s before",
-        "parties": [_party(case, motion, no, at, before_s) for no in range(len(finding.parties))],
-        "closing": None if at is None else _closing(float(motion.closing[at])),
-        "relative": None if at is None else speed(float(motion.relative[at])),
+        "parties": [_party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
+        "closing": closing(row["closing_mps"]),
         "gap": None if at is None else _metres(float(motion.gap[at])),
         "least": _least_gap(motion, finding),
-        "contacts": _contacts(case),
+        "contacts": _told_contacts(case),
+        "overlap": contact(row, finding.rule),
         **_plan(case),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
-        "seconds": [
-            {**each, "drive_s": (finding.moment_ns - finding.start_ns) / 1e9 + float(motion.t[each["i"]])}
-            for each in second_by_second(motion, before_s)
-        ],
+        "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
-        "conduct": _conduct(case),
+        "conduct": _conduct(case, MOST_ROWS - len(rows)),
         "span": SPAN_S,
-        "sure": _sure(row),
+        "sure": _surest(case),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": [check["message"] for check in finding.drive["quality"] if check["severity"] != "info"],
         "again": same_finding(case.again.findings, row),
         "source": case.source,
-        "commands": commands(case.asked, finding),
+        "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
     }
-
-
-def speed(mps: float) -> str:
-    """Return a speed in m/s, km/h and mph."""
-    if math.isnan(mps):
-        return "not known"
-    return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
-
-
-def _closing(mps: float) -> str:
-    return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
 
 
 def figure(value: float | None, digits: int = 2) -> str:
@@ -125,9 +123,13 @@ def figure(value: float | None, digits: int = 2) -> str:
 def _what(finding: NamedFinding) -> str:
     """Return what was found, in one sentence."""
     row, rule = finding.row, finding.rule
-    said = measured(row)
+    if overlap := contact(row, rule):
+        return f"{overlap[:1].upper()}{overlap[1:]}."
+    said = measured(row, rule)
     if said and row["margin"] is not None:
         said = f"{rule['observes'] or 'measured'}: {said}; missed by {number(-row['margin'], row['unit'])}"
+    if row["unit"] == "m/s2" and finding.is_contact:
+        said += " (from one step to the next)"
     reason = "" if row["reason_measures"] and said else row["reason"]
     text = "; ".join(part for part in (reason, said) if part)
     return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
@@ -137,11 +139,23 @@ def _names(finding: NamedFinding) -> list[str]:
     return [f"{letter} ({who})" for letter, who in zip(LETTERS, finding.parties, strict=False)]
 
 
+def _clip_of(file_name: str) -> str | None:
+    """Return the name of the log that a clip was cut from, by the clip's name; None: it is no clip."""
+    named = _CLIP.match(file_name.partition(".")[0])
+    return named[1] if named else None
+
+
+def _signed(s: float) -> str:
+    return minus(f"{s:+.2f}") if s else "0"
+
+
 def _metres(value: float) -> str:
     return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
-def _party(case: Case, motion: Motion, number: int, at: int | None, before_s: float | None) -> dict[str, Any]:
+def _party(
+    case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
+) -> dict[str, Any]:
     """Return one party: who it is, how fast it was, and whether it slowed."""
     actor_id = case.finding.parties[number]
     tables = case.drive.trace.tables
@@ -155,22 +169,25 @@ def _party(case: Case, motion: Motion, number: int, at: int | None, before_s: fl
         "id": actor_id,
         "ego": number == 0,
         "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
+        "size_source": size_source(case.asked, ego=number == 0),
         "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
         "speed": "not known" if at is None else speed(float(v[at])),
         "fastest": "not known" if math.isinf(fastest) else speed(float(fastest)),
-        "slowed": _slowed(slowings(motion, number, 0.0 if before_s is None else before_s), before_s),
+        "slowed": _slowed(slowed, before_s),
+        "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),
         "lights": _brake_lights(case, actor_id),
     }
 
 
 def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
-    """Return the last stretches of slowing in words."""
-    told = []
+    """Return the last stretches of slowing in words, and how many there were before them."""
+    told = [f"{len(found) - 2} earlier"] if len(found) > 2 else []
     for each in found[-2:]:
         until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
+        hardest = "" if math.isnan(each.hardest_mps2) else f"hardest half second {each.hardest_mps2:.1f}, "
         told.append(
             f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, "
-            f"hardest {each.hardest_mps2:.1f}, mean {each.mean_mps2:.1f} m/s\u00b2".replace("-", "\u2212")
+            f"{hardest}mean {each.mean_mps2:.1f} m/s\u00b2".replace("-", "\u2212")
         )
     return told
 
@@ -209,26 +226,46 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
     return f"{deep} at {at:.2f} s"
 
 
-def _contacts(case: Case) -> list[str]:
-    """Return the contacts of the two in this drive that are findings of their own, in words."""
-    mine = case.finding
-    tagged = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist() if "contact" in rule["tags"]}
-    return [
-        f"{tagged[row['rule_id']]} at {seconds(row['t_start_ns'], mine.start_ns)} (finding {row['finding_id'][:8]})"
+def _contacts(case: Case) -> list[Row]:
+    """Return the contacts of the two in this drive that are findings of other rules, in time order."""
+    mine = case.finding.row
+    tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
+    found = [
+        row
         for row in case.result.findings.to_pylist()
-        if row["drive_id"] == mine.row["drive_id"]
+        if row["drive_id"] == mine["drive_id"]
         and row["rule_id"] in tagged
-        and row["finding_id"] != mine.row["finding_id"]
+        and row["finding_id"] != mine["finding_id"]
         and row["object_id"] is not None
-        and {row["ego_id"], row["object_id"]} == set(mine.parties)
-    ][:2]
+        and {row["ego_id"], row["object_id"]} == set(case.finding.parties)
+    ]
+    return sorted(found, key=lambda row: (row["t_start_ns"], row["rule_id"], row["ego_id"]))
 
 
-def _conduct(case: Case) -> list[dict[str, Any]]:
+def _told_contacts(case: Case) -> list[str]:
+    """Return the contacts of other rules in words, one for each rule and time."""
+    titles = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist()}
+    told = []
+    for row in _contacts(case):
+        sure = f"; {how_sure(row)}" if row["n_copies"] is not None else ""
+        at = seconds(row["t_start_ns"], case.finding.start_ns)
+        if row["rule_id"] != case.finding.row["rule_id"]:
+            told.append(
+                f"at {at}, by the rule \u201c{titles[row['rule_id']]}\u201d (finding {row['finding_id'][:8]}{sure})"
+            )
+    return told[:2]
+
+
+def _conduct(case: Case, seconds_left: int) -> list[dict[str, Any]]:
     """Return what each party did, by the verdicts on it as ego."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     span = (finding.moment_ns - SPAN_S[0] * 10**9, finding.moment_ns + SPAN_S[1] * 10**9)
+    # a finding that was judged anew has no copies
+    copies = {
+        row["finding_id"]: {name: row[name] for name in ("n_copies", "n_stays")}
+        for row in case.result.findings.to_pylist()
+    }
     found = []
     for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.others), strict=False):
         told = {
@@ -238,13 +275,26 @@ def _conduct(case: Case) -> list[dict[str, Any]]:
             "not_judged": judged if isinstance(judged, str) else "",
         }
         if judged is not None and not isinstance(judged, str):
-            told |= conduct(judged.verdicts, judged.findings, rules, span, finding.start_ns)
+            findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
+            told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, seconds_left=seconds_left)
         found.append(told)
     return found
 
 
-def _sure(row: Row) -> dict[str, Any]:
-    return {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"]}
+def _surest(case: Case) -> dict[str, Any]:
+    """Return how sure the finding is (`word`, `n`, `stays`), and of a contact the title's word: the surest of the same two at that time.
+
+    `by`: the rule by which another finding of the same contact is sure, in words.
+    """
+    row, rules = case.finding.row, {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
+    told = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
+    if case.finding.is_contact and told["word"] == POSSIBLE:
+        for other in _contacts(case):
+            same = other["t_start_ns"] <= row["t_end_ns"] and other["t_end_ns"] >= row["t_start_ns"]
+            if same and certainty(other) == SURE:
+                told |= {"title": SURE, "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({how_sure(other)})"}
+                break
+    return told
 
 
 def _plan(case: Case) -> dict[str, Any]:
@@ -279,7 +329,7 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
         rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
         if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
             continue
-        title = rule["title"] + (f" [{row['profile']}]" if row["profile"] else "")
+        title = f"\u201c{rule['title']}\u201d{profile(row['profile'])}"
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
             gaps.append({**row, "title": title})
         elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):

@@ -1,0 +1,125 @@
+"""Sentences of the sheet for readers who know neither the rules nor the tool."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from drivelint.incident.motion import slowing_known
+from drivelint.result.certainty import certainty
+from drivelint.result.text import number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.incident.motion import Motion, Slowing
+    from drivelint.result.text import Row
+
+CONTACT: Final = "contact"
+"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+_SENSE: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
+_KMH, _MPH = 3.6, 1 / 0.44704
+_HEAD_ON_RAD, _ALONG_RAD = 5 * math.pi / 6, math.pi / 6
+
+
+def speed(mps: float) -> str:
+    """Return a speed in m/s, km/h and mph."""
+    if math.isnan(mps):
+        return "not known"
+    return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
+
+
+def closing(mps: float | None) -> str | None:
+    """Return a closing speed in words; None: not known."""
+    if mps is None:
+        return None
+    return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
+
+
+def minus(text: str) -> str:
+    """Return a text with the sign of negative numbers as typeset."""
+    return text.replace(" -", " \u2212") if not text.startswith("-") else "\u2212" + minus(text[1:])
+
+
+def measured(row: Row, rule: Row) -> str:
+    """Return what was measured and what had to be; '' where the rule measures nothing."""
+    if row["observed"] is None and row["required"] is None:
+        return ""
+    if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
+        return f"boxes overlap by {number(-row['observed'], 'm')} and must not"
+    must = _SENSE.get(rule["sense"], "")
+    return minus(f"{number(row['observed'], row['unit'])}, must be {must}{number(row['required'], row['unit'])}")
+
+
+def profile(name: str | None) -> str:
+    """Return, after a space, as what an overtake was judged; '' for a rule without profiles."""
+    if name is None:
+        return ""
+    return " (overtake as driven)" if name == "observed" else f" (planned as {name})"
+
+
+def how_sure(row: Row) -> str:
+    """Return whether a finding is sure, and of how many copies; '' where none were judged."""
+    word = certainty(row)
+    return "" if word is None else f"{word}, {row['n_stays']} of {row['n_copies']}"
+
+
+def contact(row: Row, rule: Row) -> str:
+    """Return what the recording and its copies say of boxes that overlap; '' for another finding."""
+    if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
+        return ""
+    said = f"the boxes overlap by {number(-row['observed'], 'm')} in the recording"
+    if row["n_copies"] is not None and row["n_stays"] < row["n_copies"]:
+        said += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with its errors they do not"
+    return said
+
+
+def story(
+    motion: Motion, at: int | None, slowed: Sequence[list[Slowing]], *, closing_mps: float | None, offset_s: float
+) -> str:
+    """Return in one sentence what is known to have happened up to the step `at`; '' for one party, or where that step is not known.
+
+    `slowed`: of each party, see `slowings`; `closing_mps`: of the finding; `offset_s`: the moment in seconds of the drive.
+    """
+    if at is None or len(slowed) < 2:
+        return ""
+    parts = [_left_lane(motion, at, offset_s)]
+    until_s = float(motion.t[at])
+    steady = [not found and slowing_known(motion, party, until_s) for party, found in enumerate(slowed)]
+    if all(steady):
+        parts.append("neither slowed by 1 m/s\u00b2 or more before")
+    else:
+        for letter, found, still in zip("AB", slowed, steady, strict=True):
+            if found:
+                from_s, to_s = (each + offset_s for each in (found[-1].start_s, found[-1].end_s))
+                parts.append(f"{letter} slowed last from {from_s:.2f} s to {to_s:.2f} s")
+            elif still:
+                parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
+    v = [float(each[at]) for each in motion.speed]
+    parts += [f"{letter} at {mps:.1f} m/s" for letter, mps in zip("AB", v, strict=True) if not math.isnan(mps)]
+    turn = float(motion.turn[at])
+    how = "" if math.isnan(turn) else _angle(turn)
+    if closing_mps is not None:
+        nearer = f"drawing apart at {-closing_mps:.1f} m/s" if closing_mps < 0 else f"closing at {speed(closing_mps)}"
+        how = f"{how}, {nearer}" if how else nearer
+    parts.append(how)
+    text = "; ".join(part for part in parts if part)
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _angle(turn_rad: float) -> str:
+    """Return in words how two headings stand to each other."""
+    if turn_rad >= _HEAD_ON_RAD:
+        return "head-on"
+    return "in the same direction" if turn_rad <= _ALONG_RAD else f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
+
+
+def _left_lane(motion: Motion, at: int, offset_s: float) -> str:
+    """Return when A left the lane that it was out of at a step, and how far B was; '' if it was not, or nobody looked."""
+    since = float(motion.out_since[at])
+    if math.isnan(since):
+        return ""
+    i = motion.at(since)
+    gap = math.nan if i is None else float(motion.gap[i])
+    free = "" if math.isnan(gap) else f" with {gap:.2f} m between the boxes"
+    return f"A left its lane at {since + offset_s:.2f} s{free}"
