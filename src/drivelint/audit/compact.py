@@ -108,6 +108,7 @@ def database() -> Iterator[duckdb.DuckDBPyConnection]:
 
 def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path) -> None:
     """Create the views `verdicts`, `findings`, `drives`, `receipts` over all chunks, which must be packed. `home`: for copies."""
+    con.read_parquet(escaped([str(results.fetch("rules.parquet", home))])).create_view("rules", replace=True)
     ids = chunks(results)
     for table in (*TABLES, "receipts"):
         files = [str(results.fetch(chunk_name(table, each), home)) for each in ids]

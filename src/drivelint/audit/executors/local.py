@@ -55,6 +55,8 @@ class LocalPool:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def _started(self) -> ProcessPool:
+        # threads and processes that are started from here on inherit it: Ctrl-C is the main thread's
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return ProcessPool(
             max_workers=self._workers,
             max_tasks=TASKS_PER_WORKER,
