@@ -16,7 +16,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
-from drivelint.cli import audits, completion, options, results, rules, values
+from drivelint.cli import audits, completion, options, packs, results, rules, values
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
@@ -291,6 +291,8 @@ def convert(
 app.command()(results.report)
 app.command()(results.explain)
 app.command("diff")(results.diff)
+app.command()(packs.pack)
+app.command()(packs.verify)
 app.command()(audits.audit)
 app.command()(audits.merge)
 app.command()(audits.sql)

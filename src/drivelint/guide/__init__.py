@@ -11,7 +11,7 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 TOPICS: Final = (
-    "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "viewer", "columns", "python", "ci", "fleets",
+    "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "evidence-pack", "viewer", "columns", "python", "ci", "fleets",
     "writing-a-rule", "rule-durations", "rule-reference", "adding-a-format", "architecture",
 )  # fmt: skip
 """The topics in reading order; each is the stem of a file."""
