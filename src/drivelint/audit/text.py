@@ -27,5 +27,6 @@ def summary_text(counted: AuditSummary, out: str) -> str:
     if counted.digest is None:
         told.append(f"when all shards have ended: drivelint merge {out}")
     else:
+        told.append(f"look: drivelint report {out}")
         told.append(f'ask: drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"')
     return "\n".join(told)

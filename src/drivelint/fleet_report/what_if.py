@@ -92,7 +92,7 @@ def to_text(asked: AskedWhatIf) -> str:
         return "\n".join([*lines, f"needs a new audit: {found.needs_check}", _command(asked)])
     total, flips = sum(each.n for each in found.verdicts), sum(each.n for each in found.flips)
     words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(found.flips))
-    lines.append(f"{flips} of {plural(total, 'verdict')} become others{f': {words}' if words else ''}")
+    lines.append(f"{flips} of {total} verdicts become others{f': {words}' if words else ''}")
     if found.not_known:
         lines.append(
             f"{plural(found.not_known, 'verdict')} {'needs' if found.not_known == 1 else 'need'} a new audit: the stored value may be "
