@@ -130,6 +130,7 @@ class Driver:
             reason=why,
             rows_sha256=rows_sha256(rows),
             tags=drive.tags,
+            options=drive.options_json,
         )
         return write_batch(self.results, rows, [receipt])
 

@@ -49,6 +49,7 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
         for row in counted.not_judged:
             yield f"  {row['status']}: {row['reason']}"
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
+    yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 

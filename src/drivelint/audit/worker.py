@@ -181,6 +181,7 @@ class Judge:
             failed=_counts(stable.filter(pc.equal(stable["verdict"], "fail")), "severity"),
             unknown=_counts(stable, "verdict").get("unknown", 0),
             tags=drive.tags,
+            options=drive.options_json,
         )
 
     def close(self) -> None:

@@ -16,7 +16,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
-from drivelint.cli import audits, completion, options, packs, results, rules, values
+from drivelint.cli import audits, completion, fleets, options, packs, results, rules, values
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
@@ -296,6 +296,7 @@ app.command()(packs.verify)
 app.command()(audits.audit)
 app.command()(audits.merge)
 app.command()(audits.sql)
+app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 
 
