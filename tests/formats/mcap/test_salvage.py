@@ -169,6 +169,15 @@ def test_the_first_chunk_announces_what_the_index_repeats(whole: Path) -> None:
         read(put(whole, replaced(data, begin + 9 + 24, b"\1\2\3\4")[:at]))
 
 
+def test_damage_before_the_first_chunk_is_refused_without_an_index(whole: Path) -> None:
+    """Records that describe the whole log may stand there."""
+    data = replaced(whole.read_bytes(), 9, b"\xff\xff")
+    assert rows(read(put(whole, data))) == rows(read(whole))
+    ((at, _),) = places(whole.read_bytes(), FOOTER)
+    with pytest.raises(TraceError, match=r"a header record of 65535 bytes, .* at byte 8"):
+        read(put(whole, data[:at]))
+
+
 def test_messages_without_chunks(flat: Path) -> None:
     data = flat.read_bytes()
     begin, _ = places(data, MESSAGE)[10]

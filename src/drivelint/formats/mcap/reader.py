@@ -128,6 +128,8 @@ class Container:
             except DamageError as error:
                 if index is None:
                     index = self._index_of_damaged(view, error)
+                if error.resume is None and not self._messages and not index.chunks:
+                    raise  # what describes the log stands there, and nobody knows whether it is still whole
                 resume = error.resume or self._resume(view, at)
                 self._refuse_second_file_within(view, at + 1, resume)
                 self.losses.add(at, resume, str(error))
