@@ -92,7 +92,14 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"
             observers.append(
-                Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict, required=required)
+                Annotator(
+                    annotated,
+                    table,
+                    fail_on=settings.fail_on,
+                    strict=settings.strict,
+                    required=required,
+                    note=progress.note,
+                )
             )
         session = JudgingSession(
             con,

@@ -23,7 +23,8 @@ from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, Footer, Me
 from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import MAGIC, summary_is_whole
+from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.summary import summary_is_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
