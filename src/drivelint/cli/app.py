@@ -22,6 +22,7 @@ from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.console import progress as bar
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.restart import Restart
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 
 app = typer.Typer(
@@ -133,6 +134,15 @@ def check(
     waivers: options.Waivers = None,
     today: options.Today = None,
     memory: options.MemorySize = None,
+    rule_timeout: Annotated[
+        float,
+        option(
+            "--rule-timeout",
+            "S",
+            "Seconds that a rule may take on a batch of drives: beyond them that rule is an error, the others go on.",
+            min=0.1,
+        ),
+    ] = 30.0,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
     ] = False,
@@ -180,11 +190,13 @@ def check(
         annotate=annotate,
         robustness=robustness,
         memory=values.parse_memory(memory),
+        rule_timeout=rule_timeout,
     )
     interruption = Interruption()
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         settings = replace(settings, out=work)
-        result = run_interruptible(lambda: run.check(settings, progress, interruption), interruption.request)
+        deaf = Restart.if_possible(progress, work)
+        result = run_interruptible(lambda: run.check(settings, progress, interruption, deaf), interruption.request)
         if gate_inputs is not None:
             result = gate_inputs.apply_to(result)
         if out is not None:

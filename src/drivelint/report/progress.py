@@ -24,6 +24,9 @@ class Progress:
     def note(self, text: str) -> None:
         """Print a line for a person who waits."""
 
+    def leave(self) -> None:
+        """Leave the terminal as it was, before another program takes over."""
+
 
 class Silent(Progress):
     """A `Progress` that nobody listens to."""
@@ -55,6 +58,10 @@ class Bar(Progress):
     def note(self, text: str) -> None:
         """Print a line above the bar."""
         self._progress.console.print(text, markup=False, highlight=False)
+
+    def leave(self) -> None:
+        """Take the bar away."""
+        self._progress.stop()
 
 
 @contextmanager
