@@ -10,6 +10,7 @@ from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
+from drivelint.phrases import inert
 
 
 @options.takes_drive_input
@@ -107,7 +108,7 @@ def audit(
     )
     with bar(quiet) as progress:
         counted = run_interruptible(lambda: audited(request, progress))
-    typer.echo(summary_text(counted, out))
+    typer.echo(inert(summary_text(counted, out)))
     raise typer.Exit(int(counted.exit_code(fail_on, strict=strict)))
 
 
@@ -118,7 +119,7 @@ def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out 
 
     with bar(False) as progress:
         counted = run_interruptible(lambda: merged(dest, progress))
-    typer.echo(summary_text(counted, dest))
+    typer.echo(inert(summary_text(counted, dest)))
 
 
 def sql(
