@@ -27,14 +27,17 @@ def licence(name: str) -> str:
     classes = [
         each.rpartition(" :: ")[2] for each in about.get_all("Classifier") or [] if each.startswith("License ::")
     ]
-    return about.get("License-Expression") or "; ".join(classes) or (about.get("License") or "").split("\n")[0]
+    (expression, *_) = about.get_all("License-Expression") or [""]
+    (text, *_) = about.get_all("License") or [""]
+    return expression or "; ".join(classes) or text.split("\n")[0]
 
 
 def installed() -> dict[str, str]:
     """Return the distributions that drivelint and its extras need, as far as they are installed, and their licences."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     wanted = [*project["dependencies"], *chain.from_iterable(project["optional-dependencies"][name] for name in USED)]
-    todo, found = [Requirement(each) for each in wanted], {}
+    todo = [Requirement(each) for each in wanted]
+    found: dict[str, str] = {}
     while todo:
         requirement = todo.pop()
         name = canonicalize_name(requirement.name)
