@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import duckdb
 
 DEFAULT_TIMEOUT_S: Final = 30.0
-"""The slowest shipped rule takes a tenth of it on the largest batch."""
+"""Per rule and batch."""
 MOST_EXCESSES: Final = 3
 """A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
 _LOOK_S: Final = 0.05
