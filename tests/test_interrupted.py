@@ -148,8 +148,10 @@ def run(code: str, *args: str) -> subprocess.Popen[str]:
     )
 
 
-@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
-def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack: Path, tmp_path: Path) -> None:
+    if signal.getsignal(sign) is signal.SIG_IGN:
+        pytest.skip("the signal is ignored where these tests run")
     out = tmp_path / "out"
     args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
     args += ["--rules-dir", str(pack), "--rules", "mine", "--rules", "ukhc.r162.*"]
@@ -159,7 +161,7 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path)
             while not list(out.glob(".drivelint.work.*/annotated/collision*.mcap")) and time.monotonic() < until:
                 time.sleep(0.1)
             time.sleep(1)
-            process.send_signal(signal.SIGINT)
+            process.send_signal(sign)
             said, err = process.communicate(timeout=30)
         finally:
             process.kill()

@@ -22,6 +22,7 @@ from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
+from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S, RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.result import collect, evidence
 from drivelint.result.model import Result
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
+    from drivelint.evaluate.limits import DeafRules
     from drivelint.report.progress import Progress
 
 _MISSED: Final = "the run was interrupted before this drive was judged"
@@ -60,10 +62,19 @@ class CheckOptions(DriveInput):
     robustness: bool = True
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    rule_timeout: float = DEFAULT_TIMEOUT_S
+    """Seconds that a rule may take on a batch of drives."""
 
 
-def check(settings: CheckOptions, progress: Progress, interruption: Interruption | None = None) -> Result:
+def check(
+    settings: CheckOptions,
+    progress: Progress,
+    interruption: Interruption | None = None,
+    deaf: DeafRules | None = None,
+) -> Result:
     """Judge every drive by every selected rule.
+
+    `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted.
 
     After an interruption the result has the drives that were judged until then, and the others as not judged; `KeyboardInterrupt` if
     none was.
@@ -112,6 +123,8 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
             memory=memory,
             interruption=interruption,
             errors=MeasurementErrors() if settings.robustness else None,
+            limits=RuleLimits(settings.rule_timeout, task="drives", deaf=deaf),
+            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []

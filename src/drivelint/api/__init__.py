@@ -61,6 +61,7 @@ def check(
     waivers: AnyPath | None = None,
     today: date | str | None = None,
     memory: str | None = None,
+    rule_timeout: float = 30.0,
     progress: bool = False,
 ) -> CheckResult:
     """Judge recorded drives against the rules.
@@ -101,6 +102,7 @@ def check(
         annotate=annotate,
         evidence=True,
         memory=values.parse_memory(memory),
+        rule_timeout=rule_timeout,
     )
     if folder is not None:
         prepare_folder(folder)

@@ -10,6 +10,7 @@ from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
+from drivelint.phrases import inert
 
 
 @options.takes_drive_input
@@ -125,7 +126,7 @@ def audit(
             typer.echo(f"drivelint: what was judged stays in {out}: the same command goes on with the rest", err=True)
             raise
     code = counted.exit_code(fail_on, strict=strict)
-    typer.echo(summary_text(counted, out, code))
+    typer.echo(inert(summary_text(counted, out, code)))
     raise typer.Exit(int(code))
 
 
@@ -140,7 +141,7 @@ def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out 
     with bar(False) as progress:
         counted = run_interruptible(lambda: merged(dest, progress))
     code = counted.exit_code("never", strict=False)
-    typer.echo(summary_text(counted, dest, code))
+    typer.echo(inert(summary_text(counted, dest, code)))
     raise typer.Exit(int(code))
 
 

@@ -6,15 +6,18 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
+from drivelint.phrases import inert
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
+    from rich.segment import Segment
 
     from drivelint.report.progress import Progress
 
@@ -50,13 +53,23 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
     return bar() if sys.stderr.isatty() else nullcontext(NotePrinter())
 
 
-def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
-    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
+def _inert_console() -> type[Console]:
+    """Return a console on which a log's words cannot steer the terminal; only rich's own styles do."""
     from rich.console import Console
 
+    class InertConsole(Console):
+        def render(self, *args: Any, **options: Any) -> Iterator[Segment]:
+            for segment in super().render(*args, **options):
+                yield segment if segment.control else segment._replace(text=inert(segment.text))
+
+    return InertConsole
+
+
+def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
     terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with nullcontext() if terminal else console.capture() as captured:
         console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
     if captured is not None:
-        typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
+        typer.echo("\n".join(inert(line.rstrip()) for line in captured.get().split("\n")).rstrip("\n"))

@@ -11,6 +11,7 @@ from drivelint.cli import completion, fleets, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
+from drivelint.phrases import inert, inert_line
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -140,7 +141,7 @@ def diff(
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(descriptions.difference_text(found, failing, least, later.gate))
+        typer.echo(inert(descriptions.difference_text(found, failing, least, later.gate)))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
 
 
@@ -216,4 +217,4 @@ def _warn_of_partial(folder: Path, result: Result) -> None:
     if result.interrupted:
         from drivelint.result.model import partial_sentence
 
-        typer.echo(f"drivelint: {folder}: {partial_sentence(result.drives)}", err=True)
+        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
     from drivelint.engine.copies import MeasurementErrors
     from drivelint.engine.memory import Memory
+    from drivelint.evaluate.limits import RuleLimits
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
@@ -99,6 +100,7 @@ class Robustness:
         memory: Memory,
         load: Callable[[Sequence[Drive]], None],
         forget: Callable[[Sequence[str]], None],
+        limits: RuleLimits,
     ) -> None:
         self._con = con
         self._rules = {rule.id: rule for rule in rules}
@@ -107,6 +109,8 @@ class Robustness:
         self._memory = memory
         self._load = load
         self._forget = forget
+        self._limits = limits
+        self._limits.memory = memory.most_growth
 
     def judge(self, drives: Sequence[Drive]) -> None:
         """Write `n_copies` and `n_stays` of the findings of these drives, whose own tables are not needed any more."""
@@ -156,9 +160,8 @@ class Robustness:
             self._con.execute(statement("robustness/capability"))
             derive(self._con, reads, of_the_map=False, also=_DERIVED, given=_HANDED_OVER)
             judged = [rules[name] for name in sorted(rules)]
-            evaluate(
-                self._con, judged, {r.id: self._params[r.id] for r in judged if r.id in self._params}, may_retry=True
-            )
+            params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
+            evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
             erred = "SELECT rule_id FROM verdict v SEMI JOIN _copy c ON v.drive_id = c.copy_id WHERE verdict = 'error' LIMIT 1"
             if len(chunk) > 1 and (row := self._con.execute(erred).fetchone()):
                 raise RuleError(f"{row[0]} erred on copies of {len(chunk)} windows")

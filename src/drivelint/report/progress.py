@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
+
+from drivelint.phrases import inert_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,6 +26,9 @@ class Progress:
     def note(self, text: str) -> None:
         """Print a line for a person who waits."""
 
+    def leave(self) -> None:
+        """Leave the terminal as it was, before another program takes over."""
+
 
 class Silent(Progress):
     """A `Progress` that nobody listens to."""
@@ -34,7 +39,8 @@ class NotePrinter(Silent):
 
     def note(self, text: str) -> None:
         """Print the note."""
-        print(f"drivelint: {text}", file=sys.stderr, flush=True)
+        with suppress(OSError):  # nobody may listen any more
+            print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
 
 
 class Bar(Progress):
@@ -54,7 +60,11 @@ class Bar(Progress):
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""
-        self._progress.console.print(text, markup=False, highlight=False)
+        self._progress.console.print(inert_line(text), markup=False, highlight=False)
+
+    def leave(self) -> None:
+        """Take the bar away."""
+        self._progress.stop()
 
 
 @contextmanager

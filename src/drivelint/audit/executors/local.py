@@ -87,6 +87,7 @@ def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
 def _begin(memory: int | None, parent: int) -> None:
     """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
     try:
         import ctypes
         import resource
