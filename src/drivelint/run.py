@@ -16,20 +16,21 @@ from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.copies import MeasurementErrors
-from drivelint.engine.interruption import InterruptedRunError, Interruption
+from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
+from drivelint.phrases import plural
 from drivelint.result import collect, evidence
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
@@ -65,8 +66,8 @@ class CheckOptions(DriveInput):
 def check(settings: CheckOptions, progress: Progress, interruption: Interruption | None = None) -> Result:
     """Judge every drive by every selected rule.
 
-    After an interruption the result has the drives that were judged until then, and the others as not judged; `KeyboardInterrupt` if
-    none was.
+    After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
+    `KeyboardInterrupt`, if none was.
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
@@ -110,7 +111,8 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
         refused: list[RefusedLog] = []
         said: set[str] = set()
         ids: dict[Path, str] = {}
-        read = takewhile(lambda _item: not interruption.requested, read_drives(paths, options, library))
+        read = _announced(read_drives(paths, options, library), len(paths), progress)
+        read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
@@ -125,7 +127,7 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
         missed = sorted(set(paths) - done) if interruption.requested else []
         if missed and not session.judged:
-            raise KeyboardInterrupt
+            raise NothingJudgedError
         if len(refused) == len(paths):
             first = refused[0].error
             many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
@@ -150,6 +152,14 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
         )
 
 
+def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
+    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    progress.doing(f"reading 1/{n}")
+    for done, item in enumerate(drives, 1):
+        yield item
+        progress.doing(f"reading {min(done + 1, n)}/{n}")
+
+
 def _judge(
     session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, said: set[str]
 ) -> list[RefusedLog]:
@@ -170,6 +180,7 @@ def _judge(
                 if note not in said:
                     progress.note(f"{item.trace.path.name}: {note}")
             said.update(item.trace.notes)
+    progress.doing(f"judging {plural(len(drives), 'drive')}")
     refused += judge_apart(session, drives)
     progress.advance(len(drives) + len(refused))
     return refused

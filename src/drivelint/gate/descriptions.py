@@ -51,11 +51,16 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
+    return f"{difference.counts()['new']} new, {since_baseline(difference)}"
+
+
+def since_baseline(difference: Difference) -> str:
+    """Return what became of the earlier result's findings. What is new is not counted: a waiver may cover it."""
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
     margins = [(entry.margin, entry.base_margin) for entry in difference.with_diff_status("changed")]
     worse = sum(now is not None and was is not None and now < was for now, was in margins)
-    text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
+    text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
     if n["unknown"] or n["lost"]:
         text += f"; gone but not fixed: {n['unknown']} unknown now, {n['lost']} not looked at"
