@@ -163,7 +163,8 @@ def test_check_against_a_baseline_exits_1_only_for_what_is_new(results: dict[str
     assert "exit 0: nothing new failed at or above severity critical (of that severity 1 known)" in out
     code, out, _ = ran("check", NEAR, COLLISION, *ON_ROAD, *SDA, *base, "--out", "again", "--no-annotate")
     assert code == 1
-    assert "FAIL  1 critical new finding in 1 of 2 drives; 1 known or waived" in out
+    assert "exit 1: 1 new finding at or above severity critical" in out
+    assert "FAIL  2 findings in 2 of 2 drives: 1 new (1 critical), 1 known" in out
     gate = json.loads(Path("again/gate.json").read_text(encoding="utf-8"))["gate"]
     assert [entry["standing"] for entry in gate["baseline"]["entries"]] == ["new", "unchanged"]
     assert gate["baseline"]["base_only"][0].startswith("safe-")

@@ -161,7 +161,7 @@ def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: s
     suites = etree.fromstring(junit.render(of))
     (case,) = suites.findall("testsuite[@name='baseline']/testcase")
     assert (suites.get("errors"), case.get("name")) == ("1", f"{SDA} [nominal] of d1")
-    assert case.xpath("string(error/@message)").startswith("gone, not fixed: critical: d1 at 8.00 s")
+    assert str(case.xpath("string(error/@message)")).startswith("gone, not fixed: critical: d1 at 8.00 s")
 
 
 def test_what_is_gone_gates_only_where_it_would_have() -> None:
