@@ -236,14 +236,13 @@ def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.Monke
     watcher = Watcher()
     check(replace(options(Path(), TRACES), rules_dirs=(), rules=("ukhc.r162.safe-distance-ahead",)), watcher)
     assert watcher.told == [
-        "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "judging 1 drive", 1, "reading 3/3",
-        "judging 1 drive", 1,
+        "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "reading 3/3", "judging 2 drives", 2,
     ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("n", "sizes"),
-    [(6, [6]), (9, [8, 1]), (40, [8, 8, 16, 8]), (100, [8, 8, 16, 32, 36])],
+    [(6, [6]), (9, [8, 1]), (40, [8, 24, 8]), (100, [8, 24, 68])],
 )
 def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
     refused = [RefusedLog(Path(f"{k}.csv"), TraceError("broken")) for k in range(n)]
@@ -253,4 +252,4 @@ def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
 def test_the_first_batches_have_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch.Drive, "size", 40_000)
     drives = [batch.Drive(None, None) for _ in range(30)]  # type: ignore[arg-type]
-    assert [len(each) for each in batch.cut_batches(drives)] == [2, 2, 4, 8, 10, 4]
+    assert [len(each) for each in batch.cut_batches(drives)] == [2, 6, 10, 10, 2]

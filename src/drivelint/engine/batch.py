@@ -35,6 +35,8 @@ READ_AHEAD: Final = 4
 FIRST_BATCH_DRIVES: Final = 8
 FIRST_BATCH_STATES: Final = 100_000
 """So small is a run's first batch, so that something is judged soon."""
+BATCH_GROWTH: Final = 3
+"""A batch has no more than so many times what was judged before it."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,8 @@ def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive |
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
     """Cut into batches of at most `BATCH_STATES` states or pairs, a longer drive being a batch of its own.
 
-    The first is small, and none has more than all before it: an interrupted run keeps about half of what it did, and a long run has few
-    batches more than it needs.
+    The first is small, and the next ones grow: an interrupted run keeps some of what it did, and a long run has two or three batches more
+    than it needs, each of which costs as much as some twenty short drives.
     """
     batch: list[Drive | RefusedLog] = []
     states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES
@@ -123,7 +125,10 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
         if batch and (states + n > min(BATCH_STATES, most_states) or len(batch) >= most_drives):
             yield batch
             done_drives, done_states = done_drives + len(batch), done_states + states
-            most_drives, most_states = max(most_drives, done_drives), max(most_states, done_states)
+            most_drives, most_states = (
+                max(most_drives, BATCH_GROWTH * done_drives),
+                max(most_states, BATCH_GROWTH * done_states),
+            )
             batch, states = [], 0
         batch.append(drive)
         states += n
