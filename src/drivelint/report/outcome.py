@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
+from drivelint.drive.trace import OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.report.inputs import rules_without_map
@@ -82,7 +83,9 @@ def headline(result: Result) -> Headline:
             parts.append(Part(f"{doubtful} of {plural(len(rows), 'finding')} only possible"))
     if n := rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
-        parts.append(Part(f"no map was given: {need} one (--map)", "warning"))
+        checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
+        missing = "the log's own map cannot be used" if OWN_MAP_UNUSABLE in checks else "no map was given"
+        parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
 
 
