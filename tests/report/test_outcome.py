@@ -95,6 +95,10 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
             run([finding(n_copies=100, n_stays=53), *MIXED[1:]]),
             "FAIL 2 critical, 1 minor findings in 2 of 3 drives; CONTACT in 1 drive; 1 of 3 findings only possible",
         ),
+        (
+            run([finding(n_copies=100, n_stays=53)]),
+            "FAIL 1 critical finding in 1 of 3 drives; only possible",
+        ),
         (run([]), "PASS no findings"),
     ],
 )  # fmt: skip

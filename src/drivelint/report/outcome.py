@@ -80,7 +80,8 @@ def headline(result: Result) -> Headline:
         parts = [Part(_findings(result, rows)), *_contacts(result, rows, rules)]
         doubtful = sum(bool(doubt(row)) for row in rows)
         if doubtful and (result.gate is None or result.gate.confidence is None):
-            parts.append(Part(f"{doubtful} of {plural(len(rows), 'finding')} only possible"))
+            some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
+            parts.append(Part(f"{some}only possible"))
     if n := rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
