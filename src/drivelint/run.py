@@ -16,7 +16,7 @@ from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.copies import MeasurementErrors
-from drivelint.engine.interruption import InterruptedRunError, Interruption
+from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
@@ -24,13 +24,14 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S, RuleLimits
 from drivelint.formats import expand_traces
+from drivelint.phrases import plural
 from drivelint.result import collect, evidence
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
@@ -76,8 +77,8 @@ def check(
 
     `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted.
 
-    After an interruption the result has the drives that were judged until then, and the others as not judged; `KeyboardInterrupt` if
-    none was.
+    After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
+    `KeyboardInterrupt`, if none was.
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
@@ -130,7 +131,8 @@ def check(
         refused: list[RefusedLog] = []
         said: set[str] = set()
         ids: dict[Path, str] = {}
-        read = takewhile(lambda _item: not interruption.requested, read_drives(paths, options, library))
+        read = _announced(read_drives(paths, options, library), len(paths), progress)
+        read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
@@ -145,7 +147,7 @@ def check(
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
         missed = sorted(set(paths) - done) if interruption.requested else []
         if missed and not session.judged:
-            raise KeyboardInterrupt
+            raise NothingJudgedError
         if len(refused) == len(paths):
             first = refused[0].error
             many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
@@ -170,6 +172,14 @@ def check(
         )
 
 
+def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
+    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    progress.doing(f"reading 1/{n}")
+    for done, item in enumerate(drives, 1):
+        yield item
+        progress.doing(f"reading {min(done + 1, n)}/{n}")
+
+
 def _judge(
     session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, said: set[str]
 ) -> list[RefusedLog]:
@@ -190,6 +200,7 @@ def _judge(
                 if note not in said:
                     progress.note(f"{item.trace.path.name}: {note}")
             said.update(item.trace.notes)
+    progress.doing(f"judging {plural(len(drives), 'drive')}")
     refused += judge_apart(session, drives)
     progress.advance(len(drives) + len(refused))
     return refused

@@ -60,7 +60,7 @@ def section(text: str, name: str) -> str:
                 [verdict("pass"), verdict("unknown", reason_code="log_hole")],
                 drives=[drive(lossy=True, quality=[ASSUMED], map_name=None), drive("d2", status="not_judged", status_reason="x")],
             ),
-            "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning | not judged: 1 drive; 1 verdict",
+            "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning (assumed motion) | not judged: 1 drive; 1 verdict",
         ),
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
@@ -171,7 +171,7 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     told = Parsed(text).text
     assert "A contact is possible:" in told
     assert "The recording shows a contact" not in told
-    assert "1 only possible" in told
+    assert "1 of 2 findings only possible" in told
     assert "possible: in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
         "possible :", "possible:"
     )

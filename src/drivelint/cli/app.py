@@ -18,7 +18,7 @@ import typer
 from drivelint import __version__
 from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values
 from drivelint.cli import docs as docs_
-from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
 from drivelint.cli.console import progress as bar
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
@@ -162,7 +162,7 @@ def check(
     until then is kept.
     """
     from drivelint import run
-    from drivelint.engine.interruption import Interruption
+    from drivelint.engine.interruption import Interruption, NothingJudgedError
     from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs
     from drivelint.report import summary, terminal
@@ -197,7 +197,11 @@ def check(
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         settings = replace(settings, out=work)
         deaf = Restart.if_possible(progress, work)
-        result = run_interruptible(lambda: run.check(settings, progress, interruption, deaf), interruption.request)
+        try:
+            result = run_interruptible(lambda: run.check(settings, progress, interruption, deaf), interruption.request)
+        except KeyboardInterrupt as stop:
+            say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
+            raise
         if gate_inputs is not None:
             result = gate_inputs.apply_to(result)
         if out is not None:
@@ -210,6 +214,8 @@ def check(
         typer.echo(summary.render(result), nl=False)
     else:
         print_rich(lambda width: terminal.render(result, None if out is None else str(out), width, verbose=verbose))
+    if result.interrupted:
+        say_kept(result.drives["status"].to_pylist(), out)
     raise typer.Exit(int(exit_status(result).code))
 
 

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from drivelint.phrases import inert
+from drivelint.phrases import inert, plural
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from contextlib import AbstractContextManager
+    from pathlib import Path
 
     from rich.console import Console, RenderableType
     from rich.segment import Segment
@@ -37,11 +38,29 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     except KeyboardInterrupt:
         if interrupt is None:
             raise
-        typer.echo("drivelint: interrupted: keeps what is judged; Ctrl-C again leaves at once", err=True)
+        typer.echo("drivelint: interrupted: stops; Ctrl-C again leaves at once, and keeps nothing", err=True)
         while not running.done():
             interrupt()
             wait([running], timeout=0.2)
     return running.result()
+
+
+def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
+    """Tell a person that an interrupted check has no result, and what its folder holds."""
+    why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
+    if out is not None:
+        earlier = (out / "summary.json").is_file()
+        why += (
+            f"; {out} {'is unchanged: it still holds the result of an earlier run' if earlier else 'holds no result'}"
+        )
+    typer.echo(f"drivelint: {why}", err=True)
+
+
+def say_kept(statuses: Sequence[str], out: Path | None) -> None:
+    """Tell a person how much of an interrupted check is kept."""
+    where = "" if out is None else f" in {out}"
+    kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
+    typer.echo(f"drivelint: {kept}", err=True)
 
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:

@@ -95,7 +95,7 @@ class AuditDifference:
     @property
     def headline(self) -> str:
         """The counts in one sentence."""
-        return counts_sentence(self.counts, self.worse, self.fixed)
+        return f"{self.counts['new']} new, {counts_sentence(self.counts, self.worse, self.fixed)}"
 
     def n_failing(self, fail_on: str) -> int:
         """Return how many new findings of stable rules are at or above a severity."""

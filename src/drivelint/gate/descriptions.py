@@ -51,6 +51,11 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
+    return f"{difference.counts()['new']} new, {since_baseline(difference)}"
+
+
+def since_baseline(difference: Difference) -> str:
+    """Return what became of the earlier result's findings. What is new is not counted: a waiver may cover it."""
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
     there = (kept["pass"], kept["not_applicable"])
@@ -60,8 +65,8 @@ def headline(difference: Difference) -> str:
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return diff status -> number of findings as a sentence. `worse`: of the changed; `fixed`: those that pass, and do not apply."""
-    text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
+    """Return diff status -> number of findings of the earlier result as a sentence. `worse`: of the changed; `fixed`: those that pass, and do not apply."""
+    text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
     if n["unknown"] or n["lost"]:
         text += f"; gone but not fixed: {n['unknown']} unknown now, {n['lost']} not looked at"

@@ -23,6 +23,9 @@ class Progress:
     def advance(self, n: int = 1) -> None:
         """Report `n` more units of the current stage done."""
 
+    def doing(self, what: str) -> None:
+        """Say what is done within the stage; its units stay as they are."""
+
     def note(self, text: str) -> None:
         """Print a line for a person who waits."""
 
@@ -57,6 +60,10 @@ class Bar(Progress):
     def advance(self, n: int = 1) -> None:
         """Move the bar by `n` units."""
         self._progress.advance(self._task, n)
+
+    def doing(self, what: str) -> None:
+        """Show it beside the bar."""
+        self._progress.update(self._task, description=what)
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
-from drivelint.phrases import plural
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.incidents import incident_key
-from drivelint.report.outcome import by_severity, outcome_label
+from drivelint.report.outcome import headline
 from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
@@ -28,30 +27,10 @@ _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
 
 
-def headline(result: Result, rules: Mapping[str, Row]) -> tuple[str, str, str]:
+def page_headline(result: Result) -> tuple[str, str, str]:
     """Return the outcome (fail, unknown or pass), the word for it, and the sentence at the top of the page."""
-    told, findings = counts.total(result.verdicts), result.findings
-    judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
-    open_ = told["unknown"] + told["error"]
-    names = findings["finding_id"].to_pylist()
-    label = outcome_label(result, sum(result.gate is None or result.gate.is_gating(name) for name in names))
-    if rows := findings.select(["severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist():
-        drives = plural(result.drives.num_rows, "drive")
-        noun = "finding" if len(rows) == 1 else "findings"
-        said = f"{by_severity(rows)} {noun} in {len({row['drive_id'] for row in rows})} of {drives}"
-        touched = {row["drive_id"] for row in rows if is_contact(row, rules)}
-        said += f"; contact in {len(touched)}" if touched else ""
-        possible = sum(certainty(row) == POSSIBLE for row in rows)
-        return "fail", label, said + _of_these(result) + (f"; {possible} only possible" if possible else "")
-    if not judged or not result.verdicts.num_rows:
-        return "unknown", label, "Nothing was judged"
-    if not told["pass"] and open_:
-        return "unknown", label, "Nothing could be decided"
-    if open_ > told["pass"]:
-        return "unknown", label, "Most could not be judged; no finding in the rest"
-    if open_ or judged < result.drives.num_rows:
-        return "unknown", label, "No finding, as far as it could be judged"
-    return "pass", label, "No finding"
+    told = headline(result)
+    return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
 
 def contacts(
@@ -85,16 +64,6 @@ def contacts(
         return None
     sure = not all(doubt for *_, doubt in named)
     return {"named": [each[:2] for each in named[:_NAMED]], "n_more": len(named[_NAMED:]), "sure": sure}
-
-
-def _of_these(result: Result) -> str:
-    """Return how many findings an earlier result or a waiver does not account for; '' where they were held against nothing."""
-    gate = result.gate
-    if gate is None:
-        return ""
-    ids = result.findings["finding_id"].to_pylist()
-    left = sum(gate.is_gating(name) for name in ids)
-    return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
 def rates(result: Result) -> dict[str, Any]:

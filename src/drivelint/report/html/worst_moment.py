@@ -61,7 +61,10 @@ def worst_moment(
         else strips(scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns),
         "before": before_contact(scene, row, start_ns) if touched and scene is not None else None,
         "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
-        "also": list(dict.fromkeys(each.rule["title"] for each in along))[:_ALSO],
+        "also": [
+            (how, list(dict.fromkeys(each.rule["title"] for each in along if each.kind == kind))[:_ALSO])
+            for kind, how in (("fail", "not kept"), ("near", "only just kept"))
+        ],
         "explain": ["drivelint explain", shlex.quote(_name(row)), "--in ."],
         "files": _files(row, folder),
     }
