@@ -130,13 +130,12 @@ def test_a_contact_that_only_the_speeds_tell_has_the_speed_before_it() -> None:
     road = shared("overtake_case_study/t_junction.xodr")
     (row,) = drivelint.check(log, map=road, mapping="carla-testbench", rules="ukhc.contact-signature").findings.rows()
     with log.open(encoding="utf-8") as file:
-        rows = [
-            {key.strip(): value.strip() for key, value in each.items()}
-            for each in csv.DictReader(file)
-            if (each["time"] or "").strip()
-        ]
+        names = [name.strip() for name in next(file).split(",")]
+        rows = [row for row in csv.DictReader(file, names) if (row["time"] or "").strip()]
     ways = {
-        who: [{k: float(r[k]) for k in ("time", "x", "y", "vel_x", "vel_y")} for r in rows if r["agentNo"] == who]
+        who: [
+            {k: float(r[k]) for k in ("time", "x", "y", "vel_x", "vel_y")} for r in rows if r["agentNo"].strip() == who
+        ]
         for who in "13"
     }
     i = round(row["t_start_s"] / 0.1) - 1
