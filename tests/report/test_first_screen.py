@@ -100,11 +100,12 @@ def test_the_worst_moment_is_the_contact_with_the_speeds_before_it(overtakes: Re
     worst = min(rows, key=lambda r: r["margin"])
     assert f"{worst['observed']:.2f}" in shown
     speeds = re.search(
-        r"just before the contact, at ([\d.]+) s: (\S+) at ([\d.]+) m/s, (\S+) at ([\d.]+) m/s, closing at ([\d.]+) m/s",
+        r"closing at ([\d.]+) m/s just before the contact; at ([\d.]+) s: (\S+) at ([\d.]+) m/s, (\S+) at ([\d.]+) m/s",
         shown,
     )
     assert speeds
-    time_s, *parties, closing = speeds.groups()
+    closing, time_s, *parties = speeds.groups()
+    assert closing == f"{worst['closing_mps']:.2f}"
     (scene,) = [
         s
         for s in overtakes.scenes.to_pylist()

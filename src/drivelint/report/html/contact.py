@@ -29,10 +29,12 @@ def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | 
         return None
     last = times[-1]
     speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]
-    said = [f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None]
-    said += [] if contact["closing_mps"] is None else [closing(contact["closing_mps"])]
+    said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
+    # a scene has not every step: the closing speed may be that of a later one
+    nearing = "" if contact["closing_mps"] is None else f"{closing(contact['closing_mps'])} just before the contact"
+    told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
     return {
         "time": seconds(last, start_ns),
         "speeds": speeds,
-        "words": f"just before the contact, at {seconds(last, start_ns)}: {', '.join(said)}" if said else "",
+        "words": "; ".join(part for part in told if part),
     }
