@@ -66,11 +66,11 @@ CREATE TABLE finding (
     lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 5, 12, 40 or 100, as many as it takes to tell whether 95 % of all would keep it, by their number or by how their margins spread; NULL: none were, because the finding is minor, check --no-robustness was given, or that part alone does not give the finding
+    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, or 32 where all of these keep it; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, check --no-robustness was given, or that part alone does not give the finding
     n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
     t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
     t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way
-    closing_mps DOUBLE                -- how fast ego and object come nearer at the worst step, or, where they touch at it, at the last step before they did: their relative velocity along the line between their box centres; negative: they part; NULL: no object, or the place or velocity of one is not known
+    closing_mps DOUBLE                -- how fast ego and object come nearer: their relative velocity along the line between their box centres. Of a rule tagged contact: at the last step before the first failing one at which the velocities of both are known, at most 1 s before it. Of another rule: at the worst step, or, where they touch at it, at the last step before they did. Negative: they draw apart; NULL: no object, no such step, or the place or velocity of one is not known
 );
 
 -- lifetime: drive

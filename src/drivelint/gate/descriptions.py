@@ -65,7 +65,10 @@ def since_baseline(difference: Difference) -> str:
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return diff status -> number of findings of the earlier result as a sentence. `worse`: of the changed; `fixed`: those that pass, and do not apply."""
+    """Return diff status -> number of an earlier result's findings as a sentence.
+
+    `worse`: of the changed; `fixed`: those that pass now, and those whose rule does not apply any more.
+    """
     text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
     if n["unknown"] or n["lost"]:

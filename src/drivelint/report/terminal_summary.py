@@ -20,7 +20,7 @@ from drivelint.report.worst_first import is_contact, worst_first
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
-from drivelint.result.text import number, seconds
+from drivelint.result.text import closing, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -170,13 +170,13 @@ def _cell(n: int, style: str) -> Text:
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end.
 
-    A contact is told by whom the ego met and how fast they came nearer.
+    A contact is told by whom the ego met and how fast they came nearer just before.
     """
     contact = is_contact(row, rules)
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
     if contact and row["closing_mps"] is not None:
-        parts = [*who, f"closing at {number(row['closing_mps'], 'm/s')}"]
+        parts = [*who, closing(row["closing_mps"])]
         who = []
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"

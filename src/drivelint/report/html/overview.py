@@ -6,18 +6,16 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
-from drivelint.report.html.contact import before_contact
-from drivelint.report.html.incidents import incident_key
 from drivelint.report.outcome import headline
-from drivelint.report.worst_first import is_contact
+from drivelint.report.worst_first import is_contact, sureness
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import measure, non_breaking, seconds
+from drivelint.result.text import closing, measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Key
+    from drivelint.report.html.incidents import FindingLine
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -33,13 +31,11 @@ def page_headline(result: Result) -> tuple[str, str, str]:
     return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
 
-def contacts(
-    result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row], scenes: Mapping[Key, Row]
-) -> dict[str, Any] | None:
+def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
     """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named;
-    `sure`: no contact is only possible.
+    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to its surest finding; `n_more`: those that are
+    not named; `sure`: no contact is only possible.
     """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
@@ -48,17 +44,15 @@ def contacts(
     met = counts.grouped(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
-        first = found[0]
+        first = min(found, key=sureness)
         who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
         depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
         deep = f", {measure(max(depths), 'm')} deep" if depths else ""
-        scene = scenes.get(incident_key(first))
-        before = None if scene is None else before_contact(scene, first, starts[first["drive_id"]] or 0)
-        speed = f", closing at {before['closing']:.1f}\u00a0m/s" if before and before["closing"] is not None else ""
+        speed = "" if first["closing_mps"] is None else f", {closing(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{speed}{deep}{where}"
-        doubt = all(certainty(row) == POSSIBLE for row in found)
+        doubt = certainty(first) == POSSIBLE
         named.append((f"possibly {said}" if doubt else said, hrefs.get(first["finding_id"], ""), doubt))
     if not named:
         return None

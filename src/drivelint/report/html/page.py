@@ -28,6 +28,7 @@ from drivelint.report.html.timeline import empty_timeline, separate_shared_rules
 from drivelint.report.html.worst_moment import Evidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import rule_counts
+from drivelint.report.same_contact import same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
 from drivelint.result.counts import grouped
@@ -107,7 +108,7 @@ def content(result: Result) -> dict[str, Any]:
             lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
         ),
         "rates": overview.rates(result),
-        "contacts": overview.contacts(result, failed, rules, scenes),
+        "contacts": overview.contacts(result, failed, rules),
         "rule_counts": rule_counts(result),
         "counts": overview.verdict_shares(totals),
         "names": _NAMES,
@@ -180,6 +181,7 @@ def _lines(
     shown: set[str],
 ) -> list[FindingLine]:
     """Return the rows with their words, those of drives in `shown` with links."""
+    same = same_contact((row for kind, row in rows if kind == "fail"), rules)
     return [
         finding_line(
             row,
@@ -189,6 +191,7 @@ def _lines(
             linked=row["drive_id"] in shown,
             steps=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
+            same=same.get(row["finding_id"], ()) if kind == "fail" else (),
         )
         for n, (kind, row) in enumerate(rows)
     ]

@@ -6,11 +6,11 @@ import shlex
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from urllib.parse import quote
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.strips import strips
-from drivelint.report.worst_first import CONTACT
 from drivelint.result.text import utc_at
 
 if TYPE_CHECKING:
