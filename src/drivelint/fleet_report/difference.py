@@ -153,10 +153,9 @@ def verdict_counts(con: duckdb.DuckDBPyConnection, of: str) -> dict[str, int]:
 
 def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
     """Write a row per finding of either audit as Parquet, after `difference`. Errors: `UsageError` where it cannot be written."""
+    entries = statement("fleet_report/all_entries")
     try:
-        con.execute(
-            f"COPY ({statement('fleet_report/all_entries')}) TO {quoted(path)} (FORMAT parquet, COMPRESSION zstd)"
-        )
+        con.execute(f"COPY ({entries}) TO {quoted(path)} (FORMAT parquet, COMPRESSION zstd)")
     except duckdb.IOException as error:
         raise UsageError(f"--rows {path}: cannot be written: {' '.join(str(error).split())[:200]}") from error
 
