@@ -439,7 +439,7 @@ def test_importing_loads_nothing_heavy() -> None:
     assert "drivelint" in loaded
     assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "typer", "jinja2", "rich", "msgspec"}
     assert {"check", "open", "read_trace", "DriveLintError"} <= set(dir(drivelint))
-    assert set(dir(drivelint)) == {*drivelint.__all__, "__version__"}, "completion offers nothing else"
+    assert set(dir(drivelint)) == {*drivelint.__all__, "__version__"}, "completion offers nothing else"  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="chek"):
         _ = drivelint.chek  # type: ignore[attr-defined]
 
