@@ -10,7 +10,7 @@ CREATE TABLE verdict (
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
     severity VARCHAR NOT NULL,        -- critical, major, minor
     object_id VARCHAR,                -- the other actor; NULL: none
-    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    occurrence INTEGER NOT NULL,      -- counts verdicts, 0.. per drive, ego, rule, profile and object, in time order; not that of findings, see finding_ids
     ref_id INTEGER,                   -- the assertion reference point, 0.. per drive, ego and rule; NULL: invariant
     t_ref_ns BIGINT,                  -- its time; NULL: invariant
     t_start_ns BIGINT,                -- start of the judged interval
@@ -34,7 +34,8 @@ CREATE TABLE verdict (
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
     assumes VARCHAR,                  -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
     t_start_s DOUBLE,                 -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
-    t_worst_s DOUBLE                  -- t_worst_ns in the same way
+    t_worst_s DOUBLE,                 -- t_worst_ns in the same way
+    finding_ids VARCHAR[] NOT NULL    -- the findings that it is made of, in time order: those with a failing step of it; a finding may be of several verdicts; empty: it did not fail, or failed without any step that did
 );
 
 -- lifetime: run
@@ -48,7 +49,7 @@ CREATE TABLE finding (
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
     severity VARCHAR NOT NULL,        -- critical, major, minor
     object_id VARCHAR,                -- the other actor; NULL: none
-    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    occurrence INTEGER NOT NULL,      -- counts findings, 0.. per drive, ego, rule, profile and object, in time order; not that of verdicts, see finding_ids there
     ref_id INTEGER,                   -- the assertion reference point; NULL: invariant
     t_start_ns BIGINT NOT NULL,       -- first failing step
     t_end_ns BIGINT NOT NULL,         -- last failing step

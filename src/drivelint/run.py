@@ -129,7 +129,7 @@ def check(
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []
-        said: set[str] = set()
+        notes = _Notes(progress)
         ids: dict[Path, str] = {}
         read = _announced(read_drives(paths, options, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
@@ -137,11 +137,11 @@ def check(
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    failed = _judge(session, batch, progress, said)
+                    failed = _judge(session, batch, progress, notes)
                     refused += failed
                     if len(paths) > 1:  # a single one is the error of the whole run
                         for each in failed:
-                            progress.note(f"not judged: {each.error}")
+                            notes.add(f"not judged: {each.error}")
         finally:
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
@@ -166,6 +166,7 @@ def check(
             strict=settings.strict,
             required=required,
             interrupted=bool(missed),
+            notes=tuple(notes.texts),
             asked=RunRequest.from_options(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
@@ -180,26 +181,41 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
         progress.doing(f"reading {min(done + 1, n)}/{n}")
 
 
-def _judge(
-    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, said: set[str]
-) -> list[RefusedLog]:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged.
+class _Notes:
+    """Shows what is to be said of the logs, and keeps it for the result."""
 
-    `said`: notes of earlier logs, not to be repeated for each of a thousand.
-    """
+    def __init__(self, progress: Progress) -> None:
+        self.texts: list[str] = []
+        self._progress = progress
+        self._said: set[str] = set()
+
+    def add(self, text: str) -> None:
+        """Show and keep a note."""
+        self.texts.append(text)
+        self._progress.note(text)
+
+    def add_of_log(self, name: str, said: Iterable[str]) -> None:
+        """Add what its reader said of a log, unless it said that of an earlier one: not a thousand times for a thousand logs."""
+        for note in said:
+            if note not in self._said:
+                self.add(f"{name}: {note}")
+        self._said.update(said)
+
+
+def _judge(
+    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, notes: _Notes
+) -> list[RefusedLog]:
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged."""
     refused: list[RefusedLog] = []
     drives: list[Drive] = []
     for item in batch:
         if isinstance(item, RefusedLog):
             refused.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
-            progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
+            notes.add(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
         else:
             drives.append(item)
-            for note in item.trace.notes:
-                if note not in said:
-                    progress.note(f"{item.trace.path.name}: {note}")
-            said.update(item.trace.notes)
+            notes.add_of_log(item.trace.path.name, item.trace.notes)
     progress.doing(f"judging {plural(len(drives), 'drive')}")
     refused += judge_apart(session, drives)
     progress.advance(len(drives) + len(refused))

@@ -65,7 +65,7 @@ class Evaluation:
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        self._run("verdict", "finding", "margin")
+        self._run("finding", "verdict", "margin")
         if self.keep_measure_series:
             self._run("course")
 

@@ -38,6 +38,7 @@ def load_result(folder: Path) -> Result:
             strict=summary["strict"],
             required=tuple(summary.get("required", ())),  # older results say neither
             interrupted=summary.get("interrupted", False),
+            notes=tuple(summary.get("notes", ())),
             gate=gate,
             folder=folder,
         )

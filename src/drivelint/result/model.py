@@ -42,7 +42,7 @@ class Result:
     `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
     `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
-    `folder`: where its files lie or will lie, or None.
+    `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -65,6 +65,7 @@ class Result:
     gate: Gate | None = None
     asked: RunRequest | None = None
     folder: Path | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name, table in TABLE_OF_FILE.items():
