@@ -269,9 +269,11 @@ def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path)
     assert first == again
     assert sum(first.counts.values()) == 20
     assert len(first.counts) > 1  # 0.98 m inside with errors of 0.6 m in both positions: not always
-    other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, 4)).sensitivity
-    assert other is not None
-    assert other.counts != first.counts
+    others = [
+        of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, seed)).sensitivity
+        for seed in (4, 5, 6)
+    ]
+    assert any(other is not None and other.counts != first.counts for other in others)
 
 
 @pytest.mark.parametrize(("n_stays", "told"), [(97, "Sure: a finding in 97"), (53, "Only possible: a finding in 53")])

@@ -14,6 +14,7 @@ from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.engine.barrier import refused
+from drivelint.errors import ChangedLogError
 from drivelint.result import collect
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
@@ -96,6 +97,8 @@ class Annotator:
                 road = self._road(drive.environment)
                 with _whole(self._folder / f"{name}.mcap") as file:
                     write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
+            except ChangedLogError:
+                raise  # its verdicts are about what is not there any more
             except Exception as error:  # noqa: BLE001 - verdicts are not given up for a picture of them
                 self._note(f"not annotated: {refused(drive.trace.path, error).error}")
         with _whole(self._folder / LAYOUT_FILE) as file:
