@@ -157,13 +157,20 @@ CREATE TABLE ego_actor (
 );
 
 -- lifetime: part
+CREATE TABLE lost_time (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    t_from_ns BIGINT NOT NULL,        -- the log has lost something of what was recorded after this moment
+    t_to_ns BIGINT NOT NULL           -- and before this one; the two are far away if the log's beginning or end is lost
+);
+
+-- lifetime: part
 CREATE TABLE step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a sample of the ego
     k INTEGER NOT NULL,               -- 0.. in time order
     dt_ns BIGINT,                     -- time since the previous step; NULL: the first
-    seg INTEGER NOT NULL,             -- 0.., one more after each hole longer than max_gap_ns
+    seg INTEGER NOT NULL,             -- 0.., one more after each hole longer than max_gap_ns, and after each lost time
     travel_m DOUBLE NOT NULL          -- way made since the first step, between the positions that are known
 );
 

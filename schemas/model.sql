@@ -93,6 +93,7 @@ CREATE TABLE quality (
     severity VARCHAR NOT NULL,        -- info, warning, error
     actor_id VARCHAR,                 -- the actor concerned; NULL: the whole drive
     n BIGINT NOT NULL,                -- how many samples
-    t_first_ns BIGINT,                -- the first of them
+    t_first_ns BIGINT,                -- the first of them; of lost_time: the last time before it, NULL: it begins with the log
+    t_last_ns BIGINT,                 -- of lost_time: the first time behind it, NULL: it ends with the log; NULL for all other checks
     message VARCHAR NOT NULL          -- what was seen and what follows from it, in one sentence
 );

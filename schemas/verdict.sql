@@ -10,7 +10,7 @@ CREATE TABLE verdict (
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
     severity VARCHAR NOT NULL,        -- critical, major, minor
     object_id VARCHAR,                -- the other actor; NULL: none
-    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    occurrence INTEGER NOT NULL,      -- counts verdicts, 0.. per drive, ego, rule, profile and object, in time order; not that of findings, see finding_ids
     ref_id INTEGER,                   -- the assertion reference point, 0.. per drive, ego and rule; NULL: invariant
     t_ref_ns BIGINT,                  -- its time; NULL: invariant
     t_start_ns BIGINT,                -- start of the judged interval
@@ -34,7 +34,8 @@ CREATE TABLE verdict (
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
     assumes VARCHAR,                  -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
     t_start_s DOUBLE,                 -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
-    t_worst_s DOUBLE                  -- t_worst_ns in the same way
+    t_worst_s DOUBLE,                 -- t_worst_ns in the same way
+    finding_ids VARCHAR[] NOT NULL    -- the findings that it is made of, in time order: those with a failing step of it; a finding may be of several verdicts; empty: it did not fail, or failed without any step that did
 );
 
 -- lifetime: run
@@ -48,7 +49,7 @@ CREATE TABLE finding (
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
     severity VARCHAR NOT NULL,        -- critical, major, minor
     object_id VARCHAR,                -- the other actor; NULL: none
-    occurrence INTEGER NOT NULL,      -- 0.. per drive, ego, rule, profile and object, in time order
+    occurrence INTEGER NOT NULL,      -- counts findings, 0.. per drive, ego, rule, profile and object, in time order; not that of verdicts, see finding_ids there
     ref_id INTEGER,                   -- the assertion reference point; NULL: invariant
     t_start_ns BIGINT NOT NULL,       -- first failing step
     t_end_ns BIGINT NOT NULL,         -- last failing step
@@ -66,11 +67,11 @@ CREATE TABLE finding (
     lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 5, 12, 40 or 100, as many as it takes to tell whether 95 % of all would keep it, by their number or by how their margins spread; NULL: none were, because the finding is minor, check --no-robustness was given, or that part alone does not give the finding
+    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, or 32 where all of these keep it; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, check --no-robustness was given, or that part alone does not give the finding
     n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
     t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
     t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way
-    closing_mps DOUBLE                -- how fast ego and object come nearer at the worst step, or, where they touch at it, at the last step before they did: their relative velocity along the line between their box centres; negative: they part; NULL: no object, or the place or velocity of one is not known
+    closing_mps DOUBLE                -- how fast ego and object come nearer: their relative velocity along the line between their box centres. Of a rule tagged contact: at the last step before the first failing one at which the velocities of both are known, at most 1 s before it. Of another rule: at the worst step, or, where they touch at it, at the last step before they did. Negative: they draw apart; NULL: no object, no such step, or the place or velocity of one is not known
 );
 
 -- lifetime: drive

@@ -145,9 +145,7 @@ def test_the_guides_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) 
 
     code, page = workflow.run(on_main=False, drives=["safe", "near-miss"], demo=demo)
     assert code == 0, page
-    assert page.startswith(
-        "## drivelint: passed, exit 0\n\nnothing new failed at or above severity critical (2 known, 0 waived)"
-    )
+    assert page.startswith("## drivelint: PASS, exit 0\n\nno new finding; ")
     assert (workflow.folder / "asked").read_text(encoding="utf-8").split() == (
         ["pr", "comment", "7", "--body-file", "results/report.md", "--edit-last", "--create-if-none"]
     )
@@ -162,10 +160,11 @@ def test_check_against_a_baseline_exits_1_only_for_what_is_new(results: dict[str
     base = ["--baseline", str(results["base"])]
     code, out, _ = ran("check", SAFE, NEAR, *ON_ROAD, *SDA, *base)
     assert code == 0
-    assert "exit 0: nothing new failed at or above severity critical (1 known)" in out
+    assert "exit 0: nothing new failed at or above severity critical (of that severity 1 known)" in out
     code, out, _ = ran("check", NEAR, COLLISION, *ON_ROAD, *SDA, *base, "--out", "again", "--no-annotate")
     assert code == 1
-    assert "FAIL  1 critical new finding in 1 of 2 drives; 1 known or waived" in out
+    assert "exit 1: 1 new finding at or above severity critical" in out
+    assert "FAIL  2 findings in 2 of 2 drives: 1 new (1 critical), 1 known" in out
     gate = json.loads(Path("again/gate.json").read_text(encoding="utf-8"))["gate"]
     assert [entry["standing"] for entry in gate["baseline"]["entries"]] == ["new", "unchanged"]
     assert gate["baseline"]["base_only"][0].startswith("safe-")

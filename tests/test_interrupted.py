@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING
@@ -17,7 +18,9 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.engine import batch
+from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.interruption import Interruption
+from drivelint.errors import TraceError
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.load import load_result
@@ -148,8 +151,10 @@ def run(code: str, *args: str) -> subprocess.Popen[str]:
     )
 
 
-@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
-def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack: Path, tmp_path: Path) -> None:
+    if signal.getsignal(sign) is signal.SIG_IGN:
+        pytest.skip("the signal is ignored where these tests run")
     out = tmp_path / "out"
     args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
     args += ["--rules-dir", str(pack), "--rules", "mine", "--rules", "ukhc.r162.*"]
@@ -159,12 +164,13 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path)
             while not list(out.glob(".drivelint.work.*/annotated/collision*.mcap")) and time.monotonic() < until:
                 time.sleep(0.1)
             time.sleep(1)
-            process.send_signal(signal.SIGINT)
+            process.send_signal(sign)
             said, err = process.communicate(timeout=30)
         finally:
             process.kill()
     assert process.returncode == 130, err
-    assert "drivelint: interrupted: keeps what is judged" in err
+    assert "drivelint: interrupted: stops" in err
+    assert f"drivelint: kept 1 of 3 drives in {out}" in err.splitlines()
     sentence = "partial: 1 of 3 drives judged, interrupted"
     assert said.splitlines()[2].startswith("PARTIAL")
     assert f"exit 130: {sentence}" in said
@@ -181,3 +187,71 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(pack: Path, tmp_path: Path)
     with run("", "explain", name, "--in", str(out), "--samples", "0") as process:
         _, err = process.communicate(timeout=60)
     assert (process.returncode, sentence in err) == (0, True), err
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
+@pytest.mark.parametrize("earlier", [True, False])
+def test_ctrl_c_before_anything_is_judged_says_so_and_changes_nothing(
+    pack: Path, tmp_path: Path, *, earlier: bool
+) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    if earlier:
+        (out / "summary.json").write_text("earlier", encoding="utf-8")
+        (out / "files.json").write_text('{"written_by_drivelint": ["summary.json"]}', encoding="utf-8")
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
+    with run("", "check", TRACES[1], *args, "--rules-dir", str(pack), "--rules", "mine") as process:
+        try:
+            until = time.monotonic() + 60
+            while not list(out.glob(".drivelint.work.*")) and time.monotonic() < until:
+                time.sleep(0.1)
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            said, err = process.communicate(timeout=30)
+        finally:
+            process.kill()
+    assert (process.returncode, said) == (130, ""), err
+    holds = "is unchanged: it still holds the result of an earlier run" if earlier else "holds no result"
+    assert f"drivelint: nothing was judged yet; {out} {holds}" in err.splitlines()
+    assert "keeps what is judged" not in err
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+class Watcher(Silent):
+    """Notes what a person who waits is told."""
+
+    def __init__(self) -> None:
+        self.told: list[str | int] = []
+
+    def doing(self, what: str) -> None:
+        """Note what is done."""
+        self.told.append(what)
+
+    def advance(self, n: int = 1) -> None:
+        """Note the units done."""
+        self.told.append(n)
+
+
+def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch, "FIRST_BATCH_DRIVES", 1)
+    watcher = Watcher()
+    check(replace(options(Path(), TRACES), rules_dirs=(), rules=("ukhc.r162.safe-distance-ahead",)), watcher)
+    assert watcher.told == [
+        "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "reading 3/3", "judging 2 drives", 2,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("n", "sizes"),
+    [(6, [6]), (9, [8, 1]), (40, [8, 24, 8]), (100, [8, 24, 68])],
+)
+def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
+    refused = [RefusedLog(Path(f"{k}.csv"), TraceError("broken")) for k in range(n)]
+    assert [len(each) for each in batch.cut_batches(refused)] == sizes
+
+
+def test_the_first_batches_have_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batch.Drive, "size", 40_000)
+    drives = [batch.Drive(None, None) for _ in range(30)]  # type: ignore[arg-type]
+    assert [len(each) for each in batch.cut_batches(drives)] == [2, 6, 10, 10, 2]

@@ -17,6 +17,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.engine import batch
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations
@@ -65,6 +67,9 @@ def crowd() -> tuple[Drive, ...]:
     lost = [ego, vbp.keep(vbp.t_s < 9), ov.keep(ov.t_s < 20)]
     found.append(drive(lost, way.environment, drive_id="lost"))
     found.append(drive(lost, way.environment, drive_id="out-of-sight", in_sight=True))
+    damaged = drive(lost, way.environment, drive_id="damaged")
+    gone = QualityFinding("lost_time", "error", "bytes lost", t_first_ns=3_010_000_000, t_last_ns=3_020_000_000)
+    found.append(replace(damaged, trace=with_quality_finding(damaged.trace, gone)))
     leaving = exit_road()
     lights = tuple("right" if 7 < t < 15 else "off" for t in leaver(leaving).t_s)
     found.append(drive([replace(leaver(leaving), indicator=lights)], leaving.environment, drive_id="exit"))

@@ -27,6 +27,13 @@ known_state AS (
     FROM sample_spacing s
     JOIN repeat_period c USING (drive_id, signal_id)
     WHERE s.gap_ns IS NULL OR s.gap_ns > c.max_gap_ns
+    UNION ALL
+    -- A change may be in what the log has lost.
+    SELECT DISTINCT s.drive_id, s.signal_id, l.t_from_ns + 1, NULL
+    FROM state_sample s
+    JOIN lost_time l USING (drive_id)
+    ANTI JOIN state_sample k ON k.drive_id = s.drive_id AND k.signal_id = s.signal_id AND k.t_ns = l.t_from_ns + 1
+    WHERE l.t_from_ns > -9_000_000_000_000_000_000
 ),
 state_change AS (
     SELECT *

@@ -10,10 +10,11 @@ WITH kept AS (
     JOIN new_finding n ON n.new_key = p.drive AND n.no = p.new_no
     JOIN base_finding b ON b.new_key = p.drive AND b.no = p.base_no
 ), known AS (
-    FROM kept UNION ALL BY NAME SELECT drive, new_no, base_no, 'changed' AS standing FROM part
+    FROM kept UNION ALL BY NAME SELECT drive, new_no, base_no, 'changed' AS standing, true AS is_part FROM part
 ), told AS (
     SELECT k.standing, n.finding_id, b.finding_id AS base_id, n.key AS new_key, b.key AS base_key, n.drive_id, n.ego_id, n.rule_id, n.profile,
-        n.object_id, n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why
+        n.object_id, n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why,
+        b.severity AS base_severity, n.from_s, n.to_s, b.from_s AS base_from_s, b.to_s AS base_to_s, coalesce(k.is_part, false) AS is_part
     FROM known k
     JOIN new_finding n ON n.new_key = k.drive AND n.no = k.new_no
     JOIN base_finding b ON b.new_key = k.drive AND b.no = k.base_no

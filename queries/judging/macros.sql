@@ -1,5 +1,9 @@
 -- Each evaluation creates these macros for the statements of this folder. Rules cannot call them.
 
+-- A text that a rule gave; one that nobody could read, in millions of rows, would take all memory.
+CREATE OR REPLACE TEMP MACRO bounded_text(given) AS CASE WHEN strlen(given::VARCHAR) > 10_000
+    THEN error('it returned a text of more than 10,000 bytes')::VARCHAR ELSE given::VARCHAR END;
+
 -- What makes a kept row a near miss.
 CREATE OR REPLACE TEMP MACRO is_near_miss(margin, near_margin) AS round(margin, 6) < near_margin;
 

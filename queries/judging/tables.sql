@@ -8,7 +8,7 @@ CREATE OR REPLACE TEMP TABLE _segment AS
         FROM step GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
     sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
-    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN);
+    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR);
 CREATE OR REPLACE TEMP TABLE _law (rule_no INTEGER, nation VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, code VARCHAR, reason VARCHAR);
@@ -21,7 +21,8 @@ CREATE OR REPLACE TEMP TABLE _outcome (rule_no INTEGER, drive_id VARCHAR, ego_id
     observed DOUBLE, required DOUBLE, margin DOUBLE, bound DOUBLE, asked DOUBLE, n_expected BIGINT, n_judged BIGINT);
 CREATE OR REPLACE TEMP TABLE _stretch (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, profile VARCHAR, object_id VARCHAR,
     ref_id INTEGER, t_start_ns BIGINT, t_end_ns BIGINT, t_worst_ns BIGINT, code VARCHAR, reason VARCHAR,
-    observed DOUBLE, required DOUBLE, margin DOUBLE);
+    observed DOUBLE, required DOUBLE, margin DOUBLE,
+    judged_object_id VARCHAR, failing STRUCT(label VARCHAR, t_first_ns BIGINT, t_last_ns BIGINT)[]);
 CREATE OR REPLACE TEMP TABLE _margin (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, profile VARCHAR, object_id VARCHAR,
     ref_id INTEGER, t_ns BIGINT, observed DOUBLE, required DOUBLE, margin DOUBLE, holds BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _course (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, profile VARCHAR, object_id VARCHAR,

@@ -1,7 +1,7 @@
 """drivelint checks recorded drives against the rules of the road.
 
-From Python: `drivelint.check`, `drivelint.open` and `drivelint.read_trace`; see `drivelint docs python`. What type checkers see
-of this module stands in `__init__.pyi`.
+From Python: `drivelint.check`, `drivelint.open`, `drivelint.diff` and `drivelint.read_trace`; see `drivelint docs python`. What type
+checkers see of this module stands in `__init__.pyi`.
 """
 
 from importlib import import_module
@@ -9,7 +9,20 @@ from importlib import import_module
 from drivelint.errors import DriveLintError as DriveLintError
 
 __version__ = "0.1.0"
-_OF_API = ("CheckResult", "Table", "TraceTables", "check", "open", "read_trace")
+__all__ = [
+    "CheckResult",
+    "Comparison",
+    "DriveLintError",
+    "Explained",
+    "Table",
+    "TraceTables",
+    "check",
+    "diff",
+    "open",
+    "read_trace",
+    "write_demo",
+]
+_OF_API = frozenset(__all__) - {"DriveLintError"}
 
 
 def __getattr__(name: str) -> object:
@@ -20,4 +33,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_OF_API])
+    return sorted([*__all__, "__version__"])

@@ -17,7 +17,7 @@ from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
-from drivelint.formats.osi.metadata import ego_independent_quality
+from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
 from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
 from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
@@ -136,7 +136,7 @@ def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
 
 def _is_our_mcap(path: Path) -> bool:
     with path.open("rb") as file:
-        return osi_log.LIBRARY.encode() in file.read(_HEAD_BYTES)
+        return LIBRARY.encode() in file.read(_HEAD_BYTES)
 
 
 def _of_a_check(request: ConvertRequest) -> list[str]:

@@ -57,6 +57,10 @@ class TraceError(DriveLintError):
     exit_code = ExitCode.NOT_JUDGED
 
 
+class ChangedLogError(TraceError):
+    """A log that changed while it was judged: no verdict is about what is there now."""
+
+
 class InternalError(DriveLintError):
     """A fault of drivelint itself on one drive: the drive is not judged, the others are."""
 

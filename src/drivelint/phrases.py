@@ -2,13 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+_INVISIBLE = re.compile(
+    r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f"
+    r"\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
+)
+"""Characters that steer a terminal, or turn the order of what is read; a line's end is none."""
+_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\[)", re.MULTILINE)
+"""What a build server may take for a command when it stands in a job's output (`::error::`, `##[error]`)."""
 _PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
+
+
+def inert(text: str) -> str:
+    """Return text that may hold words of a log for a terminal: characters that steer one are shown, and it gives no commands."""
+    shown = _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
+    return _COMMAND.sub(lambda found: f"{found[0]}\\", shown)
+
+
+def inert_line(text: str) -> str:
+    """Return such a text as one line."""
+    return inert(" ".join(text.split()))
 
 
 def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:

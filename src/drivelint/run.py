@@ -16,23 +16,26 @@ from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.copies import MeasurementErrors
-from drivelint.engine.interruption import InterruptedRunError, Interruption
+from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
+from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S, RuleLimits
 from drivelint.formats import expand_traces
+from drivelint.phrases import plural
 from drivelint.result import collect, evidence
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
+    from drivelint.evaluate.limits import DeafRules
     from drivelint.report.progress import Progress
 
 _MISSED: Final = "the run was interrupted before this drive was judged"
@@ -60,13 +63,22 @@ class CheckOptions(DriveInput):
     robustness: bool = True
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    rule_timeout: float = DEFAULT_TIMEOUT_S
+    """Seconds that a rule may take on a batch of drives."""
 
 
-def check(settings: CheckOptions, progress: Progress, interruption: Interruption | None = None) -> Result:
+def check(
+    settings: CheckOptions,
+    progress: Progress,
+    interruption: Interruption | None = None,
+    deaf: DeafRules | None = None,
+) -> Result:
     """Judge every drive by every selected rule.
 
-    After an interruption the result has the drives that were judged until then, and the others as not judged; `KeyboardInterrupt` if
-    none was.
+    `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted.
+
+    After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
+    `KeyboardInterrupt`, if none was.
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
@@ -92,7 +104,14 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
         if settings.out and settings.annotate:
             annotated = settings.out / "annotated"
             observers.append(
-                Annotator(annotated, table, fail_on=settings.fail_on, strict=settings.strict, required=required)
+                Annotator(
+                    annotated,
+                    table,
+                    fail_on=settings.fail_on,
+                    strict=settings.strict,
+                    required=required,
+                    note=progress.note,
+                )
             )
         session = JudgingSession(
             con,
@@ -105,27 +124,30 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
             memory=memory,
             interruption=interruption,
             errors=MeasurementErrors() if settings.robustness else None,
+            limits=RuleLimits(settings.rule_timeout, task="drives", deaf=deaf),
+            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []
-        said: set[str] = set()
+        notes = _Notes(progress)
         ids: dict[Path, str] = {}
-        read = takewhile(lambda _item: not interruption.requested, read_drives(paths, options, library))
+        read = _announced(read_drives(paths, options, library), len(paths), progress)
+        read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    failed = _judge(session, batch, progress, said)
+                    failed = _judge(session, batch, progress, notes)
                     refused += failed
                     if len(paths) > 1:  # a single one is the error of the whole run
                         for each in failed:
-                            progress.note(f"not judged: {each.error}")
+                            notes.add(f"not judged: {each.error}")
         finally:
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
         missed = sorted(set(paths) - done) if interruption.requested else []
         if missed and not session.judged:
-            raise KeyboardInterrupt
+            raise NothingJudgedError
         if len(refused) == len(paths):
             first = refused[0].error
             many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
@@ -144,32 +166,57 @@ def check(settings: CheckOptions, progress: Progress, interruption: Interruption
             strict=settings.strict,
             required=required,
             interrupted=bool(missed),
+            notes=tuple(notes.texts),
             asked=RunRequest.from_options(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
 
 
-def _judge(
-    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, said: set[str]
-) -> list[RefusedLog]:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged.
+def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
+    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    progress.doing(f"reading 1/{n}")
+    for done, item in enumerate(drives, 1):
+        yield item
+        progress.doing(f"reading {min(done + 1, n)}/{n}")
 
-    `said`: notes of earlier logs, not to be repeated for each of a thousand.
-    """
+
+class _Notes:
+    """Shows what is to be said of the logs, and keeps it for the result."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.texts: list[str] = []
+        self._progress = progress
+        self._said: set[str] = set()
+
+    def add(self, text: str) -> None:
+        """Show and keep a note."""
+        self.texts.append(text)
+        self._progress.note(text)
+
+    def add_of_log(self, name: str, said: Iterable[str]) -> None:
+        """Add what its reader said of a log, unless it said that of an earlier one: not a thousand times for a thousand logs."""
+        for note in said:
+            if note not in self._said:
+                self.add(f"{name}: {note}")
+        self._said.update(said)
+
+
+def _judge(
+    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, notes: _Notes
+) -> list[RefusedLog]:
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged."""
     refused: list[RefusedLog] = []
     drives: list[Drive] = []
     for item in batch:
         if isinstance(item, RefusedLog):
             refused.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
-            progress.note(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
+            notes.add(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
         else:
             drives.append(item)
-            for note in item.trace.notes:
-                if note not in said:
-                    progress.note(f"{item.trace.path.name}: {note}")
-            said.update(item.trace.notes)
+            notes.add_of_log(item.trace.path.name, item.trace.notes)
+    progress.doing(f"judging {plural(len(drives), 'drive')}")
     refused += judge_apart(session, drives)
     progress.advance(len(drives) + len(refused))
     return refused

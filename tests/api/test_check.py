@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import os
 import re
 import signal
@@ -16,6 +17,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+import shapely
 import typer
 
 import drivelint
@@ -116,8 +118,11 @@ def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Pat
 
     opened = drivelint.open(tmp_path / "b")
     assert (opened.exit_code, opened.why) == (found.exit_code, found.why)
-    kept = {name: content for name, content in theirs.items() if not name.startswith("annotated")}
-    assert files(opened.write(tmp_path / "c")) == kept
+    kept = {name for name in theirs if not name.startswith("annotated")}
+    written = files(opened.write(tmp_path / "c"))
+    assert written.keys() == kept
+    assert all(written[name] == theirs[name] for name in kept - {"files.json"}), "it lists what is there"
+    assert json.loads(written["files.json"])["written_by_drivelint"] == sorted(kept - {"files.json"})
     assert files(opened.write(tmp_path / "b")) == theirs, "into its own folder"
 
 
@@ -143,6 +148,70 @@ def test_a_table_is_arrow_polars_and_pandas(checked: drivelint.CheckResult) -> N
     assert table.df()["finding_id"].tolist() == [row["finding_id"] for row in table.rows()]
     assert table.columns == tuple(arrow.column_names)
     assert "finding_id" in repr(table)
+
+
+def test_a_table_gives_columns_and_rows(checked: drivelint.CheckResult) -> None:
+    table = checked.findings
+    assert table["margin"].to_list() == table.arrow()["margin"].to_pylist()
+    assert list(table) == table.rows()
+    with pytest.raises(KeyError, match="did you mean 'margin'"):
+        table["margn"]
+
+
+def test_geometries_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    folder = checked.write(tmp_path / "out")
+    for name in ("findings", "lanes", "tracks"):
+        mine, theirs = getattr(checked, name).geo(), geopandas.read_parquet(folder / f"{name}.parquet")
+        assert len(mine) > 0
+        assert mine.geometry.name == "geom"
+        assert mine.geometry.geom_equals(theirs.geometry).all()
+    with pytest.raises(drivelint.DriveLintError, match="has no geometry"):
+        checked.verdicts.geo()
+
+
+def test_an_explanation_is_that_of_the_command_line(
+    checked: drivelint.CheckResult, drives: Path, tmp_path: Path
+) -> None:
+    name = checked.sql("SELECT finding_id FROM findings WHERE rule_id = 'ukhc.r162.safe-distance-ahead'").rows()[0][
+        "finding_id"
+    ]
+    told = checked.explain(name)
+    folder = checked.write(tmp_path / "out")
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    line = [sys.executable, "-m", "drivelint", "explain", name, "--in", str(folder)]
+    done = subprocess.run(line, check=True, capture_output=True, text=True, timeout=120, env=env)
+    assert told.text.strip() == done.stdout.strip()
+    assert told.data()["verdict"]["finding_id"] == name
+    assert told._repr_html_().startswith("<pre>")
+    with pytest.raises(drivelint.DriveLintError, match="nowhere"):
+        checked.explain("nowhere")
+
+
+def test_a_comparison_is_that_of_the_command_line(drives: Path, tmp_path: Path) -> None:
+    road = drives / "road.xodr"
+    for run, name in (("base", "safe"), ("new", "near-miss")):
+        drivelint.check(
+            drives / f"{name}.mcap", map=road, rules="ukhc.r162.*", out=tmp_path / run, annotate=False, robustness=False
+        )
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    line = [sys.executable, "-m", "drivelint", "diff", str(tmp_path / "base"), str(tmp_path / "new"), "--format"]
+    text, data = (
+        subprocess.run([*line, form], check=False, capture_output=True, text=True, timeout=60, env=env)
+        for form in ("text", "json")
+    )
+    new = drivelint.open(tmp_path / "new")
+    found = drivelint.diff(tmp_path / "base", new)
+    assert (found.text, found.exit_code) == (text.stdout.rstrip("\n"), text.returncode)
+    assert found.data() == json.loads(data.stdout)
+    assert {row["finding_id"] for row in found.findings() if row["standing"] == "new"} <= set(
+        new.findings["finding_id"]
+    )
+
+
+def test_the_demo_is_that_of_the_command_line(tmp_path: Path) -> None:
+    paths = drivelint.write_demo(tmp_path / "demo")
+    assert {path.name: path.read_bytes() for path in paths} == demo.contents()
 
 
 def test_sql_reads_the_tables_by_name(checked: drivelint.CheckResult) -> None:
@@ -201,12 +270,15 @@ def test_reports_are_texts_or_files(checked: drivelint.CheckResult, tmp_path: Pa
         ({"visibility": "all"}, "visibility='all'"),
         ({"rules": "no-such-rule"}, "no-such-rule"),
         ({"env": {"wether": "dry"}}, "did you mean 'weather'"),
-        ({"map_offset": (1.0,)}, "map-offset '1.0'"),
-        ({"map_origin": (91.0, 0.0)}, "map-origin"),
-        ({"ego_size": (0.0, 1.0)}, "ego-size"),
+        ({"map_offset": (1.0,)}, "^map_offset '1.0'"),
+        ({"map_origin": (91.0, 0.0)}, "^map_origin"),
+        ({"ego_size": (0.0, 1.0)}, "^ego_size"),
         ({"memory": "1 byte"}, "memory"),
         ({"today": "tomorrow"}, "today"),
-        ({"margins": True}, "--out"),
+        ({"keep_db": True}, "^keep_db=True writes a file: say where with out=DIR"),
+        ({"confidence": 0.95, "robustness": False}, "^confidence needs what robustness=False leaves out"),
+        ({"confidence": 95}, "^confidence 95: give a share from 0 to 1"),
+        ({"require": "no-such-rule"}, "no-such-rule"),
         ({"sensor_range": -1.0}, "more than 0 m"),
         ({"baseline": "nowhere"}, "nowhere: no result"),
     ],
@@ -216,12 +288,63 @@ def test_a_mistake_is_an_error_that_can_be_caught(given: dict[str, Any], says: s
         drivelint.check(**{"traces": drives / "safe.mcap", **given})
 
 
+def test_the_gate_takes_what_the_command_line_takes(drives: Path, tmp_path: Path) -> None:
+    """confidence lets findings through that too few copies keep; require asks for what the log lacks; as on the command line."""
+    log, road = drives / "near-miss.mcap", drives / "road.xodr"
+    said = ["--map", road, "--confidence", "1", "--require", "ukhc.r115.*", "--no-annotate"]
+    command_line("check", log, *said, "--out", tmp_path / "a", code=1)
+    found = drivelint.check(log, map=road, confidence=1, require="ukhc.r115.*", annotate=False, out=tmp_path / "b")
+    theirs = files(tmp_path / "a")
+    assert theirs == files(tmp_path / "b")
+    assert (found.exit_code, "only possible" in found.why) == (1, True)
+    assert json.loads(theirs["summary.json"])["required"]
+    plain = drivelint.check(log, map=road, rules="ukhc.r162.*", robustness=False)
+    assert plain.findings["n_copies"].null_count() == len(plain.findings) > 0
+
+
+def test_files_that_are_not_drivelints_stay(drives: Path, tmp_path: Path) -> None:
+    asked: dict[str, Any] = {"traces": drives / "safe.mcap", "map": drives / "road.xodr", "rules": "ukhc.no-collision"}
+    (tmp_path / "report.html").write_text("mine", encoding="utf-8")
+    for write in (
+        lambda **more: drivelint.check(**asked, out=tmp_path, **more),
+        lambda **more: drivelint.check(**asked).write(tmp_path, **more),
+    ):
+        (tmp_path / "report.html").write_text("mine", encoding="utf-8")
+        (tmp_path / "files.json").unlink(missing_ok=True)
+        with pytest.raises(drivelint.DriveLintError, match="overwrite=True"):
+            write()
+        assert (tmp_path / "report.html").read_text("utf-8") == "mine"
+        write(overwrite=True)
+        assert (tmp_path / "report.html").read_text("utf-8").startswith("<!doctype html>")
+
+
+def test_margins_need_no_folder(drives: Path, tmp_path: Path) -> None:
+    asked: dict[str, Any] = {"traces": drives / "safe.mcap", "map": drives / "road.xodr", "rules": "ukhc.no-collision"}
+    found = drivelint.check(**asked, margins=True)
+    written = drivelint.check(**asked, margins=True, out=tmp_path / "out")
+    assert found.margins is not None
+    assert written.margins is not None
+    assert len(found.margins) > 0
+    assert found.margins.arrow().equals(written.margins.arrow())
+    assert (found.write(tmp_path / "b") / "margins.parquet").is_file()
+    assert drivelint.check(**asked).margins is None
+
+
 def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.mcap").write_bytes(b"\x89MCAP")
     found = drivelint.check([drives / "safe.mcap", tmp_path / "bad.mcap"], map=drives / "road.xodr", fail_on="never")
     assert found.exit_code == 4
     assert any("bad.mcap" in note for note in found.notes)
+    assert "not judged: 1 drive" in repr(found)
+    assert "not judged: bad.mcap: " in found._repr_html_()
+    assert drivelint.open(found.write(tmp_path / "out")).notes == found.notes
     assert capfd.readouterr() == ("", ""), "nothing is printed"
+
+
+def test_a_drive_without_a_map_looks_like_one(drives: Path) -> None:
+    found = drivelint.check(drives / "safe.mcap", rules="ukhc.no-collision")
+    assert "map: none" in repr(found)
+    assert "map: none | log: complete" in found._repr_html_()
 
 
 def test_an_interrupt_is_an_interrupt(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,6 +367,7 @@ def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
 
 def test_read_trace_has_the_tables_of_a_log(drives: Path) -> None:
     trace = drivelint.read_trace(drives / "near-miss.mcap")
+    assert len(trace.lanes) == 0
     assert set(trace.tables) == {name for name in drivelint.TraceTables.__annotations__ if name in trace.tables}
     assert set(trace.tables) == set(drivelint.TraceTables.__annotations__)
     ids = trace.sql("SELECT DISTINCT actor_id FROM actor_state ORDER BY actor_id").rows()
@@ -257,6 +381,27 @@ def test_read_trace_has_the_tables_of_a_log(drives: Path) -> None:
         ROOT / "fixtures" / "overtake" / "safe.csv", mapping=ROOT / "fixtures" / "overtake" / "mapping.toml"
     )
     assert len(mapped.actor_state)
+
+
+def test_read_trace_has_the_lanes_of_a_map(drives: Path, checked: drivelint.CheckResult) -> None:
+    """All of the road's lanes, as `check` has those near a finding, and the ego lies on them."""
+    trace = drivelint.read_trace(drives / "near-miss.mcap", map=drives / "road.xodr")
+    mine = {row["lanelet_id"]: row for row in trace.lanes}
+    assert mine.keys() >= set(checked.lanes["lanelet_id"])
+    assert all(mine[row["lanelet_id"]] == row for row in checked.lanes)
+    roads = shapely.union_all([
+        shapely.Polygon([
+            *zip(row["left_x_m"], row["left_y_m"], strict=True),
+            *reversed(list(zip(row["right_x_m"], row["right_y_m"], strict=True))),
+        ])
+        for row in mine.values()
+        if row["drivable"]
+    ])  # fmt: skip
+    ego = trace.sql("SELECT x_m, y_m FROM actor_state JOIN actor USING (actor_id) WHERE is_ego").rows()
+    assert all(roads.distance(shapely.Point(row["x_m"], row["y_m"])) < 0.2 for row in ego)
+    assert len(ego) > 100
+    with pytest.raises(drivelint.DriveLintError, match="does not exist"):
+        drivelint.read_trace(drives / "near-miss.mcap", map="nowhere.xodr")
 
 
 def test_names_of_a_log_are_escaped_in_a_notebook() -> None:
@@ -294,6 +439,7 @@ def test_importing_loads_nothing_heavy() -> None:
     assert "drivelint" in loaded
     assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "typer", "jinja2", "rich", "msgspec"}
     assert {"check", "open", "read_trace", "DriveLintError"} <= set(dir(drivelint))
+    assert set(dir(drivelint)) == {*drivelint.__all__, "__version__"}, "completion offers nothing else"  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="chek"):
         _ = drivelint.chek  # type: ignore[attr-defined]
 

@@ -79,6 +79,6 @@ def _listing(drives: fleet.Fleet) -> float:
         AuditDrive(str(path), options).found(path.stat().st_size, "0", "run", hashes.of(options))
         for path in sorted((drives.manifest.parent / "logs").iterdir())
     ]
-    cut = [len(task.drives) for task in tasks(listed, "", "run", SETTINGS, WINDOW)]
+    cut = [len(task.drives) for task in tasks(listed, "", "run", SETTINGS, ahead=WINDOW)]
     assert sum(cut) == len(listed)
     return time.perf_counter() - begin

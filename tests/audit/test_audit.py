@@ -14,6 +14,7 @@ from drivelint import run
 from drivelint.audit import AuditRequest, JudgeSettings, audit, merge
 from drivelint.audit.ask import ask
 from drivelint.audit.driver import MOST_ATTEMPTS
+from drivelint.audit.text import summary_text
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Silent
 from tests.audit import fleet
@@ -184,12 +185,61 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
 
 
-def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
+def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
     logs[1].write_bytes(logs[0].read_bytes())
-    counted = judged(few, tmp_path / "out")
-    assert counted.n_drives == 2
+    assert judged(few, tmp_path / "out").n_drives == 3
+    assert judged(few, tmp_path / "out").reused == 3
+
+
+def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 3)
+    logs = tmp_path / "fleet" / "logs"
+    (logs / "again").mkdir()
+    (logs / "again" / "drive-00000.parquet").write_bytes((logs / "drive-00000.parquet").read_bytes())
+    for n_reused in (0, 3):
+        counted = judged(few, tmp_path / "out", sources=str(logs))
+        assert (counted.n_drives, counted.n_asked) == (3, 4)
+        assert counted.reused >= n_reused
+        assert "1 log of the name and content of another" in summary_text(counted, "out", ExitCode.OK)
+
+
+def test_a_renamed_log_is_judged_again_and_the_old_result_can_be_pruned(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 2)
+    logs = tmp_path / "fleet" / "logs"
+    judged(few, tmp_path / "out", sources=str(logs))
+    (logs / "drive-00000.parquet").rename(logs / "renamed.parquet")
+    counted = judged(few, tmp_path / "out", sources=str(logs))
+    assert (counted.n_drives, counted.n_asked, counted.n_absent) == (3, 2, 1)
+    assert "1 result of earlier runs" in summary_text(counted, "out", ExitCode.OK)
+    pruned = judged(few, tmp_path / "out", sources=str(logs), prune=True)
+    assert (pruned.n_drives, pruned.n_asked, pruned.n_absent, pruned.reused) == (2, 2, 0, 2)
+
+
+def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_path: Path) -> None:
+    judged(drives, tmp_path / "out", shard=(1, 3))
+    judged(drives, tmp_path / "out", shard=(3, 3))
+    partial = merge(str(tmp_path / "out"), Silent())
+    assert partial.missing_parts == ["2/3"]
+    assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
+    assert "INCOMPLETE: 2/3" in summary_text(partial, "out", ExitCode.NOT_JUDGED)
+    judged(drives, tmp_path / "out", shard=(2, 3))
+    assert merge(str(tmp_path / "out"), Silent()).missing_parts == []
+    assert judged(drives, tmp_path / "out", shard=(2, 3)).reused > 0
+
+
+def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 12)
+    log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"
+    log.write_bytes(b"PAR1")
+    text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
+    n = len(few.planted - {log.name})
+    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n}; how sure they are was not examined" in text
+    assert f"critical {fleet.RULE}: {n} finding" in text
+    assert "not judged: 1 drive" in text
+    assert "refused: " in text
+    assert "exit 1" in text
 
 
 def test_other_rules_are_refused_in_the_same_folder(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 import pyarrow.compute as pc
@@ -10,7 +11,7 @@ import pytest
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
-from drivelint.engine.copies import MeasurementErrors, copies, crop
+from drivelint.engine.copies import BLOCK, MeasurementErrors, copies, crop
 from drivelint.formats import read_trace
 
 OVERTAKE = Path(__file__).parents[2] / "fixtures" / "overtake"
@@ -93,3 +94,23 @@ def test_another_seed_draws_others(drive: Drive) -> None:
     one, other = (offsets(drive, MeasurementErrors(seed=seed), range(1, 3)) for seed in (0, 1))
     for actor, moved in one.items():
         assert np.abs(moved - other[actor]).min() > 0
+
+
+def test_the_errors_of_a_block_are_one_from_each_range(drive: Drive) -> None:
+    """As many equally probable ranges as there are copies in a block have one error each."""
+    for block in range(2):
+        numbers = range(1 + block * BLOCK, 1 + (block + 1) * BLOCK)
+        for moved in offsets(drive, MeasurementErrors(1.0, 0.0, 0.0), numbers).values():
+            for axis in range(2):
+                probability = sorted(NormalDist().cdf(value) for value in moved[:, axis])
+                assert [int(each * BLOCK) for each in probability] == list(range(BLOCK))
+
+
+def test_errors_are_those_of_the_actor_whatever_the_file(drive: Drive, tmp_path: Path) -> None:
+    (tmp_path / "other.csv").write_bytes((OVERTAKE / "near_miss.csv").read_bytes() + b"\n")
+    other = Drive(read_trace(tmp_path / "other.csv", IngestOptions(mapping=str(OVERTAKE / "mapping.toml"))), None)
+    assert other.trace.drive_id != drive.trace.drive_id
+    one, two = (offsets(each, MeasurementErrors(), range(1, 4)) for each in (drive, other))
+    assert one.keys() == two.keys()
+    for actor, moved in one.items():
+        assert np.array_equal(moved, two[actor])

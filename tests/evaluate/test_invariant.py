@@ -285,6 +285,23 @@ def test_own_grid_labels_episodes(tmp_path: Path) -> None:
     assert (finding["t_start_ns"], finding["t_end_ns"]) == (200_000_000, 300_000_000)
 
 
+def test_a_failed_episode_names_its_own_findings(tmp_path: Path) -> None:
+    """Not those of another label at the same time, and a finding over two labels is of both."""
+    sections = {
+        "applies": """SELECT drive_id, ego_id, t_ns, unnest(string_split(road_type, ' ')) AS episode FROM ego_state
+            WHERE road_type IS NOT NULL""",
+        "condition": SPEED_SQL,
+    }
+    rule = write(tmp_path, INVARIANT | MEASURED | SPEED | {"merge_gap_s": "0"}, sections)
+    scene = speeds([12, 9, 12, 9, 12, 9, 12], road_type=["a", "a", "a b", "b", "a b", "a b", "a"])
+    one, two, both = (found["finding_id"] for found in findings(rule, scene))
+    rows = verdicts(rule, scene)
+    assert [(row["t_start_ns"] // 10**8, row["t_end_ns"] // 10**8) for row in rows] == [(0, 6), (2, 5)]
+    assert [row["finding_ids"] for row in rows] == [[one, both], [two, both]]
+    (kept,) = verdicts(rule, speeds([12, 12], road_type=["a", "a"]))
+    assert (kept["verdict"], kept["finding_ids"]) == ("pass", [])
+
+
 def test_profiles_are_judged_each_and_a_lost_one_is_unknown(tmp_path: Path) -> None:
     sql = """SELECT e.drive_id, e.ego_id, e.t_ns, p.profile, e.speed_mps AS observed, p.pull_out_headroom_m AS required
         FROM ego_state e CROSS JOIN profile p WHERE p.selected AND p.pull_out_headroom_m IS NOT NULL"""

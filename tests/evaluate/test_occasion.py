@@ -149,6 +149,22 @@ def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
         assert (row["object_id"], row["verdict"]) == (who, "pass")
 
 
+def test_a_failed_verdict_names_its_findings(tmp_path: Path) -> None:
+    """Of each object, or of all together; also of those that are about another object than the worst."""
+    given = {
+        "step": {"t_s": [0, 1, 2, 3]},
+        "exit_taken": {"t_s": [0.0]},
+        "pair": {"t_s": [1.0, 1.0, 3.0, 3.0], "object_id": ["a", "b", "a", "b"], "clearance_m": [-3, 2, 4, -1]},
+    }
+    for combine, failed in (("each", [["a"], ["b"]]), ("all", [["a", "b"]])):
+        header = AFTER | MEASURED | PAIR | {"combine": f'"{combine}"', "window_s": "3.5", "merge_gap_s": "0"}
+        rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
+        about = {found["finding_id"]: found["object_id"] for found in findings(rule, given)}
+        rows = verdicts(rule, given)
+        assert [row["verdict"] for row in rows] == ["fail"] * len(failed)
+        assert [[about[name] for name in row["finding_ids"]] for row in rows] == failed
+
+
 def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp_path: Path) -> None:
     sql = PAIR_SQL + " UNION ALL SELECT drive_id, ego_id, t_ns, 'a', 9, 1 FROM pair WHERE object_id = 'a'"
     given = {

@@ -269,9 +269,11 @@ def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path)
     assert first == again
     assert sum(first.counts.values()) == 20
     assert len(first.counts) > 1  # 0.98 m inside with errors of 0.6 m in both positions: not always
-    other = of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, 4)).sensitivity
-    assert other is not None
-    assert other.counts != first.counts
+    others = [
+        of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(0.6, 0.2, 0.1, 20, seed)).sensitivity
+        for seed in (4, 5, 6)
+    ]
+    assert any(other is not None and other.counts != first.counts for other in others)
 
 
 @pytest.mark.parametrize(("n_stays", "told"), [(97, "Sure: a finding in 97"), (53, "Only possible: a finding in 53")])
@@ -289,6 +291,7 @@ def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_sta
         assert found.sensitivity is not None
         assert (found.sensitivity.counts, found.sensitivity.samples) == ({"fail": n_stays}, 100)
         assert f"{told} of 100 copies of the drive with errors like the recording's" in flat(said(found))
+        assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place" in flat(said(found))
     other = explain(ExplainRequest("no-collision", tmp_path, errors=MeasurementErrors(samples=2))).sensitivity
     assert other is not None
     assert (other.samples, other.certainty) == (2, None)

@@ -63,7 +63,7 @@ def test_only_sure_findings_gate(
 ) -> None:
     got, why = gated(copied(result, n_copies, n_stays), confidence)
     assert got == code
-    assert (f"({1 - code} only possible)" in why) is (confidence is not None)
+    assert (f"(of that severity {1 - code} only possible)" in why) is (confidence is not None)
 
 
 def test_without_a_gate_a_possible_finding_fails_the_run(result: Result) -> None:
@@ -98,5 +98,5 @@ def test_the_gate_is_read_back_as_it_was_written(result: Result, tmp_path: Path)
 def test_a_known_finding_is_counted_as_known(result: Result) -> None:
     doubtful = copied(result, 100, 53)
     again = GateInputs(TODAY, baseline=doubtful, confidence=0.95).apply_to(doubtful)
-    assert exit_status(again).why.endswith("(1 known, 0 only possible)")
+    assert exit_status(again).why.endswith("(of that severity 1 known, 0 only possible)")
     assert isinstance(again.findings, pa.Table)

@@ -8,6 +8,7 @@ import re
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -60,7 +61,7 @@ def section(text: str, name: str) -> str:
                 [verdict("pass"), verdict("unknown", reason_code="log_hole")],
                 drives=[drive(lossy=True, quality=[ASSUMED], map_name=None), drive("d2", status="not_judged", status_reason="x")],
             ),
-            "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning | not judged: 1 drive; 1 verdict",
+            "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning (assumed motion) | not judged: 1 drive; 1 verdict",
         ),
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
@@ -99,11 +100,12 @@ def test_the_worst_moment_is_the_contact_with_the_speeds_before_it(overtakes: Re
     worst = min(rows, key=lambda r: r["margin"])
     assert f"{worst['observed']:.2f}" in shown
     speeds = re.search(
-        r"just before the contact, at ([\d.]+) s: (\S+) at ([\d.]+) m/s, (\S+) at ([\d.]+) m/s, closing at ([\d.]+) m/s",
+        r"closing at ([\d.]+) m/s just before the contact; at ([\d.]+) s: (\S+) at ([\d.]+) m/s, (\S+) at ([\d.]+) m/s",
         shown,
     )
     assert speeds
-    time_s, *parties, closing = speeds.groups()
+    closing, time_s, *parties = speeds.groups()
+    assert closing == f"{worst['closing_mps']:.2f}"
     (scene,) = [
         s
         for s in overtakes.scenes.to_pylist()
@@ -127,7 +129,7 @@ def test_the_worst_moment_is_the_contact_with_the_speeds_before_it(overtakes: Re
 def test_long_after_the_contact_began_nothing_is_said_of_the_speeds_before_it() -> None:
     path = [{"t_ns": (100 + k) * SECOND, "x_m": float(k), "y_m": 0.0, "speed_mps": 1.0} for k in range(6)]
     scene = {"actors": [{"actor_id": "1", "path": path}, {"actor_id": "3", "path": path}]}
-    assert before_contact(scene, finding(t_start_ns=104 * SECOND), 100 * SECOND) is not None
+    assert before_contact(scene, finding(t_start_ns=104 * SECOND, closing_mps=None), 100 * SECOND) is not None
     assert before_contact(scene, finding(t_start_ns=110 * SECOND), 100 * SECOND) is None
     assert before_contact(scene, finding(t_start_ns=99 * SECOND), 100 * SECOND) is None
     assert before_contact(scene, finding(object_id=None), 100 * SECOND) is None
@@ -171,7 +173,7 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     told = Parsed(text).text
     assert "A contact is possible:" in told
     assert "The recording shows a contact" not in told
-    assert "1 only possible" in told
+    assert "1 of 2 findings only possible" in told
     assert "possible: in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
         "possible :", "possible:"
     )
@@ -236,3 +238,64 @@ def test_passing_an_obstruction_names_the_vehicle_that_came(overtakes: Result) -
     for row in rows:
         assert row["object_id"] == "parked"
         assert row["reason"].startswith("oncoming ")
+
+
+SIGNATURE = rule(rule_id="ukhc.contact-signature", title="No contact in the speeds", tags=["contact"])
+
+
+def one_contact_by_two_rules(**signature: Any) -> Result:
+    """Return a result with a contact that the boxes only possibly show, and the speeds surely, unless told otherwise."""
+    boxes = finding(
+        rule_id="ukhc.no-collision",
+        profile=None,
+        n_copies=100,
+        n_stays=61,
+        margin=-9.0,
+        finding_id="boxes",
+        closing_mps=-0.3,
+    )
+    speeds = {"margin": -4.0, "n_copies": 32, "n_stays": 32, "finding_id": "speeds", "closing_mps": 10.43, **signature}
+    found = [boxes, finding(rule_id="ukhc.contact-signature", profile=None, **speeds)]
+    return result([verdict("fail")], found, rules=[rule(), CONTACT, SIGNATURE])
+
+
+def test_a_contact_is_as_sure_as_its_surest_finding() -> None:
+    run = one_contact_by_two_rules()
+    text = page(run)
+    worst = plain(section(text, "worst"))
+    assert "No contact in the speeds" in worst
+    assert "sure : in 32 of 32 copies" in worst
+    assert "the same contact is only possible by ukhc.no-collision, in 61 of 100 copies" in worst
+    assert "the contact itself is sure by ukhc.contact-signature, in 32 of 32 copies" in text
+    told = plain(text)
+    assert "closing at 10.43 m/s" in told
+    assert "possibly ego" not in told
+    console = Console(file=io.StringIO(), width=160, force_terminal=False)
+    console.print(terminal.render(run, "out", 160))
+    assert "CONTACT object" in console.file.getvalue()  # type: ignore[attr-defined]
+    assert "possible contact" not in console.file.getvalue()  # type: ignore[attr-defined]
+    assert "; CONTACT in 1" in console.file.getvalue()  # type: ignore[attr-defined]
+
+
+def test_contacts_at_other_times_say_nothing_of_each_other() -> None:
+    later = 200 * SECOND
+    text = page(one_contact_by_two_rules(t_start_ns=later, t_worst_ns=later, t_end_ns=later))
+    assert "the contact itself is sure" not in text
+    assert "the same contact is only possible" not in text
+
+
+def test_parties_that_draw_apart_are_said_to() -> None:
+    run = one_contact_by_two_rules(closing_mps=-0.3)
+    console = Console(file=io.StringIO(), width=160, force_terminal=False)
+    console.print(terminal.render(run, "out", 160))
+    for text in (plain(page(run)), console.file.getvalue()):  # type: ignore[attr-defined]
+        assert "drawing apart at 0.30 m/s" in text
+        assert "closing at" not in text
+
+
+def test_the_page_says_how_large_the_errors_are() -> None:
+    text = plain(page(one_contact_by_two_rules()))
+    assert (
+        "errors like the recording's (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place)"
+        in text
+    )

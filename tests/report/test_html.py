@@ -113,7 +113,7 @@ def test_unknown_is_told_with_its_reason_and_never_as_a_pass() -> None:
         verdict("unknown", reason="no map: give one", t_ref_ns=None, t_start_ns=None, t_end_ns=None, t_worst_ns=None)
     ]
     parsed = Parsed(page(result(rows)))
-    assert "Nothing could be decided" in parsed.text
+    assert "No findings, as nothing could be decided" in parsed.text
     assert "No map: give one" in parsed.text
     assert "No rule was broken" not in parsed.text
 
@@ -123,16 +123,22 @@ def test_the_headline() -> None:
         (found,) = re.findall(r"<h1>(.*?)</h1>", page(run), re.DOTALL)
         return re.sub(r"<[^>]+>", "", found).strip()
 
-    assert headline(result([verdict("pass")])) == "PASS No finding"
-    assert headline(result([verdict("pass"), verdict("unknown")])) == "PASS No finding, as far as it could be judged"
+    assert headline(result([verdict("pass")])) == "PASS No findings"
+    assert headline(result([verdict("pass"), verdict("unknown")])) == "PASS No findings, as far as it could be judged"
     lost = [drive("d2", status="not_judged", status_reason="broken")]
     assert (
         headline(result([verdict("pass")], drives=[drive(), *lost]))
-        == "NOT JUDGED No finding, as far as it could be judged"
+        == "NOT JUDGED No findings, as far as it could be judged"
     )
-    mostly = [verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)]
-    assert headline(result(mostly)) == "PASS Most could not be judged; no finding in the rest"
-    assert "1 of the rules could not be judged" in Parsed(page(result(mostly))).text
+    others = [rule(), rule("ukhc.a"), rule("ukhc.b")]
+    mostly = result(
+        [verdict("pass"), verdict("unknown", rule_id="ukhc.a"), verdict("unknown", rule_id="ukhc.b")], rules=others
+    )
+    assert headline(mostly) == "MOSTLY UNKNOWN No findings, but most could not be judged"
+    assert "2 of the rules could be judged nowhere." in Parsed(page(mostly)).text
+    partly = result([verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)])
+    assert headline(partly).startswith("PASS ")
+    assert "1 of the rules could not be judged everywhere" in Parsed(page(partly)).text
     assert headline(result([], drives=lost)) == "NOT JUDGED Nothing was judged"
     assert headline(result([verdict("fail")], [finding()])) == "FAIL 1 critical finding in 1 of 1 drive"
 

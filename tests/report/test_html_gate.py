@@ -68,7 +68,7 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     assert 'class="stands st-new"' in text.partition('id="worst"')[2].partition("</section>")[0]
     assert 'class="stands st-new"' in text.partition('id="story"')[2].partition("</section>")[0]
     assert f"{told['new']} new, {told['known']} known, {told['waived']} waived." in parsed.text
-    assert f"{told['new']} of them new" in parsed.text
+    assert f": {told['new']} new (" in parsed.text.partition("Skip to")[2]
     assert "waived until 2027-01-31 by jo@example.org: a prop of the track" in parsed.text
 
 
@@ -98,7 +98,7 @@ def test_without_an_earlier_result_and_waivers_the_page_says_nothing_of_them() -
 def test_with_waivers_alone_nothing_is_called_new() -> None:
     run = GateInputs(TODAY, None, "", WAIVERS).apply_to(result([verdict("fail")], [finding()]))
     parsed = Parsed(page(run))
-    assert "1 critical finding in 1 of 1 drive, 1 of them not waived" in parsed.text
+    assert "1 finding in 1 of 1 drive: 1 not waived (1 critical)" in parsed.text
     assert '"stands st-new"' not in page(run)
     assert "New, and known before" not in parsed.text
     assert "1 not waived, 0 waived" in parsed.text

@@ -65,7 +65,10 @@ def test_a_finding_is_a_row_that_links_to_the_report() -> None:
     assert links == [
         f"https://ci.example/run%201/report.html#finding-d1-{SDA}-nominal-0", "https://ci.example/run%201/report.html",
     ]  # fmt: skip
-    assert text.startswith("## drivelint: failed, exit 1\n\n1 finding at or above severity critical.")
+    assert text.startswith(
+        "## drivelint: FAIL, exit 1\n\n1 critical finding in 1 of 1 drive.\n\nexit 1: 1 finding at or above"
+    )
+    assert "map: road.xodr fits 1 of 1 drive / log: complete / not judged: " in text.partition("| pack |")[0]
 
 
 def test_the_link_is_an_anchor_of_the_report() -> None:
@@ -98,7 +101,7 @@ def test_drives_that_were_not_judged_are_told() -> None:
     lost = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
     text = told(result([verdict("pass")], drives=[drive(), lost]))
     assert "### Drives that could not be judged (1)\n\n* `d2`: d2.csv: no ego" in text
-    assert text.startswith("## drivelint: not everything could be judged, exit 4")
+    assert text.startswith("## drivelint: NOT JUDGED, exit 4")
 
 
 @pytest.mark.parametrize(
@@ -152,7 +155,8 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     late = finding(finding_id="late", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND)
     gone = finding(finding_id="gone", object_id="6")
     text = told(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
-    assert "Against the baseline: 2 new, 0 changed (0 worse), 1 unchanged, 0 fixed" in text
+    assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known, 1 waived." in text
+    assert "Of the baseline's findings: 0 changed (0 worse), 1 unchanged, 0 fixed" in text
     assert "gone but not fixed: 1 unknown now, 0 not looked at" in text
     assert "### New findings (1)" in text
     assert tables(text)[1][1][2] == "15.00 s"

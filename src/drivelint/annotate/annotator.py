@@ -13,13 +13,15 @@ from drivelint.annotate.layout import layout
 from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
+from drivelint.engine.barrier import refused
+from drivelint.errors import ChangedLogError
 from drivelint.result import collect
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     import duckdb
@@ -38,17 +40,26 @@ _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_
 class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
-    `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result.
+    `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result. A drive that cannot be
+    annotated is judged all the same: `note` is told which, and why.
     """
 
     def __init__(
-        self, folder: Path, rules: pa.Table, *, fail_on: str, strict: bool, required: tuple[str, ...] = ()
+        self,
+        folder: Path,
+        rules: pa.Table,
+        *,
+        fail_on: str,
+        strict: bool,
+        required: tuple[str, ...] = (),
+        note: Callable[[str], None],
     ) -> None:
         self._folder = folder
         self._rules = rules
         self._fail_on = fail_on
         self._strict = strict
         self._required = required
+        self._note = note
         self._roads: dict[str, Road] = {}
         self._parts: list[list[pa.Table]] = []
         self._series: set[Series] = set()
@@ -56,7 +67,7 @@ class Annotator:
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate the drives of a judged batch; of a batch judged in parts, after its last part.
 
-        Errors: `TraceError` for a log that cannot be copied; `OutputError` when the folder cannot be written.
+        Errors: `OutputError` when the folder cannot be written; whatever else goes wrong with a drive is told.
         """
         ids = [drive.trace.drive_id for drive in drives]
         if first:
@@ -70,7 +81,7 @@ class Annotator:
         self._series |= series_of(tables[-1], self._rules.to_pylist())
         self._parts.clear()
         for drive in drives:
-            name, road = drive.trace.drive_id, self._road(drive.environment)
+            name = drive.trace.drive_id
             mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
             verdicts, findings, row, spaces, chains, measures, margins = mine
             alone = Result(
@@ -82,8 +93,14 @@ class Annotator:
                 strict=self._strict,
                 required=self._required,
             )
-            with _whole(self._folder / f"{name}.mcap") as file:
-                write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
+            try:
+                road = self._road(drive.environment)
+                with _whole(self._folder / f"{name}.mcap") as file:
+                    write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
+            except ChangedLogError:
+                raise  # its verdicts are about what is not there any more
+            except Exception as error:  # noqa: BLE001 - verdicts are not given up for a picture of them
+                self._note(f"not annotated: {refused(drive.trace.path, error).error}")
         with _whole(self._folder / LAYOUT_FILE) as file:
             file.write(layout(self._series))
 

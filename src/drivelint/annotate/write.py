@@ -12,6 +12,7 @@ import numpy as np
 from drivelint import __version__
 from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, measures, places, result_messages
 from drivelint.annotate.tracks import tracks as tracks_of
+from drivelint.drive.lost_time import LOST_TIME
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.mcap.copy import Original, is_mcap
 from drivelint.formats.mcap.writer import Sink
@@ -55,16 +56,24 @@ class Annotation:
 
 
 def write(file: BinaryIO, annotation: Annotation) -> None:
-    """Write the annotated log of one drive. Same inputs, same bytes. Errors: `TraceError` where the log cannot be copied."""
+    """Write the annotated log of one drive; of a damaged one, without its own messages. Same inputs, same bytes.
+
+    Errors: `TraceError` where the log cannot be copied.
+    """
     sink = Sink(file)
     log = annotation.trace.tables["data_log"].to_pylist()[0]
-    if is_mcap(annotation.trace.path):
+    if is_mcap(annotation.trace.path) and not _is_damaged(annotation.trace):
         with Original(annotation.trace.path, log["sha256"]) as original:
             original.copy(sink)
     else:
         sink.begin(f"drivelint {__version__}")
     _Writer(sink, annotation, int(log["t_start_ns"])).run()
     sink.finish()
+
+
+def _is_damaged(trace: Trace) -> bool:
+    """Whether the log's records do not follow one another to its end, as who copies them must rely on."""
+    return not {LOST_TIME, "no_footer"}.isdisjoint(trace.tables["quality"]["check_id"].to_pylist())
 
 
 class _Writer:

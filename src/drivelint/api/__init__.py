@@ -5,22 +5,27 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from drivelint import run
+from drivelint import demo, run
 from drivelint.api import options
 from drivelint.api.check_result import CheckResult
+from drivelint.api.compared import Comparison, diff
+from drivelint.api.explained import Explained
+from drivelint.api.keywords import errors_name_keywords
 from drivelint.api.progress import kept_notes
 from drivelint.api.tables import Table
 from drivelint.api.trace_tables import TraceTables
 from drivelint.cli import values
 from drivelint.drive.trace import DriveInput
+from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import UsageError
 from drivelint.formats import registry
 from drivelint.gate import GateInputs
 from drivelint.report import outputs
 from drivelint.result import request
-from drivelint.result.files import prepare_folder
+from drivelint.result.evidence import lanes_of_map
 from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
@@ -28,7 +33,18 @@ if TYPE_CHECKING:
     from drivelint.api.progress import NoteKeeper
     from drivelint.result.model import Result
 
-__all__ = ["CheckResult", "Table", "TraceTables", "check", "open", "read_trace"]
+__all__ = [
+    "CheckResult",
+    "Comparison",
+    "Explained",
+    "Table",
+    "TraceTables",
+    "check",
+    "diff",
+    "open",
+    "read_trace",
+    "write_demo",
+]
 
 
 def check(
@@ -53,14 +69,19 @@ def check(
     rules_dir: Paths | None = None,
     fail_on: FailOn = "critical",
     strict: bool = False,
+    require: Texts = None,
     out: AnyPath | None = None,
+    overwrite: bool = False,
     margins: bool = False,
     keep_db: bool = False,
     annotate: bool = True,
+    robustness: bool = True,
+    confidence: float | None = None,
     baseline: AnyPath | None = None,
     waivers: AnyPath | None = None,
     today: date | str | None = None,
     memory: str | None = None,
+    rule_timeout: float = 30.0,
     progress: bool = False,
 ) -> CheckResult:
     """Judge recorded drives against the rules.
@@ -69,48 +90,69 @@ def check(
     option is repeatable; `env` and `param` also as a dictionary, pairs of numbers also as a tuple. `drivelint.toml` is not read.
     `progress`: show a bar. Errors: `DriveLintError` for what was asked, or if no drive at all could be judged.
     """
-    paths, folder = options.texts(traces), options.path(out)
-    if not paths:
-        raise UsageError("no traces: give files, globs or folders")
-    day = values.parse_today(today.isoformat() if isinstance(today, date) else today)
-    gate_inputs = GateInputs.from_files(options.path(baseline), options.path(waivers), None, day, folder)
-    settings = run.CheckOptions(
-        traces=paths,
-        **options.map_input(
-            map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
-        ),
-        **options.drive_input(
-            ego=ego,
-            mapping=mapping,
-            topic=topic,
-            sensor_range=sensor_range,
-            visibility=visibility,
-            ego_size=ego_size,
-            env=env,
-        ),
-        out=folder,
-        rules=options.texts(rules),
-        ignore=options.texts(ignore),
-        profiles=options.texts(profile),
-        params=options.assignments(param),
-        rules_dirs=tuple(Path(each) for each in options.texts(rules_dir)),
-        fail_on=options.one_of("fail_on", fail_on, options.FailOn),
-        strict=strict,
-        margins=margins,
-        keep_db=keep_db,
-        annotate=annotate,
-        evidence=True,
-        memory=values.parse_memory(memory),
-    )
-    if folder is not None:
-        prepare_folder(folder)
-    with kept_notes(progress) as listener:
-        result = _interruptible(settings, listener)
-    if gate_inputs is not None:
-        result = gate_inputs.apply_to(result)
-    if folder is not None:
-        outputs.write(result, folder)
-    return CheckResult(replace(result, margins_file=None), folder, tuple(listener.notes))
+    with errors_name_keywords():
+        paths, folder = options.texts(traces), options.path(out)
+        if not paths:
+            raise UsageError("no traces: give files, globs or folders")
+        if keep_db and folder is None:
+            raise UsageError("--keep-db writes a file: say where with --out DIR")
+        _check_confidence(confidence, robustness)
+        day = values.parse_today(today.isoformat() if isinstance(today, date) else today)
+        gate_inputs = GateInputs.from_files(
+            options.path(baseline),
+            options.path(waivers),
+            None,
+            day,
+            folder,
+            confidence=None if confidence is None else float(confidence),
+        )
+        settings = run.CheckOptions(
+            traces=paths,
+            **options.map_input(
+                map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
+            ),
+            **options.drive_input(
+                ego=ego,
+                mapping=mapping,
+                topic=topic,
+                sensor_range=sensor_range,
+                visibility=visibility,
+                ego_size=ego_size,
+                env=env,
+            ),
+            rules=options.texts(rules),
+            ignore=options.texts(ignore),
+            profiles=options.texts(profile),
+            params=options.assignments(param),
+            rules_dirs=tuple(Path(each) for each in options.texts(rules_dir)),
+            fail_on=options.one_of("fail_on", fail_on, options.FailOn),
+            strict=strict,
+            require=options.texts(require),
+            margins=margins,
+            keep_db=keep_db,
+            annotate=annotate and folder is not None,
+            evidence=True,
+            robustness=robustness,
+            memory=values.parse_memory(memory),
+            rule_timeout=rule_timeout,
+        )
+        scratch = TemporaryDirectory(prefix="drivelint-") if margins and folder is None else None
+        with outputs.working_folder(folder, overwrite=overwrite) as work, kept_notes(progress) as listener:
+            place = work if scratch is None else Path(scratch.name)
+            result = _interruptible(replace(settings, out=place), listener)
+            if gate_inputs is not None:
+                result = gate_inputs.apply_to(result)
+            if folder is not None:
+                outputs.write(result, folder, work, overwrite=overwrite)
+        return CheckResult(result, folder, tuple(listener.notes), scratch)
+
+
+def _check_confidence(confidence: float | None, robustness: bool) -> None:
+    """Raise an error for a confidence that is none, or that nothing tells."""
+    if confidence is not None and not robustness:
+        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+    if confidence is not None and not 0 <= confidence <= 1:
+        raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
 
 
 def _interruptible(settings: run.CheckOptions, listener: NoteKeeper) -> Result:
@@ -130,12 +172,27 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     """
     place = Path(folder)
     asked = request.load(place) if (place / request.RUN_FILE).is_file() else None
-    return CheckResult(replace(load_result(place), asked=asked), place)
+    result = load_result(place)
+    return CheckResult(replace(result, asked=asked), place, result.notes)
+
+
+def write_demo(folder: AnyPath) -> list[Path]:
+    """Write six recorded drives and their road into a folder, and return their paths; the road's name is `road.xodr`.
+
+    Errors: `DriveLintError` where a file of such a name is not of an earlier demo, or the folder cannot be written.
+    """
+    with errors_name_keywords():
+        return demo.write(Path(folder))
 
 
 def read_trace(
     path: AnyPath,
     *,
+    map: AnyPath | None = None,  # noqa: A002 - the option's name
+    map_dir: AnyPath | None = None,
+    map_offset: Pair = None,
+    map_origin: Pair = None,
+    handedness: Handedness = "auto",
     mapping: AnyPath | None = None,
     topic: str | None = None,
     ego: str | int | None = None,
@@ -146,17 +203,25 @@ def read_trace(
 ) -> TraceTables:
     """Read one recorded drive into tables, checked and in SI units, as `check` reads it; the ego may be missing.
 
-    Errors: `DriveLintError` for a log that is missing, unreadable or has nothing to judge, or a bad mapping.
+    With a map, given or embedded in the log, its lanes are the table `lanes`, and the drive is in the map's coordinates.
+    Errors: `DriveLintError` for a log that is missing, unreadable or has nothing to judge, a bad mapping, or a map that cannot be
+    read or is of another place.
     """
-    asked = DriveInput(
-        **options.drive_input(
-            ego=ego,
-            mapping=mapping,
-            topic=topic,
-            sensor_range=sensor_range,
-            visibility=visibility,
-            ego_size=ego_size,
-            env=env,
+    with errors_name_keywords():
+        asked = DriveInput(
+            **options.map_input(
+                map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
+            ),
+            **options.drive_input(
+                ego=ego,
+                mapping=mapping,
+                topic=topic,
+                sensor_range=sensor_range,
+                visibility=visibility,
+                ego_size=ego_size,
+                env=env,
+            ),
         )
-    )
-    return TraceTables(registry.read_trace(Path(path), asked.ingest_options(need_ego=False)))
+        trace = registry.read_trace(Path(path), asked.ingest_options(need_ego=False))
+        environment, trace = MapLibrary(asked).find(trace)
+        return TraceTables(trace, None if environment is None else lanes_of_map(environment))

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import shutil
-from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, overload
 
-from drivelint.api.notebook import summary_html
-from drivelint.api.options import ReportFormat, one_of
+from drivelint.api.explained import Explained
+from drivelint.api.keywords import errors_name_keywords
+from drivelint.api.notebook import one_line, summary_html
+from drivelint.api.options import ReportFormat, one_of, path
 from drivelint.api.tables import Table, TableSet
+from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
-from drivelint.report.terminal_summary import verdict_line
-from drivelint.result.files import prepare_folder, publish
+from drivelint.result.files import publish
 from drivelint.result.model import exit_status
 from drivelint.result.schemas import TABLE_OF_FILE
 
@@ -28,7 +30,7 @@ class CheckResult(TableSet):
     """The result of `check`, or of the folder that it wrote: its tables, its outcome, and reports of it.
 
     The tables are those of the result files: `drivelint docs columns` describes their columns. `notes`: what the command line
-    would have said on stderr.
+    would have said on stderr. `folder`: where its files are; None: they are not written.
     """
 
     verdicts: Table
@@ -43,13 +45,27 @@ class CheckResult(TableSet):
     overtakes: Table
     opportunities: Table
 
-    def __init__(self, result: Result, folder: Path | None = None, notes: tuple[str, ...] = ()) -> None:
-        super().__init__({name: getattr(result, name) for name in TABLE_OF_FILE})
+    def __init__(
+        self,
+        result: Result,
+        folder: Path | None = None,
+        notes: tuple[str, ...] = (),
+        scratch: TemporaryDirectory[str] | None = None,
+    ) -> None:
+        super().__init__({name: getattr(result, name) for name in TABLE_OF_FILE}, shapes=TABLE_OF_FILE)
         for name, table in self.tables.items():
             setattr(self, name, table)
         self.notes = notes
-        self._result = result
-        self._margins_file = None if folder is None or not (folder / _MARGINS).is_file() else folder / _MARGINS
+        self.folder = folder
+        self._result = replace(result, margins_file=None)
+        self._scratch = scratch  # its folder, with the margins, goes when nobody has the result any more
+        margins = result.margins_file if folder is None else folder / _MARGINS
+        self._margins_file = margins if margins is not None and margins.is_file() else None
+
+    @property
+    def result(self) -> Result:
+        """The tables as the package itself has them; no part of the interface."""
+        return self._result
 
     @property
     def exit_code(self) -> int:
@@ -87,22 +103,43 @@ class CheckResult(TableSet):
         publish(file.parent, {file.name: content}, {})
         return file
 
-    def write(self, folder: AnyPath) -> Path:
-        """Write the result files into a folder, as `check --out` does, and return it.
+    def write(self, folder: AnyPath, *, overwrite: bool = False) -> Path:
+        """Write the result files into a folder, as `check --out` does, and return it; into its own, it writes nothing.
 
         The logs with their verdicts and the kept database need the log: `check` writes them itself, into its `out`.
-        Errors: `DriveLintError` when the folder cannot be written.
+        Errors: `DriveLintError` when the folder cannot be written, or without `overwrite` has such files that are not drivelint's.
         """
         out = Path(folder)
-        prepare_folder(out)
-        with ExitStack() as undo:
+        if self.folder is not None and out.resolve() == self.folder.resolve():
+            return out
+        with errors_name_keywords(), outputs.working_folder(out, overwrite=overwrite) as work:
             margins = None
-            if self._margins_file is not None:
-                margins = out / f".copy.{_MARGINS}"
-                undo.callback(margins.unlink, missing_ok=True)
-                shutil.copyfile(self._margins_file, margins)
-            outputs.write(replace(self._result, margins_file=margins), out)
+            if work is not None and self._margins_file is not None:
+                margins = shutil.copyfile(self._margins_file, work / _MARGINS)
+            outputs.write(replace(self._result, margins_file=margins), out, overwrite=overwrite)
         return out
+
+    def explain(
+        self,
+        name: str,
+        *,
+        profile: str | None = None,
+        object: str | int | None = None,  # noqa: A002 - the option's name
+        ego: str | int | None = None,
+        verdict: str | None = None,
+        at: float | None = None,
+        trace: AnyPath | None = None,
+        map: AnyPath | None = None,  # noqa: A002 - the option's name
+    ) -> Explained:
+        """Tell why one verdict is what it is, as `drivelint explain` does: its drive is judged again by that rule.
+
+        `name`: a finding's id or how it begins; or a rule, or rule@drive, or how they begin. The others choose among several
+        verdicts. `trace`, `map`: where they are, if they were moved. Errors: `DriveLintError`.
+        """
+        wanted = VerdictFilter(profile, _text(object), at, _text(ego), verdict)
+        with TemporaryDirectory(prefix="drivelint-") as scratch:
+            folder = self.folder or self.write(scratch)
+            return Explained(explain(ExplainRequest(name, folder, wanted, path(trace), path(map))))
 
     def _queried(self) -> dict[str, Any]:
         queried = super()._queried()
@@ -113,7 +150,11 @@ class CheckResult(TableSet):
         return queried
 
     def __repr__(self) -> str:
-        return f"<drivelint.CheckResult: {verdict_line(self._result)}; exit code {self.exit_code}>"
+        return f"<drivelint.CheckResult: {one_line(self._result)}; exit code {self.exit_code}>"
 
     def _repr_html_(self) -> str:
         return summary_html(self._result)
+
+
+def _text(given: str | int | None) -> str | None:
+    return None if given is None else str(given)

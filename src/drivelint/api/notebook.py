@@ -1,4 +1,4 @@
-"""What a notebook shows of a result: the verdict, the counts and the worst findings."""
+"""What a notebook shows of a result: the verdict, map and logs, the counts, refused logs and the worst findings."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from drivelint.report.inputs import input_notes
 from drivelint.report.terminal_summary import verdict_line, worst_gating
 from drivelint.result import counts
 from drivelint.result.certainty import certainty
@@ -20,6 +21,16 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MOST_FINDINGS: Final = 10
+MOST_REFUSED: Final = 10
+
+
+def one_line(result: Result) -> str:
+    """Return the verdict, whether the map fits, whether the logs are complete, and what was not judged."""
+    return f"{verdict_line(result)}; {_inputs(result)}"
+
+
+def _inputs(result: Result) -> str:
+    return " | ".join(f"{note.label}: {note.words}" for note in input_notes(result))
 
 
 def summary_html(result: Result) -> str:
@@ -46,6 +57,8 @@ def summary_html(result: Result) -> str:
         verdict=verdict_line(result),
         exit_code=int(end.code),
         why=end.why,
+        inputs=_inputs(result),
+        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_REFUSED],
         verdicts={word.replace("_", " "): n for word, n in counts.total(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),

@@ -26,6 +26,10 @@ class NoteKeeper(Progress):
         """Report units done."""
         self._shown.advance(n)
 
+    def doing(self, what: str) -> None:
+        """Say what is done."""
+        self._shown.doing(what)
+
     def note(self, text: str) -> None:
         """Keep the note."""
         self.notes.append(text)

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Any
 import duckdb
 
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.phrases import hint
+from drivelint.result.geometry import COLUMN, SHAPES, with_geometry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
+    import geopandas as gpd
     import pandas as pd
     import polars as pl
     import pyarrow as pa
@@ -22,10 +25,11 @@ _CLOSED = "SET python_enable_replacements = false; SET enable_external_access = 
 class Table:
     """Rows with named columns. pyarrow, polars, pandas and DuckDB take it as it is, too (Arrow's PyCapsule interface)."""
 
-    __slots__ = ("_rows",)
+    __slots__ = ("_rows", "_shape")
 
-    def __init__(self, rows: pa.Table) -> None:
+    def __init__(self, rows: pa.Table, shape: str | None = None) -> None:
         self._rows = rows
+        self._shape = shape if shape in SHAPES else None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -34,6 +38,18 @@ class Table:
 
     def __len__(self) -> int:
         return int(self._rows.num_rows)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield every row as a dictionary."""
+        return iter(self.rows())
+
+    def __getitem__(self, column: str) -> pl.Series:
+        """Return a column as a series of polars. Errors: `KeyError` with the nearest name."""
+        import polars as pl
+
+        if column not in self.columns:
+            raise KeyError(f"{column!r} is no column: {hint(str(column), self.columns)}")
+        return pl.Series(column, self._rows[column])
 
     def arrow(self) -> pa.Table:
         """Return the rows as a table of pyarrow."""
@@ -55,6 +71,22 @@ class Table:
             ) from error
         return self._rows.to_pandas()
 
+    def geo(self) -> gpd.GeoDataFrame:
+        """Return the rows with their geometry (`geom`, in the map's metres) as a frame of geopandas.
+
+        Errors: `DriveLintError` where geopandas is not installed, and for a table without a geometry.
+        """
+        if self._shape is None:
+            raise UsageError(
+                "geo(): this table has no geometry; findings, scenes, lanes, spaces, courses and tracks have"
+            )
+        try:
+            import geopandas as gpd
+        except ImportError as error:
+            raise DriveLintError("geo() needs geopandas, which is not installed: pip install geopandas") from error
+        wkb = with_geometry(self._rows, self._shape)[COLUMN].to_pylist()
+        return gpd.GeoDataFrame(self.df().assign(**{COLUMN: gpd.GeoSeries.from_wkb(wkb)}), geometry=COLUMN)
+
     def rows(self) -> list[dict[str, Any]]:
         """Return every row as a dictionary."""
         return list(self._rows.to_pylist())
@@ -72,8 +104,9 @@ class Table:
 class TableSet:
     """Tables by name, which `sql` queries together."""
 
-    def __init__(self, tables: Mapping[str, pa.Table]) -> None:
-        self.tables = {name: Table(rows) for name, rows in tables.items()}
+    def __init__(self, tables: Mapping[str, pa.Table], shapes: Mapping[str, str]) -> None:
+        """`shapes`: name -> table of the schema that says which geometry its rows have."""
+        self.tables = {name: Table(rows, shapes.get(name)) for name, rows in tables.items()}
 
     def sql(self, query: str, params: object = None) -> Table:
         """Return the rows of a DuckDB query over the tables, by their names; `params` fill in `?` or `$name`.

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.api.tables import Table, TableSet
+from drivelint.result.schemas import empty_table
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.drive.trace import Trace
+
+_LANES: Final = "lane_shape"
 
 
 class TraceTables(TableSet):
     """One drive as the tables that rules are judged on: metres, seconds, radians, box centres; one row of `data_log`.
 
-    `drivelint docs dictionary` describes the columns. `embedded_map`: OpenDRIVE that the log holds, or None. `notes`: what the
+    `drivelint docs dictionary` describes the columns. `lanes`: those of its map between their bounds, as `drivelint docs columns`
+    describes them; empty without a map. `embedded_map`: OpenDRIVE that the log holds, or None. `notes`: what the
     reader had to say about the log.
     """
 
@@ -24,9 +30,11 @@ class TraceTables(TableSet):
     declared_event: Table
     drive_condition: Table
     quality: Table
+    lanes: Table
 
-    def __init__(self, trace: Trace) -> None:
-        super().__init__(trace.tables)
+    def __init__(self, trace: Trace, lanes: pa.Table | None = None) -> None:
+        tables = {**trace.tables, "lanes": empty_table(_LANES) if lanes is None else lanes}
+        super().__init__(tables, shapes={"lanes": _LANES})
         for name, table in self.tables.items():
             setattr(self, name, table)
         self.drive_id = trace.drive_id

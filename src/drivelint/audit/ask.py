@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import duckdb
 
 from drivelint.audit.compact import create_views, database, escaped
-from drivelint.audit.run import AUDIT_FILE, RULES_FILE
+from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.errors import UsageError
 from drivelint.sql.store import quoted
@@ -43,8 +43,9 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path) -> None:
     """Create the views of an audit, or of a check's result, and close the database off from everything else."""
     results = open_store(dest)
     if results.read(AUDIT_FILE) is not None:
+        if next(iter(results.names("receipts")), None) is not None:
+            raise UsageError(f"{dest}: some results are not packed yet: let the audit end, or drivelint merge {dest}")
         create_views(con, results, home)
-        _view(con, results, "rules", RULES_FILE, home)
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
         if "verdicts.parquet" not in files:

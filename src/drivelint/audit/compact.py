@@ -44,6 +44,7 @@ RECEIPT_SCHEMA: Final = pa.schema(
         ("failed", pa.map_(pa.string(), pa.int64())),
         ("unknown", pa.int64()),
         ("tags", pa.map_(pa.string(), pa.string())),
+        ("options", pa.string()),
         ("n_in_batch", pa.int64()),
         ("version", pa.int64()),
     ]
@@ -106,17 +107,21 @@ def database() -> Iterator[duckdb.DuckDBPyConnection]:
         yield con
 
 
-def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path) -> None:
-    """Create the views `verdicts`, `findings`, `drives`, `receipts` over all chunks, which must be packed. `home`: for copies."""
+def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> None:
+    """Create the views `verdicts`, `findings`, `drives`, `rules`, `receipts` over all chunks, which must be packed. `home`: for copies.
+
+    `prefix`: what the names of the views begin with.
+    """
+    con.read_parquet(escaped([str(results.fetch("rules.parquet", home))])).create_view(f"{prefix}rules", replace=True)
     ids = chunks(results)
     for table in (*TABLES, "receipts"):
         files = [str(results.fetch(chunk_name(table, each), home)) for each in ids]
         if files:
-            con.read_parquet(escaped(files)).create_view(table, replace=True)
+            con.read_parquet(escaped(files)).create_view(f"{prefix}{table}", replace=True)
         else:
             con.register("_empty", RECEIPT_SCHEMA.empty_table() if table == "receipts" else empty_rows()[table])
-            con.execute(f"CREATE OR REPLACE TABLE _no_{table} AS FROM _empty")
-            con.execute(f"CREATE OR REPLACE VIEW {table} AS FROM _no_{table}")
+            con.execute(f"CREATE OR REPLACE TABLE _no_{prefix}{table} AS FROM _empty")
+            con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS FROM _no_{prefix}{table}")
 
 
 def tables_digest(con: duckdb.DuckDBPyConnection) -> str:

@@ -27,11 +27,26 @@ WINDOW: Final = 4
 TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
+LEAST_TASK_DRIVES: Final = 8
+"""Where there are few drives, tasks have so many, so that results come soon and all workers have something to do."""
 MOST_ATTEMPTS: Final = 3
 """A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
 
 
-def tasks(drives: Iterable[AuditDrive], dest: str, run_id: str, settings: JudgeSettings, ahead: int) -> Iterator[Task]:
+def task_size(n_drives: int, capacity: int) -> int:
+    """Return how many drives a task has at most."""
+    return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (WINDOW * capacity)))
+
+
+def tasks(
+    drives: Iterable[AuditDrive],
+    dest: str,
+    run_id: str,
+    settings: JudgeSettings,
+    *,
+    ahead: int,
+    most: int = TASK_DRIVES,
+) -> Iterator[Task]:
     """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end."""
     left = iter(drives)
     while some := list(islice(left, ahead)):
@@ -39,7 +54,7 @@ def tasks(drives: Iterable[AuditDrive], dest: str, run_id: str, settings: JudgeS
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            if len(part) >= TASK_DRIVES or sum(each.size for each in part) >= TASK_BYTES:
+            if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part = []
         if part:
@@ -115,6 +130,7 @@ class Driver:
             reason=why,
             rows_sha256=rows_sha256(rows),
             tags=drive.tags,
+            options=drive.options_json,
         )
         return write_batch(self.results, rows, [receipt])
 

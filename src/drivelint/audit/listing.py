@@ -47,7 +47,7 @@ def fill(
                 "size": size,
                 "stamp": stamp,
                 "options_id": options_id,
-                "options": msgspec.json.encode(drive.options, enc_hook=str).decode(),
+                "options": drive.options_json,
                 "tags": sorted(drive.tags.items()),
             }
         )

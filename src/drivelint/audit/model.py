@@ -53,6 +53,11 @@ class AuditDrive:
         source_id = digest([run_id, options_id, self.log, size, stamp])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)
 
+    @property
+    def options_json(self) -> str:
+        """The options as JSON, paths as text."""
+        return msgspec.json.encode(self.options, enc_hook=str).decode()
+
 
 @dataclass(frozen=True)
 class Task:
@@ -77,7 +82,7 @@ class Receipt:
     `key`: hash of log, map, options, rules, parameters, and versions. `batch`: the file of each table that has its rows, beside those
     of `n_in_batch` drives in all.
     `rows_sha256`: hash of these rows, whatever other drives are in the file. `counts`: verdict -> rows; `failed`: severity ->
-    failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules.
+    failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules. `options`: those of the drive, as JSON.
     """
 
     key: str
@@ -99,6 +104,7 @@ class Receipt:
     failed: dict[str, int] = field(default_factory=dict)
     unknown: int = 0
     tags: dict[str, str] = field(default_factory=dict)
+    options: str = ""
     n_in_batch: int = 1
     reused: bool = False
     """It was there already. This is said of this run only and never stored."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import nullcontext
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit import listing
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
-from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, tasks
+from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.model import JudgeSettings
@@ -20,10 +20,13 @@ from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
+from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import duckdb
 
     from drivelint.audit.executors import Executor
@@ -58,6 +61,8 @@ class AuditRequest(DriveInput):
     claim: bool = False
     lease_s: float = LEASE_S
     retry_errors: bool = False
+    prune: bool = False
+    """Take out results of logs that are not among the sources any more."""
     cluster: str | None = None
 
 
@@ -81,14 +86,22 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         create_views(con, results, Path(home))
         if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
             create_views(con, results, Path(home))
-            progress.note(f"{n_stale} drives are judged again: changed since, or not judged before")
+            progress.note(f"{plural(n_stale, 'drive')} judged again: changed since, or not judged before")
+        n_absent = _absent(con, results, request, progress) if alone else 0
+        if n_absent and request.prune:
+            create_views(con, results, Path(home))
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
         counted = _judge(request, con, results, progress, id_=id_, executor=executor)
+        n_reused = n_known + counted.reused
         if not alone:
-            return counted
-        return _close(con, results, Path(home), n_known + counted.reused)
+            _write_part(results, request, n_drives)
+            return replace(
+                counted, n_drives=counted.n_drives + n_known, judged=counted.judged + n_known, reused=n_reused
+            )
+        counted = _close(con, results, Path(home), n_reused)
+        return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
 
 def _judge(
@@ -125,7 +138,9 @@ def _judge(
         with claims.alive() if claims else nullcontext():
             ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
             todo = claims.mine(lambda: listing.todo(con)) if claims else listing.todo(con)
-            given = tasks(todo, request.out, id_, request.settings, ahead)
+            (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
+            most = task_size(n_left, workers.capacity)
+            given = tasks(todo, request.out, id_, request.settings, ahead=ahead, most=most)
             Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None).run(given)
     finally:
         workers.close()
@@ -139,11 +154,14 @@ def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: 
     return len(stale)
 
 
-def _close(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int) -> AuditSummary:
+def _close(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing: Sequence[str] = ()
+) -> AuditSummary:
     """Pack everything, write the summary last, and return it."""
     compact(results)
     create_views(con, results, home)
-    counted = summed(con, n_reused)
+    asked = json.loads(results.read(AUDIT_FILE) or b"{}")["settings"]
+    counted = replace(summed(con, n_reused), missing_parts=list(missing), robust=bool(asked["robustness"]))
     results.write(SUMMARY_FILE, (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode())
     return counted
 
@@ -159,9 +177,35 @@ def merge(out: str, progress: Progress) -> AuditSummary:
     progress.stage("packing", None)
     if isinstance(results, LocalFolder):
         results.sweep()
+    missing = _missing_parts(results)
+    compact(results)
     results.delete(list(results.names("claims")))
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
-        return _close(con, results, Path(home), 0)
+        return _close(con, results, Path(home), 0, missing)
+
+
+def _write_part(results: ResultStore, request: AuditRequest, n_listed: int) -> None:
+    """Say that a shard, or an audit that shares its drives, has come to its end."""
+    name = "claim" if request.shard is None else f"{request.shard[0]}-of-{request.shard[1]}"
+    results.write(f"parts/{name}.json", (json.dumps({"n_listed": n_listed}) + "\n").encode())
+
+
+def _missing_parts(results: ResultStore) -> list[str]:
+    """Return which shards have not come to their end, as `2/3`; `claim` where drives are shared and no audit has."""
+    names = {Path(name).stem for name in results.names("parts")}
+    sizes = {name.partition("-of-")[2] for name in names} - {""}
+    missing = [f"{i}/{n}" for n in sorted(sizes) for i in range(1, int(n) + 1) if f"{i}-of-{n}" not in names]
+    shared = next(iter(results.names("claims")), None) is not None
+    return missing + (["claim"] if shared and "claim" not in names else [])
+
+
+def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:
+    """Return how many results are of logs that are not among the sources; take them out where that is asked."""
+    absent = con.execute(statement("audit/absent")).to_arrow_table()["key"].combine_chunks()
+    if request.prune and len(absent):
+        drop(results, absent)
+        progress.note(f"{plural(len(absent), 'result')} taken out: their logs are not among the sources")
+    return len(absent)
 
 
 def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import DriveInput
 
-OPTION_COLUMNS: Final = ("log", "map", "ego", "environment")
-"""Columns of a manifest that are no tags: the log, its map, its ego, and what holds in the drive (`weather=rain;light=night`)."""
+OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
+"""Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=rain;light=night`), and options."""
 _ROWS: Final = 10_000
 
 
@@ -94,6 +94,10 @@ def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditD
             own["ego"] = ego
         if env := row.pop("environment", None):
             own["env"] = (*options.env, *(part.strip() for part in env.split(";") if part.strip()))
+        if (mapping := row.pop("mapping", None)) and (Path(path).parent / mapping).is_file():
+            mapping = _beside(named, mapping)
+        said = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
+        own |= {name: value for name, value in said.items() if value}
         tags = {name: value for name, value in sorted(row.items()) if value}
         yield AuditDrive(_beside(named, log), replace(options, **own), tags)
 

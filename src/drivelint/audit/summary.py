@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
@@ -17,9 +17,17 @@ if TYPE_CHECKING:
     from drivelint.audit.model import Receipt
 
 
+MOST_RULES: Final = 5
+MOST_REASONS: Final = 3
+
+
 @dataclass
 class AuditSummary:
-    """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`)."""
+    """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
+
+    `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings. `n_asked`: drives of the sources, `n_absent`:
+    results of others, from earlier runs. `missing_parts`: shards that have not come to their end.
+    """
 
     n_drives: int = 0
     judged: int = 0
@@ -33,6 +41,15 @@ class AuditSummary:
     unknown: int = 0
     errors: int = 0
     digest: str | None = None
+    robust: bool = False
+    n_asked: int | None = None
+    n_absent: int = 0
+    missing_parts: list[str] = field(default_factory=list)
+    findings: dict[str, int] = field(default_factory=dict)
+    broken: list[dict[str, Any]] = field(default_factory=list)
+    unknown_for: list[dict[str, Any]] = field(default_factory=list)
+    not_judged: list[dict[str, Any]] = field(default_factory=list)
+    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged."""
 
     def count(self, receipt: Receipt) -> None:
         """Add a drive."""
@@ -56,7 +73,7 @@ class AuditSummary:
         if any(self.failed.get(severity) for severity in gating):
             return ExitCode.FAILED
         nothing = not self.n_drives and self.digest is not None  # of shards and claims, others may have had all
-        if self.refused or self.quarantined or nothing or (strict and self.unknown):
+        if self.refused or self.quarantined or self.missing_parts or nothing or (strict and self.unknown):
             return ExitCode.NOT_JUDGED
         return ExitCode.LOSSY if self.lossy else ExitCode.OK
 
@@ -65,4 +82,19 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
     (row,) = con.execute(statement("audit/summed")).to_arrow_table().to_pylist()
     failed = dict(con.execute(statement("audit/failed")).fetchall())
-    return AuditSummary(**row, reused=n_reused, failed=failed, digest=tables_digest(con))
+    broken, unknown_for, not_judged = (
+        con.execute(statement(f"audit/{name}")).to_arrow_table() for name in ("broken", "unknown", "not_judged")
+    )
+    findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
+    return AuditSummary(
+        **row,
+        reused=n_reused,
+        failed=failed,
+        digest=tables_digest(con),
+        findings={
+            each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])
+        },
+        broken=broken.slice(0, MOST_RULES).to_pylist(),
+        unknown_for=unknown_for.slice(0, MOST_REASONS).to_pylist(),
+        not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
+    )

@@ -1,4 +1,4 @@
-"""What `drivelint audit` prints at its end."""
+"""What `drivelint audit` prints at its end, in one screen."""
 
 from __future__ import annotations
 
@@ -8,24 +8,62 @@ from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from drivelint.audit.summary import AuditSummary
+    from drivelint.errors import ExitCode
 
 
-def summary_text(counted: AuditSummary, out: str) -> str:
-    """Return the lines: drives, failures by severity, what was not judged, and what to do next."""
-    told = [f"{plural(counted.n_drives, 'drive')}, {counted.km:,.2f} km, {counted.hours:,.2f} h"]
+def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
+    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, and what to do next."""
+    return "\n".join(_lines(counted, out, code))
+
+
+def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
+    yield f"{plural(counted.n_drives, 'drive')}, {counted.km:,.2f} km, {counted.hours:,.2f} h"
     states = (
         f"{counted.judged} judged",
-        f"{counted.reused} of all reused" if counted.reused else "",
-        f"{counted.lossy} lossy" if counted.lossy else "",
         f"{counted.refused} refused" if counted.refused else "",
         f"{counted.quarantined} quarantined" if counted.quarantined else "",
+        f"{counted.lossy} lossy" if counted.lossy else "",
+        f"{counted.reused} had a result already" if counted.reused else "",
     )
-    told.append(", ".join(state for state in states if state))
-    failed = [f"{counted.failed.get(severity, 0)} {severity}" for severity in SEVERITIES]
-    told.append(f"failed verdicts: {', '.join(failed)}; unknown: {counted.unknown}")
+    yield ", ".join(state for state in states if state)
+    if counted.n_asked is not None and counted.n_asked != counted.n_drives:
+        yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
+    if counted.missing_parts:
+        yield f"INCOMPLETE: {', '.join(counted.missing_parts)} of the shards have not ended: run them, and merge again"
     if counted.digest is None:
-        told.append(f"when all shards have ended: drivelint merge {out}")
-    else:
-        told.append(f'ask: drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"')
-    return "\n".join(told)
+        yield f"when all parts have ended: drivelint merge {out}"
+        return
+    found = [f"{counted.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
+    yield f"findings: {', '.join(found)}{_contacts(counted)}; how sure they are was {'' if counted.robust else 'not '}examined"
+    for row in counted.broken:
+        yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
+    if counted.unknown_for:
+        yield f"unknown: {counted.unknown} verdicts"
+    for row in counted.unknown_for:
+        yield f"  {row['reason_code']}: {row['n']} of {plural(row['n_rules'], 'rule')} in {plural(row['n_drives'], 'drive')}"
+    if left := counted.refused + counted.quarantined:
+        yield f"not judged: {plural(left, 'drive')}"
+        for row in counted.not_judged:
+            yield f"  {row['status']}: {row['reason']}"
+    yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
+    yield f"look     drivelint report {out}"
+    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
+    yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
+
+
+def _difference(counted: AuditSummary) -> str:
+    parts = []
+    if counted.n_absent:
+        parts.append(f"{plural(counted.n_absent, 'result')} of earlier runs, of other logs (--prune takes them out)")
+    doubles = (counted.n_asked or 0) - (counted.n_drives - counted.n_absent)
+    if doubles > 0:
+        parts.append(f"{plural(doubles, 'log')} of the name and content of another, judged once")
+    return f"; {'; '.join(parts)}" if parts else ""
+
+
+def _contacts(counted: AuditSummary) -> str:
+    contact = max((row["n_drives"] for row in counted.broken if row["is_contact"]), default=0)
+    return f"; CONTACT in {contact}" if contact else ""

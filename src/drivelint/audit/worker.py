@@ -99,7 +99,8 @@ class Judge:
         try:
             path, options = self._at_hand(drive)
             identity = identify(path)
-            key = digest([run_id, drive.options_id, identity.sha256])
+            # the name is in it because the id of a drive, and of its findings, begins with it
+            key = digest([run_id, drive.options_id, identity.sha256, identity.file_name])
             if (content := results.read(receipt_name(key))) is not None:
                 return key, replace(Receipt.from_json(content), reused=True)
             trace = read_trace(path, options.ingest_options())
@@ -180,6 +181,7 @@ class Judge:
             failed=_counts(stable.filter(pc.equal(stable["verdict"], "fail")), "severity"),
             unknown=_counts(stable, "verdict").get("unknown", 0),
             tags=drive.tags,
+            options=drive.options_json,
         )
 
     def close(self) -> None:

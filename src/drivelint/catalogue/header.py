@@ -63,6 +63,10 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.limit_min_mps is not None or self.limit_max_mps is not None
 
 
+CONTACT: Final = "contact"
+"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+
+
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """What a rule says about itself, field by field as in the design."""
 

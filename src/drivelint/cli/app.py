@@ -5,8 +5,8 @@ Everything heavy is imported inside the commands, so that `--help` stays fast.
 
 from __future__ import annotations
 
-import io
 import os
+import signal
 import sys
 from contextlib import redirect_stdout
 from dataclasses import replace
@@ -16,13 +16,15 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
-from drivelint.cli import audits, completion, options, results, rules, values
+from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values
 from drivelint.cli import docs as docs_
-from drivelint.cli.console import print_rich, run_interruptible
+from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
 from drivelint.cli.console import progress as bar
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.restart import Restart
 from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint.phrases import inert, inert_line
 
 app = typer.Typer(
     name="drivelint",
@@ -133,6 +135,15 @@ def check(
     waivers: options.Waivers = None,
     today: options.Today = None,
     memory: options.MemorySize = None,
+    rule_timeout: Annotated[
+        float,
+        option(
+            "--rule-timeout",
+            "S",
+            "Seconds that a rule may take on a batch of drives: beyond them that rule is an error, the others go on.",
+            min=0.1,
+        ),
+    ] = 30.0,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
     ] = False,
@@ -151,7 +162,7 @@ def check(
     until then is kept.
     """
     from drivelint import run
-    from drivelint.engine.interruption import Interruption
+    from drivelint.engine.interruption import Interruption, NothingJudgedError
     from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs
     from drivelint.report import summary, terminal
@@ -180,11 +191,17 @@ def check(
         annotate=annotate,
         robustness=robustness,
         memory=values.parse_memory(memory),
+        rule_timeout=rule_timeout,
     )
     interruption = Interruption()
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         settings = replace(settings, out=work)
-        result = run_interruptible(lambda: run.check(settings, progress, interruption), interruption.request)
+        deaf = Restart.if_possible(progress, work)
+        try:
+            result = run_interruptible(lambda: run.check(settings, progress, interruption, deaf), interruption.request)
+        except KeyboardInterrupt as stop:
+            say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
+            raise
         if gate_inputs is not None:
             result = gate_inputs.apply_to(result)
         if out is not None:
@@ -197,6 +214,8 @@ def check(
         typer.echo(summary.render(result), nl=False)
     else:
         print_rich(lambda width: terminal.render(result, None if out is None else str(out), width, verbose=verbose))
+    if result.interrupted:
+        say_kept(result.drives["status"].to_pylist(), out)
     raise typer.Exit(int(exit_status(result).code))
 
 
@@ -284,16 +303,19 @@ def convert(
     else:
         written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
-        typer.echo(f"drivelint: {note}", err=True)
-    typer.echo(converter.summary_text(written))
+        typer.echo(f"drivelint: {inert_line(note)}", err=True)
+    typer.echo(inert(converter.summary_text(written)))
 
 
 app.command()(results.report)
 app.command()(results.explain)
 app.command("diff")(results.diff)
+app.command()(packs.pack)
+app.command()(packs.verify)
 app.command()(audits.audit)
 app.command()(audits.merge)
 app.command()(audits.sql)
+app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 
 
@@ -301,11 +323,11 @@ def main() -> NoReturn:
     """Run the command line; every mistake of a user ends in one line on stderr and its exit code."""
     from typer.exceptions import TyperException
 
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
+    streams.prepare()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: what is judged is kept
     try:
         code = app(standalone_mode=False, default_map=_settings())
+        sys.stdout.flush()
     except DriveLintError as error:
         _fail(str(error), error.exit_code)
     except TyperException as error:
@@ -314,9 +336,10 @@ def main() -> NoReturn:
         _fail(f"{words} (see drivelint {_asked(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
+    except streams.ReaderLeftError:
+        code = streams.READER_LEFT
     if code == ExitCode.INTERRUPTED:
-        print("drivelint: error: interrupted", file=sys.stderr, flush=True)
-        sys.stdout.flush()  # a partial result was printed
+        streams.say("drivelint: error: interrupted")
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
 
@@ -351,5 +374,5 @@ def _settings() -> dict[str, Any]:
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:
-    print(f"drivelint: error: {' '.join(message.split())}", file=sys.stderr)
+    streams.say(f"drivelint: error: {inert_line(message)}")
     sys.exit(int(code))

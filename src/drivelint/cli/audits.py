@@ -10,6 +10,7 @@ from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
+from drivelint.phrases import inert
 
 
 @options.takes_drive_input
@@ -73,6 +74,9 @@ def audit(
     retry_errors: Annotated[
         bool, option("--retry-errors", None, "Judge drives again that could not be judged before.")
     ] = False,
+    prune: Annotated[
+        bool, option("--prune", None, "Take out results of logs that are not among the sources any more.")
+    ] = False,
     cluster: Annotated[
         str | None,
         option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
@@ -112,22 +116,33 @@ def audit(
         claim=claim,
         lease_s=lease,
         retry_errors=retry_errors,
+        prune=prune,
         cluster=cluster,
     )
     with bar(quiet) as progress:
-        counted = run_interruptible(lambda: audited(request, progress))
-    typer.echo(summary_text(counted, out))
-    raise typer.Exit(int(counted.exit_code(fail_on, strict=strict)))
+        try:
+            counted = run_interruptible(lambda: audited(request, progress))
+        except KeyboardInterrupt:
+            typer.echo(f"drivelint: what was judged stays in {out}: the same command goes on with the rest", err=True)
+            raise
+    code = counted.exit_code(fail_on, strict=strict)
+    typer.echo(inert(summary_text(counted, out, code)))
+    raise typer.Exit(int(code))
 
 
 def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")]) -> None:
-    """Pack the results of audits with --shard or --claim, when all of them have ended."""
+    """Pack the results of audits with --shard or --claim, when all of them have ended.
+
+    Exit codes: 0; 4 where a shard is missing or drives could not be judged; 3 for lossy input. Findings are no matter of it.
+    """
     from drivelint.audit import merge as merged
     from drivelint.audit.text import summary_text
 
     with bar(False) as progress:
         counted = run_interruptible(lambda: merged(dest, progress))
-    typer.echo(summary_text(counted, dest))
+    code = counted.exit_code("never", strict=False)
+    typer.echo(inert(summary_text(counted, dest, code)))
+    raise typer.Exit(int(code))
 
 
 def sql(

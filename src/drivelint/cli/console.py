@@ -6,15 +6,19 @@ import os
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from contextlib import AbstractContextManager
+from drivelint.phrases import inert, plural
 
-    from rich.console import RenderableType
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from contextlib import AbstractContextManager
+    from pathlib import Path
+
+    from rich.console import Console, RenderableType
+    from rich.segment import Segment
 
     from drivelint.report.progress import Progress
 
@@ -34,11 +38,29 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     except KeyboardInterrupt:
         if interrupt is None:
             raise
-        typer.echo("drivelint: interrupted: keeps what is judged; Ctrl-C again leaves at once", err=True)
+        typer.echo("drivelint: interrupted: stops; Ctrl-C again leaves at once, and keeps nothing", err=True)
         while not running.done():
             interrupt()
             wait([running], timeout=0.2)
     return running.result()
+
+
+def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
+    """Tell a person that an interrupted check has no result, and what its folder holds."""
+    why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
+    if out is not None:
+        earlier = (out / "summary.json").is_file()
+        why += (
+            f"; {out} {'is unchanged: it still holds the result of an earlier run' if earlier else 'holds no result'}"
+        )
+    typer.echo(f"drivelint: {why}", err=True)
+
+
+def say_kept(statuses: Sequence[str], out: Path | None) -> None:
+    """Tell a person how much of an interrupted check is kept."""
+    where = "" if out is None else f" in {out}"
+    kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
+    typer.echo(f"drivelint: {kept}", err=True)
 
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
@@ -50,13 +72,23 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
     return bar() if sys.stderr.isatty() else nullcontext(NotePrinter())
 
 
-def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
-    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
+def _inert_console() -> type[Console]:
+    """Return a console on which a log's words cannot steer the terminal; only rich's own styles do."""
     from rich.console import Console
 
+    class InertConsole(Console):
+        def render(self, *args: Any, **options: Any) -> Iterator[Segment]:
+            for segment in super().render(*args, **options):
+                yield segment if segment.control else segment._replace(text=inert(segment.text))
+
+    return InertConsole
+
+
+def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+    """Print for a person on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
     terminal = sys.stdout.isatty()
-    console = Console(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with nullcontext() if terminal else console.capture() as captured:
         console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
     if captured is not None:
-        typer.echo("\n".join(line.rstrip() for line in captured.get().splitlines()))
+        typer.echo("\n".join(inert(line.rstrip()) for line in captured.get().split("\n")).rstrip("\n"))

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import completion, options, values
+from drivelint.cli import completion, fleets, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
+from drivelint.phrases import inert, inert_line
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 
 def report(
-    folder: Annotated[Path, argument("DIR", "What check --out wrote.")],
+    folder: Annotated[Path, argument("DIR", "What check --out or audit --out wrote.")],
     to: Annotated[
         options.ReportFormat,
         option(
@@ -49,14 +50,33 @@ def report(
             "--base-url", "URL", "With markdown: where DIR can be opened, for links to report.html. Default: no links."
         ),
     ] = None,
+    by: Annotated[
+        list[str] | None,
+        option(
+            "--by", "TAG", "Of an audit: rates by a tag of the manifest, or a situation such as weather. Repeatable."
+        ),
+    ] = None,
+    baseline: Annotated[
+        Path | None, option("--baseline", "DEST", "Of an audit: an earlier one, to say what is new since.")
+    ] = None,
 ) -> None:
     """Write a report from a result folder, into it.
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
+    Of an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged.
 
     With --incident, the sheet of one finding, to be filed: when and where, both parties, speeds, who slowed, second by second,
     what each of them did by the same rules, how sure it is, what the recording does not hold. The log is judged again for it.
     """
+    from drivelint.fleet_report.opened import destination, is_audit
+
+    if is_audit(dest := destination(folder)):
+        if incident is not None or pdf or trace is not None or map_ is not None or base_url is not None:
+            raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
+        fleets.report_audit(dest, to, by or (), baseline)
+        return
+    if by or baseline is not None:
+        raise UsageError(f"--by and --baseline are of an audit, and {dest} is none: name the folder of audit --out")
     if incident is not None:
         from drivelint.incident import IncidentRequest, write_incident
 
@@ -81,23 +101,34 @@ def report(
 
 
 def diff(
-    base: Annotated[Path, argument("BASE", "What check --out wrote, earlier.")],
-    new: Annotated[Path, argument("NEW", "What check --out wrote, later.")],
+    base: Annotated[Path, argument("BASE", "What check --out or audit --out wrote, earlier.")],
+    new: Annotated[Path, argument("NEW", "What the same command wrote, later.")],
     format_: Annotated[options.DiffFormat, option("--format", None, "What is printed on stdout.")] = "text",
     fail_on: Annotated[
         options.FailOn | None,
         option("--fail-on", None, "Least severity of a new finding that makes exit code 1. Default: NEW's."),
     ] = None,
+    rows: Annotated[
+        Path | None,
+        option("--rows", "FILE", "Of two audits: every finding of either as Parquet, with what else differs there."),
+    ] = None,
 ) -> None:
-    """Compare two results: new, fixed, changed and unchanged findings.
+    """Compare two results, or two audits: new, fixed, changed and unchanged findings.
 
     What NEW did not judge is not fixed: it is listed apart, with the reason. Findings that NEW's run waived do not gate.
+    Of two audits it also says what else differs (software, rules, parameters, data, map, tool), and which rates do.
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
     """
+    from drivelint.fleet_report.opened import destination, is_audit
     from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
 
+    if is_audit(destination(base)) or is_audit(destination(new)):
+        fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
+        return
+    if rows is not None:
+        raise UsageError("--rows is of two audits: of two checks, --format json has all findings")
     earlier, later = load_result(base), load_result(new)
     _warn_of_partial(base, earlier)
     _warn_of_partial(new, later)
@@ -110,7 +141,7 @@ def diff(
 
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(descriptions.difference_text(found, failing, least, later.gate))
+        typer.echo(inert(descriptions.difference_text(found, failing, least, later.gate)))
     raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
 
 
@@ -186,4 +217,4 @@ def _warn_of_partial(folder: Path, result: Result) -> None:
     if result.interrupted:
         from drivelint.result.model import partial_sentence
 
-        typer.echo(f"drivelint: {folder}: {partial_sentence(result.drives)}", err=True)
+        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)

@@ -14,6 +14,7 @@ from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
+from drivelint.drive.lost_time import lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
 from drivelint.drive.trace import (
@@ -49,7 +50,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
     states, restarts = unknown_at_restarts(recording.states)
     states, repeated = without_duplicates(sorted_states(states))
-    findings = [*recording.findings, *restarts, *repeated]
+    lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
+    findings = [*recording.findings, *lost, *restarts, *repeated]
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)

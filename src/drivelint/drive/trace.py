@@ -151,6 +151,7 @@ class QualityFinding:
     n: int = 1
     t_first_ns: int | None = None
     actor_id: str | None = None
+    t_last_ns: int | None = None
 
     @classmethod
     def unusable_map(cls, message: str) -> QualityFinding:
@@ -237,13 +238,22 @@ class States:
         return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only)]
 
 
+class LostTime(NamedTuple):
+    """Messages of log times between the two may be missing (None: from the log's beginning, or until its end), and why."""
+
+    since_ns: int | None
+    until_ns: int | None
+    what: str
+
+
 @dataclass
 class Recording:
     """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
 
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
-    the log's or mapping's egos, `conditions` what it says of the drive (condition -> word), `strict_units` is set where a
-    mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are those of `Trace`.
+    the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
+    `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
+    those of `Trace`.
     """
 
     format: str
@@ -254,6 +264,7 @@ class Recording:
     conditions: dict[str, str] = field(default_factory=dict)
     ego_ids: list[str] = field(default_factory=list)
     findings: list[QualityFinding] = field(default_factory=list)
+    lost: list[LostTime] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     embedded_map: bytes | None = None
     map_offset: tuple[float, float] | None = None

@@ -32,6 +32,11 @@ BATCH_STATES: Final = 400_000  # a batch costs little more than its longest driv
 PAIRS_PER_PART: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 READ_AHEAD: Final = 4
+FIRST_BATCH_DRIVES: Final = 8
+FIRST_BATCH_STATES: Final = 100_000
+"""So small is a run's first batch, so that something is judged soon."""
+BATCH_GROWTH: Final = 3
+"""A batch has no more than so many times what was judged before it."""
 
 
 @dataclass(frozen=True)
@@ -107,13 +112,23 @@ def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive |
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
-    """Cut into batches of at most `BATCH_STATES` states or pairs, a longer drive being a batch of its own."""
+    """Cut into batches of at most `BATCH_STATES` states or pairs, a longer drive being a batch of its own.
+
+    The first is small, and the next ones grow: an interrupted run keeps some of what it did, and a long run has two or three batches more
+    than it needs, each of which costs as much as some twenty short drives.
+    """
     batch: list[Drive | RefusedLog] = []
-    states = 0
+    states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES
+    done_drives = done_states = 0
     for drive in drives:
         n = drive.size if isinstance(drive, Drive) else 0
-        if batch and states + n > BATCH_STATES:
+        if batch and (states + n > min(BATCH_STATES, most_states) or len(batch) >= most_drives):
             yield batch
+            done_drives, done_states = done_drives + len(batch), done_states + states
+            most_drives, most_states = (
+                max(most_drives, BATCH_GROWTH * done_drives),
+                max(most_states, BATCH_GROWTH * done_states),
+            )
             batch, states = [], 0
         batch.append(drive)
         states += n

@@ -4,18 +4,23 @@ Every copy has, drawn once for the whole drive (such errors drift slowly, they d
 for each actor an offset of its position (x and y alike) and one of its clock, which moves it along its velocity;
 and one offset of the map, which is one of all actors together. Normal distributions about nothing.
 
-A draw depends on the log's bytes, the seed, the actor and the copy's number only: a part of a drive has the errors of the whole.
+A draw depends on the seed, the actor's id and the copy's number only. So a part of a drive has the errors of the whole, and the same
+drive in another file, under another name, has the same errors.
+
+Copies come in blocks. In a block, the errors of one kind are one from each of as many equally probable ranges (a Latin hypercube sample):
+small and large errors occur as often as they should, so that fewer copies tell how many of all would keep a finding.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from hashlib import sha256
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
+from scipy.special import ndtri
 
 from drivelint.arrays import floats, with_columns
 
@@ -25,6 +30,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
+
+BLOCK: Final = 20
+"""Copies among which each error is drawn once from each of as many ranges."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +44,11 @@ class MeasurementErrors:
     map_m: float = 0.1
     samples: int | None = None
     seed: int = 0
+
+    @property
+    def words(self) -> str:
+        """Their standard deviations."""
+        return f"{self.position_m:g} m in every actor's position, {self.time_s:g} s in its clock, {self.map_m:g} m in the map's place"
 
 
 def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> tuple[list[str], Drive]:
@@ -56,9 +69,9 @@ def _repeated(rows: pa.Table, ids: Sequence[str]) -> pa.Table:
 def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> Floats:
     """Return (copies, states, 3): the errors of x, y (m) and clock (s) of each state."""
     tables = drive.trace.tables
-    content, actors = tables["data_log"]["sha256"][0].as_py(), pc.unique(tables["actor_state"]["actor_id"])
-    of_actor = np.stack([_standard(numbers, errors.seed, content, name) for name in actors.to_pylist()], axis=1)
-    of_map = _standard(numbers, errors.seed, content, None)[:, None, :]
+    actors = pc.unique(tables["actor_state"]["actor_id"])
+    of_actor = np.stack([_standard(numbers, errors.seed, name) for name in actors.to_pylist()], axis=1)
+    of_map = _standard(numbers, errors.seed, None)[:, None, :]
     own = np.array([errors.position_m, errors.position_m, errors.time_s])
     common = np.array([errors.map_m, errors.map_m, 0.0])
     actor = pc.index_in(tables["actor_state"]["actor_id"], value_set=actors).to_numpy(zero_copy_only=False)
@@ -66,12 +79,14 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
     return found
 
 
-def _standard(numbers: Sequence[int], seed: int, content: str, actor: str | None) -> Floats:
+def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     """Return (copies, 3) draws of the standard normal distribution; zeros for the copy 0. `actor` None: the map."""
-    key = sha256("\0".join([str(seed), content, "map" if actor is None else f"actor {actor}"]).encode()).digest()
+    key = sha256("\0".join([str(seed), "map" if actor is None else f"actor {actor}"]).encode()).digest()
     rng = np.random.Generator(np.random.PCG64(int.from_bytes(key)))
-    drawn = rng.standard_normal((max(numbers), 3))
-    return np.concatenate([np.zeros((1, 3)), drawn])[list(numbers)]
+    ranges = np.tile(np.arange(BLOCK)[:, None], (1, 3))
+    blocks = [(rng.permuted(ranges, axis=0) + rng.random((BLOCK, 3))) / BLOCK for _ in range(-(-max(numbers) // BLOCK))]
+    drawn: Floats = np.concatenate([np.zeros((1, 3)), *map(ndtri, blocks)])
+    return drawn[list(numbers)]
 
 
 def _moved(states: pa.Table, drawn: Floats) -> dict[str, Floats]:

@@ -18,6 +18,10 @@ class InterruptedRunError(Exception):
     """A batch was given up because the run was interrupted."""
 
 
+class NothingJudgedError(KeyboardInterrupt):
+    """A run was interrupted before any drive was judged: there is no result."""
+
+
 class Interruption:
     """Whether a run was interrupted. It ends the statements of a batch that is being judged, and no other ones."""
 

@@ -5,7 +5,9 @@ A drive that runs out of memory is judged again with fewer egos at once, until e
 
 from __future__ import annotations
 
+import re
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 import duckdb
@@ -55,6 +57,16 @@ class Memory:
         self._note(f"{format_bytes(self._limit)} of memory do not do (--memory): the database may take up to {given}")
         return True
 
+    def most_growth(self) -> int | None:
+        """Return by how many bytes the process may grow while a rule runs; None where the system does not tell what is free.
+
+        The database counts what its tables take. Functions on huge values take more than that without being counted.
+        """
+        free = free_bytes()
+        if free is None:
+            return None
+        return min(2 * self._limit, free) if self.limited and self._limit is not None else int(0.8 * free)
+
     def execute(self, sql: str) -> None:
         """Run one statement, with more memory if that is short."""
         self.run_job(lambda con: con.execute(sql))
@@ -77,6 +89,15 @@ def peak_bytes() -> int | None:
         return None
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return most if sys.platform == "darwin" else most * 1024
+
+
+def free_bytes() -> int | None:
+    """Return how many bytes of memory programs can still get; None where the system does not tell."""
+    try:
+        found = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
+    except OSError:  # not Linux
+        return None
+    return int(found[1]) * 1024 if found else None
 
 
 def format_bytes(n_bytes: int) -> str:

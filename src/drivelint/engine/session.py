@@ -19,6 +19,7 @@ from drivelint.engine.memory import Memory
 from drivelint.engine.robustness import Robustness
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
+from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class JudgingSession:
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
     `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
+    `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
     """
 
     def __init__(
@@ -61,6 +63,8 @@ class JudgingSession:
         memory: Memory | None = None,
         interruption: Interruption | None = None,
         errors: MeasurementErrors | None = None,
+        limits: RuleLimits | None = None,
+        limits_of_copies: RuleLimits | None = None,
     ) -> None:
         self._con = con
         self._rules = rules
@@ -69,10 +73,19 @@ class JudgingSession:
         self._tables = {table for rule in rules for table in rule.reads}
         self._memory = memory or Memory(con, None)
         self._interruption = interruption or Interruption()
+        self._limits = limits or RuleLimits()
+        self._limits.memory = self._memory.most_growth
         self._robustness = None
         if errors:
             self._robustness = Robustness(
-                con, rules, params, errors=errors, memory=self._memory, load=self._load, forget=self._forget_copies
+                con,
+                rules,
+                params,
+                errors=errors,
+                memory=self._memory,
+                load=self._load,
+                forget=self._forget_copies,
+                limits=limits_of_copies or RuleLimits(),
             )
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
@@ -100,6 +113,7 @@ class JudgingSession:
     def forget_judged(self) -> None:
         """Judge logs anew that were judged before: the results of these were taken out of the database."""
         self._seen.clear()
+        self._limits.forget()  # what a worker judged before is by chance
 
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, nothing of it stays behind.
@@ -165,7 +179,15 @@ class JudgingSession:
         """Judge the egos that are not skipped in this part."""
         derive(self._con, self._tables, of_the_map=False)
         margins, series = self._margins is not None, bool(self._observers)
-        evaluate(self._con, self._rules, self._params, margins=margins, keep_measure_series=series, may_retry=may_retry)
+        evaluate(
+            self._con,
+            self._rules,
+            self._params,
+            margins=margins,
+            keep_measure_series=series,
+            may_retry=may_retry,
+            limits=self._limits,
+        )
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):

@@ -15,7 +15,7 @@ from drivelint.arrays import floats, with_columns
 from drivelint.engine.copies import crop, renamed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from drivelint.engine.batch import Drive
 
@@ -46,7 +46,8 @@ class Window:
 
     drive: Drive
     ego_id: str
-    numbers: range
+    numbers: Sequence[int]
+    """The copy without errors, and those with errors that are to be judged."""
     from_ns: int
     to_ns: int
     questions: list[Any]
@@ -72,6 +73,12 @@ class Window:
         """Rows of `actor_state` of all copies."""
         return self._part.n_states * len(self.numbers)
 
+    def parts(self, most_states: int) -> Iterator[Window]:
+        """Yield the same window with fewer copies each, so that their states are at most so many, if that can be."""
+        at_once = max(1, most_states // max(1, self._part.n_states) - 1)
+        for start in range(1, len(self.numbers), at_once):
+            yield replace(self, numbers=(0, *self.numbers[start : start + at_once]))
+
     def _near(self) -> set[str]:
         states = self.drive.trace.tables["actor_state"]
         t_ns = states["t_ns"].to_numpy()
@@ -91,7 +98,8 @@ class Window:
 def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence[int]) -> list[Window]:
     """Return the windows in which findings are copied next, those with the first copies first.
 
-    Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on.
+    Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on,
+    each with the copy without errors.
     """
     found: dict[tuple[object, ...], list[Window]] = {}
     for question in sorted(asked, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], _span(each))):
@@ -103,8 +111,8 @@ def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence
                 mine[-1].to_ns = max(mine[-1].to_ns, end)
                 mine[-1].questions.append(question)
             else:
-                mine.append(Window(drives[drive_id], ego_id, numbers, start, end, [question]))
-    return sorted((window for each in found.values() for window in each), key=lambda window: window.numbers.start)
+                mine.append(Window(drives[drive_id], ego_id, (0, *numbers), start, end, [question]))
+    return sorted((window for each in found.values() for window in each), key=lambda window: window.numbers[1])
 
 
 def _parts(numbers: range, goals: Sequence[int]) -> list[range]:

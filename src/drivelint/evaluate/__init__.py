@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import UsageError
 from drivelint.evaluate import temp_tables
 from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
+from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
 
 if TYPE_CHECKING:
@@ -32,12 +33,14 @@ def evaluate(
     margins: bool = False,
     keep_measure_series: bool = False,
     may_retry: bool = False,
+    limits: RuleLimits | None = None,
 ) -> None:
     """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
 
     `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
     -> value.
-    A failing statement costs its rule only. With `may_retry`, running out of memory is no failure of the rule but raised, and the
+    A failing statement costs its rule only, and so does one beyond `limits` (None: there are none).
+    With `may_retry`, running out of memory is no failure of the rule but raised, and the
     tables are then of no use. Errors: `UsageError` for parameters of rules or names that do not exist;
     `duckdb.OutOfMemoryException`.
     """
@@ -48,7 +51,14 @@ def evaluate(
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
-    run = Evaluation(con, bindings, margins=margins, keep_measure_series=keep_measure_series, may_retry=may_retry)
+    run = Evaluation(
+        con,
+        bindings,
+        margins=margins,
+        keep_measure_series=keep_measure_series,
+        may_retry=may_retry,
+        limits=limits or RuleLimits(None),
+    )
     try:
         run.judge()
     finally:

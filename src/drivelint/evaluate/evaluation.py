@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint.evaluate import findings, invariant, reference_points, temp_tables
+from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import rule_statement
 from drivelint.reasons.reason_table import make_reason_table
+from drivelint.resources import folder
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from drivelint.evaluate.limits import Excess
     from drivelint.evaluate.sql_fragments import Binding
 
 LEAST_RULES_FOR_TWO_CONNECTIONS: Final = 16
@@ -35,6 +38,9 @@ class Evaluation:
     margins: bool
     keep_measure_series: bool = False
     may_retry: bool = False
+    limits: RuleLimits = field(default_factory=lambda: RuleLimits(None))
+    alone: bool = True
+    """No rule is judged on a second connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
@@ -44,26 +50,29 @@ class Evaluation:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
+        # what memory the process takes can be laid to a rule only if no other one runs meanwhile
+        shipped = deque(binding for binding in todo if binding.rule.path.is_relative_to(folder("queries")))
         if (
-            len(todo) >= LEAST_RULES_FOR_TWO_CONNECTIONS
+            len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
             and self._count("SELECT count(*) FROM step") < MOST_STEPS_FOR_TWO_CONNECTIONS
         ):
-            self._share(todo)
-        else:
-            self._work(todo)
+            todo = deque(binding for binding in todo if binding not in shipped)
+            self._share(shipped)
+        self._work(todo)
         self._run("blind", "closed", "named", "failed")
         make_reason_table(
             self.con,
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        self._run("verdict", "finding", "margin")
+        self._run("finding", "verdict", "margin")
         if self.keep_measure_series:
             self._run("course")
 
     def _share(self, todo: deque[Binding]) -> None:
         """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
         with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as other:
+            self.alone = False
             helper = replace(self, con=other)
             helped = pool.submit(helper.judge_from_queue, todo)
             try:
@@ -74,6 +83,7 @@ class Evaluation:
             finally:
                 todo.clear()  # whatever came between, the helper stops after its present rule
                 wait([helped])
+                self.alone = True
 
     def judge_from_queue(self, todo: deque[Binding]) -> None:
         """Judge rules from a shared queue; another run collects the outcomes."""
@@ -87,10 +97,17 @@ class Evaluation:
                 binding = todo.popleft()
             except IndexError:
                 return
-            try:
-                self.judge_rule(binding)
-            except duckdb.Error as error:
-                self._blame(binding, error)
+            if (lost := self.limits.lost(binding.rule.id)) is not None:
+                self._record(binding, lost, again=True)
+                continue
+            with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
+                try:
+                    self.judge_rule(binding)
+                except duckdb.Error as error:
+                    failure = error
+                else:
+                    continue
+            self._blame(binding, failure, held.excess)
 
     def prepare(self) -> None:
         """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
@@ -198,18 +215,22 @@ class Evaluation:
         row = self.con.execute(sql).fetchone()
         return int(row[0]) if row else 0
 
-    def _blame(self, binding: Binding, error: duckdb.Error) -> None:
+    def _blame(self, binding: Binding, error: duckdb.Error, excess: Excess | None) -> None:
         """Record this rule as an error for every drive and ego that it was to judge; raise the error if a retry may avoid it."""
-        code, words = "rule_error", str(error).splitlines()[0]
-        if isinstance(error, duckdb.OutOfMemoryException):
+        if excess is not None:
+            self._record(binding, excess)
+        elif isinstance(error, duckdb.OutOfMemoryException):
             if self.may_retry:
                 raise error
-            # the database's message names block sizes that differ from run to run
-            code, words = "out_of_memory", "needs more memory than there is"
-        self.con.execute(
-            "INSERT INTO _error SELECT rule_no, drive_id, ego_id, $code, $reason FROM _todo WHERE rule_no = $no",
-            {"no": binding.no, "code": code, "reason": f"rule {binding.rule.id}: {words}"},
-        )
+            self._record(
+                binding, "out_of_memory"
+            )  # the database's message names block sizes that differ from run to run
+        else:
+            self._record(binding, "rule_error", f"rule {binding.rule.id}: {str(error).splitlines()[0]}")
+
+    def _record(self, binding: Binding, code: str, told: str | None = None, *, again: bool = False) -> None:
+        values = {"no": binding.no, "code": code, "told": told, "again": again, "rule": binding.rule.id}
+        self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.seconds})
 
 
 @dataclass

@@ -26,7 +26,8 @@ def stretches_sql(rule: Rule) -> str:
         follows="k - lag(k) OVER w <= 1" if invariant else "n - lag(n) OVER w = 1",
         order="t_ns, label" if invariant else "t_ns",
         failed=failed,
-        worst_object="object_id" if rule.combine == "each" else "worst.who",
+        worst_object="w.object_id" if rule.combine == "each" else "worst.who",
+        label="label" if invariant else "''",
     )
 
 

@@ -86,15 +86,15 @@ def condition_ctes(rule: Rule) -> str:
     number = f"CASE WHEN isnan({{0}}::DOUBLE) THEN NULL ELSE {exact} END AS {{0}}"
     columns = [
         "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
-        f"{'object_id' if has('object_id') else 'NULL'}::VARCHAR AS object_id",
+        f"{'bounded_text(object_id)' if has('object_id') else 'NULL::VARCHAR'} AS object_id",
         f"{'ref_id' if has('ref_id') else 'NULL'}::INTEGER AS ref_id",
-        f"{'profile' if has('profile') else 'NULL'}::VARCHAR AS profile",
+        f"{'bounded_text(profile)' if has('profile') else 'NULL::VARCHAR'} AS profile",
         f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
         *(number.format(column) if measured else f"NULL::DOUBLE AS {column}" for column in ("observed", "required")),
         *(["holds::BOOLEAN AS holds"] if not measured else []),
         *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
-        f"{'reason_code' if has('reason_code') else 'NULL'}::VARCHAR AS code",
-        f"{'reason' if has('reason') else 'NULL'}::VARCHAR AS reason",
+        f"{'bounded_text(reason_code)' if has('reason_code') else 'NULL::VARCHAR'} AS code",
+        f"{'bounded_text(reason)' if has('reason') else 'NULL::VARCHAR'} AS reason",
     ]  # fmt: skip
     holds, gain, code = "holds", "0.0::DOUBLE", "code"
     if measured:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.drive import conditions
 from drivelint.sql import store
 from drivelint.sql.derivations import with_sources
@@ -45,7 +46,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": "pair" in sources, "of_hidden": "hidden" in sources}
-        rows.append(row | {"of_lanes": "registration" in rule.requires})
+        rows.append(row | {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags})
     return pa.Table.from_pylist(rows)
 
 

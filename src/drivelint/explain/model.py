@@ -58,14 +58,14 @@ class Sensitivity:
     """How often each verdict came out over copies of the drive with random errors.
 
     `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with errors like the recording's; all that is known
-    of them is how many are `fail`. None: these copies were judged with the errors given here.
+    of their verdicts is how many are `fail`. None: these copies were judged with the errors given here.
     """
 
     samples: int
-    seed: int | None
-    position_m: float | None
-    time_s: float | None
-    map_m: float | None
+    seed: int
+    position_m: float
+    time_s: float
+    map_m: float
     counts: dict[str, int]
     from_ns: int | None
     to_ns: int | None

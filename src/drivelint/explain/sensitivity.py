@@ -29,8 +29,8 @@ def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sens
     """Return in how many copies `check` found what it found; None: it judged none, or others are asked for."""
     if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
         return None
-    counts, not_told = {"fail": finding["n_stays"]}, (None, None, None, None)
-    return Sensitivity(finding["n_copies"], *not_told, counts, None, None, certainty(finding))
+    told = asdict(errors) | {"samples": finding["n_copies"], "counts": {"fail": finding["n_stays"]}}
+    return Sensitivity(**told, from_ns=None, to_ns=None, certainty=certainty(finding))
 
 
 def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:

@@ -14,7 +14,7 @@ from drivelint.result.text import number
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from drivelint.result.gate import ComparedFinding, Difference, Gate, NewUnknowns, Waiver
     from drivelint.result.model import Result
@@ -51,12 +51,26 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
+    return f"{difference.counts()['new']} new, {since_baseline(difference)}"
+
+
+def since_baseline(difference: Difference) -> str:
+    """Return what became of the earlier result's findings. What is new is not counted: a waiver may cover it."""
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
+    there = (kept["pass"], kept["not_applicable"])
     margins = [(entry.margin, entry.base_margin) for entry in difference.with_diff_status("changed")]
     worse = sum(now is not None and was is not None and now < was for now, was in margins)
-    text = f"{n['new']} new, {n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
-    text += f"{n['fixed']} fixed ({kept['pass']} now pass, {kept['not_applicable']} now not applicable)"
+    return counts_sentence(n, worse, there)
+
+
+def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
+    """Return diff status -> number of an earlier result's findings as a sentence.
+
+    `worse`: of the changed; `fixed`: those that pass now, and those whose rule does not apply any more.
+    """
+    text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
+    text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
     if n["unknown"] or n["lost"]:
         text += f"; gone but not fixed: {n['unknown']} unknown now, {n['lost']} not looked at"
     return text
@@ -81,11 +95,16 @@ def difference_text(
 
 def exit_summary(failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return the exit code of a difference and its reason, in one line."""
+    return exit_sentence(len(failing), fail_on)
+
+
+def exit_sentence(n_failing: int, fail_on: str) -> str:
+    """Return the exit code for a number of findings that gate and its reason, in one line."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
-    if failing:
-        return f"exit 1: {plural(len(failing), 'new finding')} {what}"
+    if n_failing:
+        return f"exit 1: {plural(n_failing, 'new finding')} {what}"
     return f"exit 0: no new finding {what}"
 
 

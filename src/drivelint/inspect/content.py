@@ -10,7 +10,8 @@ from drivelint.errors import TraceError
 from drivelint.formats.files import CANONICAL_FILES
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import MAGIC, Container
+from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.resume import MAGIC
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
@@ -139,11 +140,11 @@ class _Count:
 
 
 def _channels(path: Path) -> list[Channel]:
-    """Count the messages of every channel, of a bag over all its parts; of a damaged file those before the damage."""
+    """Count the messages of every channel, of a bag over all its parts; of a damaged file those that can be read."""
     counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
         for file in bag.mcap_files(path):
-            container = Container(file)
+            container = Container(file, salvage=True)
             try:
                 for packet in container.packets():
                     count = counts.setdefault(_key(container, packet.channel), _Count(first_ns=packet.log_time_ns))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import pyarrow.compute as pc
+
 from drivelint.phrases import listed, plural
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, off_map_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from collections.abc import Set as AbstractSet
 
     from drivelint.result.model import Result
     from drivelint.result.text import Row
@@ -18,6 +21,8 @@ _ASSUMED: Final = "assumed_motion"
 """Id of the quality note on a log whose mapping assumes values that it does not have."""
 _NAMED: Final = 2
 _MISSING: Final = "missing_"
+_NO_MAP: Final = "missing_map"
+_EGO: Final = ["drive_id", "ego_id"]
 
 
 class InputNote(NamedTuple):
@@ -77,16 +82,35 @@ def _log(drives: Sequence[Row]) -> InputNote:
 
 def _not_judged(result: Result, drives: int) -> InputNote:
     """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
-    rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id"]).to_pylist()
+    rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith(_MISSING)]
     missing = counts.grouped(signals, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
+    egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
     parts = [plural(drives, "drive")] if drives else []
     if order:
-        parts.append(listed([f"{name} ({plural(_n_rules(found), 'rule')})" for name, found in order]))
+        parts.append(
+            listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
+        )
     if others := len(rows) - len(signals):
         parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
+
+
+def _for_egos(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
+    """Return for how many of the egos these verdicts are, or of the drives where each has one; '' where they are for all."""
+    n = len({(row["drive_id"], row["ego_id"]) for row in rows})
+    noun = "ego" if len(egos) > len({drive_id for drive_id, _ in egos}) else "drive"
+    return "" if n == len(egos) else f", {n} of {plural(len(egos), noun)}"
+
+
+def rules_without_map(result: Result) -> int:
+    """Return how many rules are unknown somewhere because there is no map at all."""
+    on_map = pc.is_valid(result.drives["map_name"])
+    if pc.any(on_map).as_py():
+        return 0
+    undecided = counts.undecided(result.verdicts)
+    return len(pc.unique(undecided.filter(pc.equal(undecided["reason_code"], _NO_MAP))["rule_id"]))
 
 
 def signal_name(reason_code: str) -> str:

@@ -12,14 +12,15 @@ from lxml import etree
 from drivelint.gate import descriptions
 from drivelint.report.xml import add, document, replace_non_xml
 from drivelint.result import counts
-from drivelint.result.model import failures_without_finding, gating_unknowns, off_map_reason
-from drivelint.result.text import line, with_count
+from drivelint.result.model import failures_without_finding, gating_gone, gating_unknowns, off_map_reason
+from drivelint.result.text import line, rule_name, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     import pyarrow as pa
 
+    from drivelint.result.gate import ComparedFinding
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -46,14 +47,20 @@ def render(result: Result) -> bytes:
 
     It counts what the exit code counts. A failure is a case of a drive, rule and profile with something that makes exit code 1; an
     error is what makes exit code 2, 3 or 4: a rule in error, an unknown verdict that may not be, a drive that was not judged, one
-    that the map does not fit, a lossy log. Whatever else is unknown, not applicable, or found and does not gate, is skipped with
-    its reasons, or in the system-out of a case that is none of that.
+    that the map does not fit, a lossy log, a finding of the baseline that is gone but not fixed. Whatever else is unknown, not
+    applicable, or found and does not gate, is skipped with its reasons, or in the system-out of a case that is none of that.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases(result)
     totals = dict.fromkeys(("tests", "failures", "errors"), 0)
-    for drive in result.drives.to_pylist():
-        counted = _suite(root, drive["drive_id"], [*_of_drive(drive), *cases.get(drive["drive_id"], ())])
+    suites = [
+        (drive["drive_id"], [*_of_drive(drive), *cases.get(drive["drive_id"], ())])
+        for drive in result.drives.to_pylist()
+    ]
+    if gone := gating_gone(result):
+        suites.append(("baseline", list(map(_gone, gone))))
+    for name, mine in suites:
+        counted = _suite(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
@@ -68,6 +75,14 @@ def _of_drive(drive: Row) -> Iterator[Case]:
         yield Case("the log is whole", "error", "lossy", ["parts of the log were lost"])
     if (reason := off_map_reason(drive)) is not None:
         yield Case("the map fits the drive", "error", "map", [reason])
+
+
+def _gone(entry: ComparedFinding) -> Case:
+    """Return the test case of a finding of the baseline that is gone and not known to be fixed."""
+    name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
+    return Case(
+        f"{name} of {entry.drive_id}", "error", entry.standing, [f"gone, not fixed: {descriptions.finding_line(entry)}"]
+    )
 
 
 class _Lines(NamedTuple):

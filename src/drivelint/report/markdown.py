@@ -12,6 +12,8 @@ import pyarrow.compute as pc
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.html.anchors import anchor
+from drivelint.report.inputs import input_notes
+from drivelint.report.outcome import headline
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status
@@ -47,12 +49,12 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         (row, descriptions.excuse(result, row, rules.get(row["rule_id"]))) for row in result.findings.to_pylist()
     ]
     findings.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
-    marks = {0: "passed", 1: "failed", 2: "a rule could not be run", 130: "interrupted"}
     target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # it cannot end early
     parts = _parts(
         "report.md.j2",
         outcome=end,
-        mark=marks.get(int(end.code), "not everything could be judged"),
+        headline=headline(result),
+        inputs=input_notes(result),
         packs=counts.verdicts_by_pack(result.rules, result.verdicts),
         gate=gate,
         stopping=[item for item in findings if not item[1]],
@@ -88,7 +90,8 @@ def _parts(template: str, **values: Any) -> list[str]:
         "escaped": escaped,
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,
-        "headline": descriptions.headline,
+        "difference_headline": descriptions.headline,
+        "since_baseline": descriptions.since_baseline,
         "short": _short,
         "utc_at": utc_at,
     }

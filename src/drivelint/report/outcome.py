@@ -1,16 +1,24 @@
-"""The one word that a run's result comes to, for every report that a person reads."""
+"""The word and the sentence that a run's result comes to, the same in every report that a person reads."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
+from drivelint.phrases import plural
+from drivelint.report.inputs import rules_without_map
+from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
-from drivelint.result.model import exit_status
+from drivelint.result.certainty import doubt
+from drivelint.result.model import exit_status, gating_findings
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
+    from drivelint.result.gate import Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -22,20 +30,160 @@ LABELS: Final = {
     ExitCode.NOT_JUDGED: "NOT JUDGED",
     ExitCode.INTERRUPTED: "PARTIAL",
 }
+_MOSTLY: Final = "MOSTLY UNKNOWN"
+LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
+"""Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
 
 
-def outcome_label(result: Result, n_findings: int) -> str:
-    """Return the word. Findings that do not gate are no pass, nor is a run that decided nothing.
+class Part(NamedTuple):
+    """A part of the sentence; `kind`: contact, possible contact, warning, or ''."""
 
-    `n_findings`: findings that a baseline or a waiver does not let through.
-    """
-    code, decided = exit_status(result).code, counts.total(result.verdicts)
-    if code == ExitCode.OK and (n_findings or not decided["pass"] + decided["fail"]):
-        return "FINDINGS" if n_findings else "UNKNOWN"
-    return LABELS.get(code, "?")
+    words: str
+    kind: str = ""
+
+
+class Headline(NamedTuple):
+    """What a run comes to. `label`: the word; `kind`: fail, unknown or pass; `parts`: the sentence."""
+
+    label: str
+    kind: str
+    parts: tuple[Part, ...]
+
+    @property
+    def sentence(self) -> str:
+        """The sentence, without a full stop."""
+        return "; ".join(part.words for part in self.parts)
+
+
+class RuleCounts(NamedTuple):
+    """How many rules were judged somewhere, of these not everywhere, how many could be judged nowhere, and how many never applied."""
+
+    judged: int
+    partly: int
+    never: int
+    idle: int
+
+
+def headline(result: Result) -> Headline:
+    """Return what a run comes to. A finding is counted once: as new, or by why a gate lets it through."""
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+    rows = result.findings.select(["finding_id", "severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist()
+    left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
+    label = _label(result, bool(left))
+    told = counts.total(result.verdicts)
+    whole = not told["unknown"] + told["error"] and not result.interrupted
+    whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
+    kind = "pass" if label == LABELS[ExitCode.OK] and whole and not rows else "unknown"
+    if not rows:
+        parts = [Part(_without_findings(result, told, label, whole=whole))]
+    else:
+        parts = [Part(_findings(result, rows)), *_contacts(result, rows, rules)]
+        doubtful = sum(bool(doubt(row)) for row in rows)
+        if doubtful and (result.gate is None or result.gate.confidence is None):
+            some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
+            parts.append(Part(f"{some}only possible"))
+    if n := rules_without_map(result):
+        need = "1 rule needs" if n == 1 else f"{n} rules need"
+        checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
+        missing = "the log's own map cannot be used" if OWN_MAP_UNUSABLE in checks else "no map was given"
+        parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
+    return Headline(label, "fail" if left else kind, tuple(parts))
+
+
+def standing(gate: Gate | None, finding_id: str) -> str:
+    """Return how a finding stands: see `Gate.standing`; '' without a gate."""
+    return "" if gate is None else gate.standing(finding_id)
 
 
 def by_severity(rows: Iterable[Row]) -> str:
     """Return how many findings there are of each severity; '' for none."""
     found = [row["severity"] for row in rows]
     return ", ".join(f"{found.count(severity)} {severity}" for severity in counts.SEVERITIES if severity in found)
+
+
+def rule_counts(result: Result) -> RuleCounts:
+    """Return how many rules were judged."""
+    by_rule = counts.verdicts_by(result.verdicts, "rule_id")
+    rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
+    judged = [n for n in rules if n["pass"] + n["fail"]]
+    never = sum(not n["pass"] + n["fail"] and bool(n["unknown"] + n["error"]) for n in rules)
+    partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
+    return RuleCounts(len(judged), partly, never, len(rules) - len(judged) - never)
+
+
+def _label(result: Result, has_findings: bool) -> str:
+    """Return the word. Findings that do not gate are no pass, nor is a run that decided nothing, or less than it left open."""
+    code, told = exit_status(result).code, counts.total(result.verdicts)
+    if code != ExitCode.OK:
+        return LABELS.get(code, "?")
+    if has_findings:
+        return "FINDINGS"
+    if not told["pass"] + told["fail"]:
+        return "UNKNOWN"
+    return _MOSTLY if _is_mostly_open(result) else LABELS[code]
+
+
+def _is_mostly_open(result: Result) -> bool:
+    """Whether more rules are undecided than decided, counted for each drive and ego where they may apply."""
+    rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
+    where = counts.grouped(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
+    said = [{row["verdict"] for row in mine} for mine in where.values()]
+    decided = sum(bool(each & {"pass", "fail"}) for each in said)
+    return sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said) > decided
+
+
+def _without_findings(result: Result, told: Mapping[str, int], label: str, *, whole: bool) -> str:
+    judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
+    if not judged or not result.verdicts.num_rows:
+        return "nothing was judged"
+    if not told["pass"] + told["fail"] and told["unknown"] + told["error"]:
+        return "no findings, as nothing could be decided"
+    if label == _MOSTLY:
+        return "no findings, but most could not be judged"
+    return "no findings" if whole else "no findings, as far as it could be judged"
+
+
+def _findings(result: Result, rows: Sequence[Row]) -> str:
+    """Return how many findings there are, and, with a gate, how they stand."""
+    where = f" in {len({row['drive_id'] for row in rows})} of {plural(result.drives.num_rows, 'drive')}"
+    gate = result.gate
+    if gate is None:
+        return f"{by_severity(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
+    groups = counts.grouped(rows, lambda row: gate.standing(row["finding_id"]))
+    said = []
+    for name, mine in groups.items():
+        if name not in LET_THROUGH:
+            n, gating = len(mine), gating_findings(result).num_rows
+            some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
+            label = {"new": "new", "open": "not waived" if gate.waivers else "not let through"}[name]
+            said.append(f"{n} {label} ({by_severity(mine)}{some})")
+    said += [f"{len(groups[name])} {words}" for name, words in LET_THROUGH.items() if name in groups]
+    if gate.baseline is not None and "new" not in groups:
+        return f"no new finding; {', '.join(said)}{where}"
+    return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
+
+
+def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:
+    """Return in how many drives the ego touched something, or may have; a contact that is known is one all the same."""
+    contacts = [row for row in rows if is_contact(row, rules)]
+    touched = {row["drive_id"] for row in contacts if not doubt(row)}
+    sure = [row for row in contacts if row["drive_id"] in touched]
+    maybe = [row for row in contacts if row["drive_id"] not in touched]
+    parts = []
+    for words, mine in (("CONTACT", sure), ("possible contact", maybe)):
+        if mine:
+            n = plural(len({row["drive_id"] for row in mine}), "drive")
+            parts.append(Part(f"{words} in {n}{_let_through(result.gate, mine)}", words.lower()))
+    return parts
+
+
+def _let_through(gate: Gate | None, contacts: Sequence[Row]) -> str:
+    """Return, in brackets, in how many of the drives a contact is new, or why it is let through; '' where it is new in all."""
+    if gate is None:
+        return ""
+    new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH}
+    if new:
+        label = "new" if gate.baseline is not None else "not let through"
+        return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
+    why = {gate.standing(row["finding_id"]) for row in contacts}
+    return f" ({' or '.join(words for name, words in LET_THROUGH.items() if name in why)})"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
+
+from drivelint.phrases import inert_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,8 +23,14 @@ class Progress:
     def advance(self, n: int = 1) -> None:
         """Report `n` more units of the current stage done."""
 
+    def doing(self, what: str) -> None:
+        """Say what is done within the stage; its units stay as they are."""
+
     def note(self, text: str) -> None:
         """Print a line for a person who waits."""
+
+    def leave(self) -> None:
+        """Leave the terminal as it was, before another program takes over."""
 
 
 class Silent(Progress):
@@ -34,7 +42,8 @@ class NotePrinter(Silent):
 
     def note(self, text: str) -> None:
         """Print the note."""
-        print(f"drivelint: {text}", file=sys.stderr, flush=True)
+        with suppress(OSError):  # nobody may listen any more
+            print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
 
 
 class Bar(Progress):
@@ -52,9 +61,17 @@ class Bar(Progress):
         """Move the bar by `n` units."""
         self._progress.advance(self._task, n)
 
+    def doing(self, what: str) -> None:
+        """Show it beside the bar."""
+        self._progress.update(self._task, description=what)
+
     def note(self, text: str) -> None:
         """Print a line above the bar."""
-        self._progress.console.print(text, markup=False, highlight=False)
+        self._progress.console.print(inert_line(text), markup=False, highlight=False)
+
+    def leave(self) -> None:
+        """Take the bar away."""
+        self._progress.stop()
 
 
 @contextmanager

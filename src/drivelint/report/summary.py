@@ -45,6 +45,7 @@ def content(result: Result) -> dict[str, Any]:
         "strict": result.strict,
         "required": list(result.required),
         "interrupted": result.interrupted,
+        "notes": list(result.notes),
         "gate": None if result.gate is None else descriptions.gate_counts(result.gate),
         "verdicts": counts.total(result.verdicts),
         "near_misses": near.num_rows,

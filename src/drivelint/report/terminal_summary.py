@@ -15,12 +15,12 @@ from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import LABELS, by_severity, outcome_label
+from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
 from drivelint.report.worst_first import is_contact, worst_first
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
-from drivelint.result.text import number, seconds
+from drivelint.result.text import closing, number, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -42,19 +42,22 @@ _STYLE_OF: Final = {
     "ERROR": "bold magenta",
 }
 _CAREFUL: Final = "bold yellow"
+_STYLE_OF_PART: Final = {"contact": "bold red", "possible contact": "red", "warning": "yellow"}
 
 
 def render(result: Result, out: str | None, width: int = 120) -> Group:
     """Return the head, the worst of each drive, the broken rules, what is unknown, map and data, the exit code and what to do next.
 
-    Findings that a gate lets through are counted, not listed.
+    Findings that a gate lets through are counted, not listed; of a drive that has no others the worst of them is shown.
     """
-    rules, found = _rules(result), worst_gating(result)
-    drives = _drives(result, found, rules, width)
-    parts: list[RenderableType] = [_head(result), Text(), _verdict(result, found, rules), Text(), drives, Text()]
+    rules = _rules(result)
+    every: list[Row] = worst_first(result.findings, rules).to_pylist()
+    found = [row for row in every if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
+    drives = _drives(result, found, every, rules, width)
+    parts: list[RenderableType] = [_head(result), Text(), _verdict(result), Text(), drives, Text()]
     if found:
         parts += [_broken(found), Text()]
-    return Group(*parts, *_lines(result), Text(), *_end(result, found, out))
+    return Group(*parts, *_lines(result), Text(), *_end(result, found or every, out))
 
 
 def _head(result: Result) -> Text:
@@ -78,34 +81,21 @@ def worst_gating(result: Result) -> list[Row]:
 
 def verdict_line(result: Result) -> str:
     """Return the run's verdict, as it stands under the head, as plain text with single spaces."""
-    return " ".join(_verdict(result, worst_gating(result), _rules(result)).plain.split())
+    return " ".join(_verdict(result).plain.split())
 
 
 def _rules(result: Result) -> dict[str, Any]:
     return {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
 
-def _verdict(result: Result, found: list[Row], rules: dict[str, Any]) -> Text:
-    """Return the run's verdict with the number of findings by severity, and in how many drives the ego touched something, or may have."""
-    label = outcome_label(result, len(found))
-    text = Text(f"{label}  ", _STYLE_OF.get(label, _CAREFUL))
-    new = "new " if result.gate is not None and result.gate.baseline is not None else ""
-    in_drives = len({row["drive_id"] for row in found})
-    where = f" in {in_drives} of {plural(result.drives.num_rows, 'drive')}" if found else ""
-    text.append(f"{by_severity(found) or 'no'} {new}{'finding' if len(found) == 1 else 'findings'}{where}", "default")
-    if (ended := exit_status(result)).code == ExitCode.NOT_JUDGED:
-        text.append(f"; {ended.why}", "default")  # no findings, but not because nothing was wrong
-    contacts = [row for row in found if is_contact(row, rules)]
-    touched = {row["drive_id"] for row in contacts if not doubt(row)}
-    if touched:
-        text.append(f"; CONTACT in {len(touched)}", "bold red")
-    if maybe := {row["drive_id"] for row in contacts} - touched:
-        text.append(f"; possible contact in {len(maybe)}", "red")
-    if doubtful := sum(bool(doubt(row)) for row in found):
-        text.append(f"; {doubtful} only possible", "default")
-    if result.gate is not None and (through := result.findings.num_rows - len(found)):
-        unless = "known, waived or only possible" if result.gate.confidence is not None else "known or waived"
-        text.append(f"; {through} {unless}", "default")
+def _verdict(result: Result) -> Text:
+    """Return the run's word and its sentence; also why nothing was judged, as there are no findings then, but not because all is well."""
+    told, ended = headline(result), exit_status(result)
+    text = Text(f"{told.label}  ", _STYLE_OF.get(told.label, _CAREFUL))
+    for n, part in enumerate(told.parts):
+        text.append(f"{'; ' if n else ''}", "default").append(part.words, _STYLE_OF_PART.get(part.kind, "default"))
+    if ended.code == ExitCode.NOT_JUDGED:
+        text.append(f"; {ended.why}", "default")
     return text
 
 
@@ -118,9 +108,13 @@ def _table(names: Iterable[str], most: Mapping[str, int]) -> Table:
     return table
 
 
-def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int) -> Table:
-    """Return one row a drive, the worst first: its worst finding, and its findings by severity."""
+def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str, Any], width: int) -> Table:
+    """Return one row a drive, the worst first: its worst finding, and its findings by severity.
+
+    `every`: with those that a gate lets through; of a drive that has no others the worst of them is named.
+    """
     of_drive = counts.grouped(found, lambda row: row["drive_id"])
+    let_through = counts.grouped(every, lambda row: row["drive_id"])
     unknown = counts.verdicts_by(result.verdicts, "drive_id")
     starts = result.start_times
 
@@ -139,7 +133,12 @@ def _drives(result: Result, found: list[Row], rules: dict[str, Any], width: int)
         if drive["status"] != "judged":
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
-        worst = _worst(mine[0], rules, starts[name]) if mine else _without_finding(drive, unknown[name])
+        if mine:
+            worst = _worst(mine[0], rules, starts[name])
+        elif name in let_through:
+            worst = _known(result, let_through[name][0], rules, starts[name])
+        else:
+            worst = _without_finding(drive, unknown[name])
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         table.add_row(
@@ -156,6 +155,14 @@ def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
     return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
 
 
+def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
+    """Return a finding that a gate lets through, and why."""
+    how = standing(result.gate, row["finding_id"])
+    said = _worst(row, rules, start_ns)
+    # one that is only possible says so itself
+    return said if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), said)
+
+
 def _cell(n: int, style: str) -> Text:
     return Text(str(n), style) if n else Text("·", "dim")
 
@@ -163,20 +170,21 @@ def _cell(n: int, style: str) -> Text:
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end.
 
-    A contact is told by whom the ego met and how fast they came nearer.
+    A contact is told by whom the ego met and how fast they came nearer just before.
     """
     contact = is_contact(row, rules)
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
     if contact and row["closing_mps"] is not None:
-        parts = [*who, f"closing at {number(row['closing_mps'], 'm/s')}"]
+        parts = [*who, closing(row["closing_mps"])]
         who = []
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
         limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
         parts.append(f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{profile}")
     if not contact:
-        parts.append(rules[row["rule_id"]]["title"])
+        # a title says what is so when the rule is kept: alone it would say the opposite
+        parts.append(rules[row["rule_id"]]["title"] if parts else f"not kept: {rules[row['rule_id']]['title']}")
     parts += who
     when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
     what = "possible contact " if doubt(row) else "CONTACT "
@@ -202,14 +210,11 @@ def _broken(found: list[Row]) -> Table:
 
 def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
-    by_rule = counts.verdicts_by(result.verdicts, "rule_id")
-    rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
-    judged = sum(bool(n["pass"] + n["fail"]) for n in rules)
-    applied = sum(bool(sum(n.values()) - n["not_applicable"]) for n in rules)
-    said = [f"{judged} judged", f"{applied - judged} never judgeable" if applied > judged else ""]
-    said.append(f"{len(rules) - applied} never applied" if len(rules) > applied else "")
+    n = rule_counts(result)
+    said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
+    said.append(f"{n.idle} never applied" if n.idle else "")
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
-    first = f"{plural(len(rules), 'rule')}: {', '.join(part for part in said if part)}"
+    first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
     if near:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
@@ -253,10 +258,12 @@ def _inputs(result: Result) -> Text:
 def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
     end = exit_status(result)
     style = _STYLE_OF.get(LABELS.get(end.code, ""), _CAREFUL)
-    lines = [Text(f"exit {int(end.code)}: {end.why}", style)]
     gate = result.gate
+    alone = "" if gate is not None and gate.baseline is not None else " (no baseline)"
+    lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
-        lines.append(Text(f"baseline {descriptions.headline(gate.baseline)}"))
+        said = descriptions.since_baseline(gate.baseline)
+        lines.append(Text(f"baseline of its findings {said}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"]:

@@ -1,4 +1,4 @@
-"""The order in which reports show findings: severity, contacts first, the least margin, then the time."""
+"""The order in which reports show findings: severity, contacts first, sure before possible, the least margin, then the time."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.catalogue.header import CONTACT
+from drivelint.result.certainty import POSSIBLE, SURE, certainty
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
@@ -14,10 +16,9 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _ORDER: Final = (
-    "severity_no", "no_contact", "margin_or_0", "t_worst_ns", "drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence",
+    "severity_no", "no_contact", "sureness", "margin_or_0",
+    "t_worst_ns", "drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence",
 )  # fmt: skip
 
 
@@ -27,12 +28,24 @@ def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
     keys = {
         "severity_no": pc.index_in(rows["severity"], value_set=pa.array(SEVERITIES)),
         "no_contact": pc.cast(pc.invert(pc.is_in(rows["rule_id"], value_set=contacts)), pa.int8()),
+        "sureness": pa.array(map(sureness, _copies(rows)), pa.int8()),
         "margin_or_0": pc.fill_null(rows["margin"], 0.0),
     }
     keyed = rows
     for name, values in keys.items():
         keyed = keyed.append_column(name, values)
     return keyed.sort_by([(name, "ascending") for name in _ORDER]).drop_columns(list(keys))
+
+
+def sureness(row: Row) -> int:
+    """Return 0 for a sure finding, 1 where no copies were judged (as of every verdict), 2 for one that is only possible."""
+    said = None if row.get("n_copies") is None else certainty(row)
+    return {SURE: 0, None: 1, POSSIBLE: 2}[said]
+
+
+def _copies(rows: pa.Table) -> list[Row]:
+    told = rows.select([name for name in ("n_copies", "n_stays") if name in rows.column_names])
+    return told.to_pylist() if told.num_columns else [{}] * rows.num_rows
 
 
 def is_contact(row: Row, rules: Mapping[str, Row]) -> bool:

@@ -12,7 +12,7 @@ import pyarrow as pa
 import shapely
 
 from drivelint.reasons.reason_table import make_reason_table
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     import duckdb
     from numpy.typing import NDArray
+
+    from drivelint.road.map_reader import MapTables
 
 _KEYS: Final = {
     "scenes": "drive_id, ego_id, t_ns",
@@ -104,14 +106,29 @@ def _rings(edges: pa.Table) -> pa.Table:
 def _lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
     """Add the shapes of lanes near scenes that are not in `lane_shape` yet."""
     con.execute(statement("evidence/near_lane"))
+    store.insert(con, "lane_shape", _shapes_of_near(con))
+
+
+def lanes_of_map(environment: MapTables) -> pa.Table:
+    """Return the table `lane_shape` of every lane of a map, totally ordered."""
+    with store.workspace(None) as con:
+        for table in ("lanelet", "lane_boundary", "lane_point"):
+            store.insert(con, table, environment.tables[table])
+        con.execute("CREATE TEMP TABLE _near AS SELECT environment_id, lanelet_id FROM lanelet")
+        return conform(_shapes_of_near(con), "lane_shape")
+
+
+def _shapes_of_near(con: duckdb.DuckDBPyConnection) -> pa.Table:
+    """Return the shapes of the lanes of `_near`."""
     lanes = con.execute(statement("evidence/lane")).to_arrow_table()
-    if lanes.num_rows:
-        points = con.execute(statement("evidence/lane_point")).fetchnumpy()
-        for side in ("left", "right"):
-            bounds = _simplified(points[f"{side}_x_m"], points[f"{side}_y_m"], points["lane"].astype(np.intp))
-            for axis, values in zip("xy", _coordinates(bounds[:, None], lanes.num_rows), strict=True):
-                lanes = lanes.append_column(f"{side}_{axis}_m", values)
-        store.insert(con, "lane_shape", lanes)
+    if not lanes.num_rows:
+        return empty_table("lane_shape")
+    points = con.execute(statement("evidence/lane_point")).fetchnumpy()
+    for side in ("left", "right"):
+        bounds = _simplified(points[f"{side}_x_m"], points[f"{side}_y_m"], points["lane"].astype(np.intp))
+        for axis, values in zip("xy", _coordinates(bounds[:, None], lanes.num_rows), strict=True):
+            lanes = lanes.append_column(f"{side}_{axis}_m", values)
+    return lanes
 
 
 def _simplified(x_m: Any, y_m: Any, line: NDArray[np.intp]) -> NDArray[np.object_]:

@@ -152,7 +152,17 @@ class Gate:
 
     def is_gating(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is neither waived nor in the baseline nor only possible."""
-        return finding_id not in self.waived and not self.in_baseline(finding_id) and not self.is_possible(finding_id)
+        return self.standing(finding_id) in {"new", "open"}
+
+    def standing(self, finding_id: str) -> str:
+        """Return the one standing by which a finding is counted: waived, known, possible, or else new; open without a baseline."""
+        if finding_id in self.waived:
+            return "waived"
+        if self.in_baseline(finding_id):
+            return "known"
+        if self.is_possible(finding_id):
+            return "possible"
+        return "open" if self.baseline is None else "new"
 
     def is_possible(self, finding_id: str) -> bool:
         """Return whether too few of a finding's copies keep it for the asked confidence."""

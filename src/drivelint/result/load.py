@@ -38,6 +38,7 @@ def load_result(folder: Path) -> Result:
             strict=summary["strict"],
             required=tuple(summary.get("required", ())),  # older results say neither
             interrupted=summary.get("interrupted", False),
+            notes=tuple(summary.get("notes", ())),
             gate=gate,
             folder=folder,
         )
@@ -52,6 +53,11 @@ def _summary(folder: Path) -> dict[str, Any]:
         raise UsageError(
             f"{folder}: no result of drivelint check: summary.json {_why(error)}: name the folder that check --out wrote"
         ) from error
+    if isinstance(found, dict) and "digest" in found and (folder / "audit.json").is_file():
+        raise UsageError(
+            f"{folder}: this is an audit: give the drive's log to drivelint check with --out, and name that folder; "
+            "its findings have the same ids"
+        )
     if not isinstance(found, dict) or not {"fail_on", "strict"} <= found.keys():
         raise UsageError(f"{folder}: no result of drivelint check: summary.json is of another program")
     return found

@@ -14,10 +14,10 @@ from drivelint.result.counts import SEVERITIES
 from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from drivelint.result.gate import Gate
+    from drivelint.result.gate import ComparedFinding, Gate
     from drivelint.result.request import RunRequest
     from drivelint.result.text import Row
 
@@ -42,7 +42,7 @@ class Result:
     `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
     `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
-    `folder`: where its files lie or will lie, or None.
+    `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -65,6 +65,7 @@ class Result:
     gate: Gate | None = None
     asked: RunRequest | None = None
     folder: Path | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name, table in TABLE_OF_FILE.items():
@@ -106,6 +107,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
+    if gone := gating_gone(result):
+        yield ExitStatus(ExitCode.NOT_JUDGED, _gone_sentence(result, gone))
     if (unknown := gating_unknowns(result)).num_rows:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
     if result.lossy:
@@ -132,6 +135,13 @@ def gating_findings(result: Result) -> pa.Table:
     if (gate := result.gate) is None:
         return rows
     return rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
+
+
+def gating_gone(result: Result) -> list[ComparedFinding]:
+    """Return the baseline's findings that make exit code 4: of stable rules, severe enough, gone and yet not known to be fixed."""
+    before = None if result.gate is None else result.gate.baseline
+    gone = [] if before is None else [*before.with_diff_status("unknown"), *before.with_diff_status("lost")]
+    return [entry for entry in gone if entry.stable and entry.severity in _severities(result)]
 
 
 def failures_without_finding(result: Result) -> pa.Table:
@@ -174,9 +184,12 @@ def _of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
 
 def _severe(result: Result, rows: pa.Table) -> pa.Table:
     """Return the rows of stable rules at or above the severity that makes exit code 1."""
-    least = () if result.fail_on == "never" else SEVERITIES[: SEVERITIES.index(result.fail_on) + 1]
     rows = _of_stable_rules(result, rows)
-    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(least, pa.string())))
+    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(_severities(result), pa.string())))
+
+
+def _severities(result: Result) -> tuple[str, ...]:
+    return () if result.fail_on == "never" else SEVERITIES[: SEVERITIES.index(result.fail_on) + 1]
 
 
 def _stopped(result: Result) -> str:
@@ -200,7 +213,17 @@ def _let_through(result: Result) -> str:
     if gate.confidence is not None:
         possible = [n for n in ids if gate.is_possible(n) and gate.waiver(n) is None and not gate.in_baseline(n)]
         through.append(f"{len(possible)} only possible")
-    return f" ({', '.join(through)})" if through else ""
+    return f" (of that severity {', '.join(through)})" if through else ""
+
+
+def _gone_sentence(result: Result, gone: Sequence[ComparedFinding]) -> str:
+    """Return how many of the baseline's severe findings are gone without being fixed, and why."""
+    unknown = sum(entry.standing == "unknown" for entry in gone)
+    why = [f"{unknown} unknown now"] if unknown else []
+    why += [f"{len(gone) - unknown} not looked at"] if len(gone) > unknown else []
+    verb = "is" if len(gone) == 1 else "are"
+    said = f"{plural(len(gone), 'finding')} of the baseline at or above severity {result.fail_on}"
+    return f"{said} {verb} gone but not fixed: {', '.join(why)}"
 
 
 def _unknown_sentence(result: Result, unknown: pa.Table) -> str:

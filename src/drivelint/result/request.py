@@ -24,7 +24,7 @@ _PATHS: Final = ("map", "map_dir")
 class RunRequest(DriveInput):
     """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
 
-    Its egos are those of the verdicts: `ego` is not kept.
+    `ego` is what was given: the egos that were judged are those of the verdicts.
     """
 
     traces: dict[str, str] = field(default_factory=dict)
@@ -42,7 +42,6 @@ class RunRequest(DriveInput):
 def render(asked: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
-    told.pop("ego", None)  # a request that was loaded has none
     plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
     plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
     plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]
@@ -58,7 +57,9 @@ def load(folder: Path) -> RunRequest:
     """
     file = folder / RUN_FILE
     try:
-        plain = {"visibility": "none"} | json.loads(file.read_text(encoding="utf-8"))  # older results do not say it
+        plain = {"visibility": "none", "ego": None} | json.loads(
+            file.read_text(encoding="utf-8")
+        )  # older results do not say it
         if isinstance(plain["mapping"], dict):
             plain["mapping"] = str(folder / plain["mapping"]["file"])
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}

@@ -23,6 +23,12 @@ def number(value: float | None, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
+def closing(mps: float) -> str:
+    """Return in words how fast two road users come nearer, or draw apart."""
+    apart = mps < 0 and round(mps, 2) != 0
+    return f"{'drawing apart' if apart else 'closing'} at {number(abs(mps), 'm/s')}"
+
+
 def non_breaking(text: str) -> str:
     """Return a number and its unit with a no-break space between them."""
     return text.replace(" ", "\u00a0", 1)

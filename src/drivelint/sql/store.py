@@ -69,6 +69,10 @@ def connect(
     return con
 
 
+spill_folders: Final[set[Path]] = set()
+"""The temporary folders of the open workspaces: whoever ends the process without closing them removes these."""
+
+
 @contextmanager
 def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
@@ -81,11 +85,13 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
         TemporaryDirectory(prefix="drivelint-") as spill,
         connect(threads=threads, memory_limit=limit, spill=Path(spill)) as con,
     ):
+        spill_folders.add(Path(spill))
         try:
             yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
         finally:
+            spill_folders.discard(Path(spill))
             con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 

@@ -212,6 +212,7 @@ def write(
     compression: CompressionType = CompressionType.ZSTD,
     use_chunking: bool = True,
     enable_crcs: bool = True,
+    enable_data_crcs: bool = True,
     chunk_size: int = 1024 * 1024,
     descriptor_set: bytes = DESCRIPTOR_SET,
     encoding: str = "protobuf",
@@ -223,7 +224,7 @@ def write(
             compression=compression,
             use_chunking=use_chunking,
             enable_crcs=enable_crcs,
-            enable_data_crcs=enable_crcs,
+            enable_data_crcs=enable_crcs and enable_data_crcs,
             chunk_size=chunk_size,
         )
         writer.start()

@@ -55,6 +55,8 @@ class LocalPool:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def _started(self) -> ProcessPool:
+        # threads and processes that are started from here on inherit it: Ctrl-C is the main thread's
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return ProcessPool(
             max_workers=self._workers,
             max_tasks=TASKS_PER_WORKER,
@@ -85,6 +87,7 @@ def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
 def _begin(memory: int | None, parent: int) -> None:
     """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
     try:
         import ctypes
         import resource

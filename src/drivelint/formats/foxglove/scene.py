@@ -4,6 +4,7 @@ elsewhere."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -25,6 +26,8 @@ from drivelint.formats.foxglove.decode import (
 )
 from drivelint.formats.foxglove.entity_lifetime import with_persisted
 from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.losses import times_of_parts
+from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
+    from drivelint.formats.mcap.losses import Losses
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
@@ -66,12 +70,16 @@ def read(path: Path, topic: str | None) -> Recording:
     scenes: dict[str, _Scene] = {}
     transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
+    parts: list[tuple[Path, Losses]] = []
     for file in bag.mcap_files(path):
-        container = Container(file)
+        container = Container(file, salvage=True)
         for name, packets in message_batches(container, _kind):
             channel = packets[0].channel
-            log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
-            decoded = decoded_rows(file, container.schemas[channel.schema_id], packets)
+            schema = container.schemas[channel.schema_id]
+            decoded, readable = decode_readable(container, packets, partial(decoded_rows, file, schema))
+            if decoded is None:
+                continue
+            log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
             if name == SCENE:
                 _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
             elif name == TRANSFORM:
@@ -80,8 +88,11 @@ def read(path: Path, topic: str | None) -> Recording:
                 inner, parent = list_items(decoded, "transforms")
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
+        parts.append((file, container.losses))
     name = _chosen(path, scenes, topic)
-    return _recording(path, name, scenes[name], transforms, findings)
+    recording = _recording(path, name, scenes[name], transforms, findings)
+    recording.lost = times_of_parts(parts)
+    return recording
 
 
 def _kind(channel: Channel, schema: Schema) -> str | None:

@@ -110,7 +110,7 @@ def _indexed(file: Path) -> set[str]:
 
 def _recorded(file: Path) -> set[str]:
     """Return the schemas that stand among the data. Errors: `TraceError` for a damaged file."""
-    container = Container(file)
+    container = Container(file, salvage=True)
     for _ in container.packets():
         pass
     return {schema.name for schema in container.schemas.values()}

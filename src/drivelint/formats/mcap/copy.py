@@ -22,8 +22,9 @@ from mcap.opcode import Opcode
 from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, Footer, MetadataIndex, Schema, Statistics
 from mcap.stream_reader import get_chunk_data_stream
 
-from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import MAGIC, summary_is_whole
+from drivelint.errors import ChangedLogError, TraceError
+from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.summary import summary_is_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -89,7 +90,7 @@ class Original:
             digest = pool.submit(self._digest)
             _Copy(self, sink).run()
             if digest.result() != self._sha256:
-                raise TraceError(
+                raise ChangedLogError(
                     f"{self.path}: the log changed while it was judged: check it again when it is complete"
                 )
 

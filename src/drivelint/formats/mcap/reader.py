@@ -1,13 +1,14 @@
 """The MCAP container, read from front to back with every CRC checked and every length bounded before it is believed.
 
-The index at the end of the file is not used: what counts is the data. Each record's byte offset is known, so that
-damage is named by its place.
+What counts is the data: the index at the end of the file is only asked what is missing. Each record's byte offset is known, so that
+damage is named by its place. A reader that asks for it gets what is left of a damaged file, and what was lost.
 """
 
 from __future__ import annotations
 
 import io
 import mmap
+import re
 import struct
 import zlib
 from collections import Counter
@@ -17,10 +18,14 @@ from typing import TYPE_CHECKING, TypeVar
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, DataEnd, Footer, Metadata, Schema, Statistics
+from mcap.records import Channel, DataEnd, Footer, Header, Metadata, Schema, Statistics
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
+from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.losses import Losses
+from drivelint.formats.mcap.resume import MAGIC, next_record
+from drivelint.formats.mcap.summary import Summary, read_summary, summary_is_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -28,14 +33,27 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-MAGIC = b"\x89MCAP0\r\n"
 BATCH_BYTES = 32 * 1024 * 1024
 """Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
-MAX_CHUNK_BYTES = 512 * 1024 * 1024
-"""A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
+MOST_RECORD_BYTES = 1 << 48
+"""A record of a known kind that says it is longer is no cut-off one, for no file was ever so large: the file is refused."""
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
-_CHUNK = struct.Struct("<QQQII")
+_MESSAGE_INDEX = struct.Struct("<HI")
+_LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
+"""Records whose length is always the same."""
+_KNOWN = frozenset(Opcode)
+_MAGIC = re.compile(re.escape(MAGIC))
+
+
+class MessageError(TraceError):
+    """One message cannot be decoded."""
+
+
+class DamageError(TraceError):
+    """A place of the file cannot be read; `resume`: the byte from which on it surely can, None: not known."""
+
+    resume: int | None = None
 
 
 @dataclass(frozen=True)
@@ -47,84 +65,151 @@ class Packet:
     data: bytes
     offset: int
 
-    def error(self, path: Path, what: str) -> TraceError:
+    def error(self, path: Path, what: str) -> MessageError:
         """Return the error for this message: where it is, and what is wrong with it."""
         where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
-        return TraceError(f"{path}: {where}: {what}: record or copy the log again")
+        return MessageError(f"{path}: {where}: {what}: record or copy the log again")
 
 
 @dataclass
 class Container:
     """An MCAP file. All but its path is complete once `packets` is exhausted.
 
-    `metadata`: name of a metadata record -> its texts; of several with one name, the first.
+    `salvage`: of a damaged file, what can be read is read, and `losses` tells what cannot; else damage is an error.
+    `metadata`: name of a metadata record -> its texts; of several with one name, the first. `library`: what wrote the file.
     """
 
     path: Path
+    salvage: bool = False
     channels: dict[int, Channel] = field(default_factory=dict)
     schemas: dict[int, Schema] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     findings: list[QualityFinding] = field(default_factory=list)
+    losses: Losses = field(default_factory=Losses)
+    library: str = ""
     _messages: int = 0
+    _loose: int = 0
     _unprotected: int = 0
+    _in_data: bool = True
+    _data_crc: int = 0
+    _statistics: Statistics | None = None
+    _places: set[int] = field(default_factory=set)
 
     def packets(self) -> Iterator[Packet]:
-        """Yield every message in the order of the file. Errors: `TraceError` naming what is damaged, at which byte."""
+        """Yield every message in the order of the file.
+
+        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or where what
+        is left cannot be told from what is not. `TraceError` for what is no single MCAP file, or asks for too much memory.
+        """
         with self.path.open("rb") as file:
             # not closed by hand: an error on its way up still holds views into the map; it ends with the last of them
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         yield from self._file(memoryview(data))
 
-    def _damaged(self, offset: int, what: str) -> TraceError:
-        return TraceError(
+    def _damaged(self, offset: int, what: str, resume: int | None = None) -> DamageError:
+        error = DamageError(
             f"{self.path}: {what} at byte {offset}: the log is damaged or cut off: copy it again, or repair it"
         )
+        error.resume = resume
+        return error
 
     def _file(self, view: memoryview) -> Iterator[Packet]:
         if bytes(view[: len(MAGIC)]) != MAGIC:
             raise self._damaged(0, f"not an MCAP file: it begins with {bytes(view[:16])!r}")
-        at, in_data, statistics = len(MAGIC), True, None
-        while True:
-            opcode, start, end = self._record(view, at, len(view))
-            if opcode == Opcode.FOOTER:
-                self._check_summary(view, at, start, end)
-                break
-            if opcode == Opcode.DATA_END:
-                in_data = False
-                crc = self._parsed(DataEnd.read, view[start:end], at).data_section_crc
-                if crc and zlib.crc32(view[:at]) != crc:
-                    raise self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
-            elif opcode == Opcode.STATISTICS:
-                statistics = self._parsed(Statistics.read, view[start:end], at)
-            elif opcode == Opcode.CHUNK:
-                yield from self._chunk(view[start:end], at)
-            elif opcode == Opcode.METADATA:
-                record = self._parsed(Metadata.read, view[start:end], at)
-                self.metadata.setdefault(record.name, record.metadata)
-            elif in_data:  # the index repeats schemas and channels: only those among the data count
-                yield from self._content(opcode, view[start:end], at)
-            at = end
-        self._check_end(view, end)
-        if statistics is not None and statistics.message_count != self._messages:
-            message = (
-                f"the index counts {statistics.message_count} messages, the file has {self._messages}: all are read"
-            )
-            self.findings.append(QualityFinding("index_mismatch", "warning", message))
-        if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
-            self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
+        at, footer, index = len(MAGIC), None, None
+        while footer is None and at < len(view):
+            try:
+                opcode, start, end = self._record(view, at)
+                if opcode == Opcode.FOOTER:
+                    footer = at, start, end
+                else:
+                    yield from self._take(view, opcode, at, start, end)
+                at = end
+            except DamageError as error:
+                if index is None:
+                    index = self._index_of_damaged(view, error)
+                if error.resume is None and not self._messages and not index.chunks:
+                    raise  # what describes the log stands there, and nobody knows whether it is still whole
+                resume = error.resume or self._resume(view, at)
+                self._refuse_second_file_within(view, at + 1, resume)
+                self.losses.add(at, resume, str(error))
+                at = resume
+        if self.losses and not self._messages:
+            raise self._damaged(self.losses.first.start, self.losses.first.what)
+        self._check_data_end(len(view), footer is not None)
+        if footer is not None:
+            self._check_footer(view, *footer)
+        if index is None and footer is not None:
+            index = read_summary(view)
+        self._check_index(index or Summary())
+        self._report()
 
-    def _record(self, view: memoryview, at: int, end: int) -> tuple[int, int, int]:
-        """Return opcode, start and end of the record at `at`, which must lie wholly before `end`."""
-        if at + _RECORD.size > end:
+    def _record(self, view: memoryview, at: int) -> tuple[int, int, int]:
+        """Return opcode, start and end of the record at `at`, which must lie wholly within the file."""
+        if at + _RECORD.size > len(view):
             raise self._damaged(at, "the file ends without a footer")
         opcode, length = _RECORD.unpack_from(view, at)
         start = at + _RECORD.size
         if opcode == 0:
             raise self._damaged(at, "no record (zero bytes)")
-        if length > end - start:
-            raise self._damaged(at, f"a {_name(opcode)} record of {length} bytes, of which {end - start} are there,")
-        return opcode, start, start + length
+        self._refuse_second_file(view, at)
+        if length > len(view) - start:
+            what = f"a {_name(opcode)} record of {length} bytes, of which {len(view) - start} are there,"
+            if length >= MOST_RECORD_BYTES and opcode in _KNOWN:
+                raise TraceError(str(self._damaged(at, what)))
+            raise self._damaged(at, what)
+        end = start + length
+        wrong = length != _LENGTHS.get(opcode, length)
+        if opcode == Opcode.MESSAGE_INDEX:
+            wrong = length < _MESSAGE_INDEX.size or _MESSAGE_INDEX.unpack_from(view, start)[1] != length - 6
+        elif opcode == Opcode.FOOTER:
+            tail = bytes(view[end : end + len(MAGIC)])
+            wrong = wrong or not MAGIC.startswith(tail)
+            if not wrong and len(tail) < len(MAGIC) and not self.salvage:
+                raise self._damaged(end, "no closing magic bytes after the footer")
+        if wrong:
+            raise self._damaged(at, f"a {_name(opcode)} record that is none")
+        return opcode, start, end
+
+    def _refuse_second_file(self, view: memoryview, at: int) -> None:
+        if bytes(view[at : at + len(MAGIC)]) == MAGIC:
+            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, give each by itself")
+
+    def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
+        """Refuse a file of which lost bytes hold the beginning of another: what comes then may be of another drive."""
+        match = _MAGIC.search(view[: end + len(MAGIC)], start)
+        if match and match.start() < len(view) - len(MAGIC):
+            self._refuse_second_file(view, match.start())
+
+    def _take(self, view: memoryview, opcode: int, at: int, start: int, end: int) -> Iterator[Packet]:
+        body = view[start:end]
+        if opcode in {Opcode.CHUNK, Opcode.METADATA}:
+            self._places.add(at)
+        if opcode == Opcode.DATA_END:
+            self._in_data = False
+            crc = self._parsed(DataEnd.read, body, at).data_section_crc
+            self._data_crc = crc
+            if crc and not self.losses and zlib.crc32(view[:at]) != crc:
+                self._data_changed(at)
+        elif opcode == Opcode.HEADER:
+            self.library = self._parsed(Header.read, body, at).library
+        elif opcode == Opcode.STATISTICS:
+            self._statistics = self._parsed(Statistics.read, body, at)
+        elif opcode == Opcode.CHUNK:
+            yield from self._chunk(body, at, end)
+        elif opcode == Opcode.METADATA:
+            record = self._parsed(Metadata.read, body, at)
+            self.metadata.setdefault(record.name, record.metadata)
+        elif self._in_data:  # the index repeats schemas and channels: only those among the data count
+            self._loose += opcode == Opcode.MESSAGE
+            yield from self._content(opcode, body, at, end)
+
+    def _data_changed(self, at: int) -> None:
+        """Report a wrong CRC of all data where the CRC of every chunk is right, and only chunks are read."""
+        error = self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
+        if not self.salvage or self._loose or self._unprotected or self.metadata:
+            raise TraceError(str(error))
+        self.findings.append(QualityFinding("data_changed", "error", str(error)))
 
     def _parsed(self, read: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
         try:
@@ -132,15 +217,16 @@ class Container:
         except (struct.error, McapError, ValueError) as error:
             raise self._damaged(at, f"a record that cannot be read ({error})") from error
 
-    def _content(self, opcode: int, body: memoryview, at: int) -> Iterator[Packet]:
+    def _content(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[Packet]:
         """Take a schema, a channel or a message; other records are of no use here."""
         if opcode == Opcode.MESSAGE:
             if len(body) < _MESSAGE.size:
-                raise self._damaged(at, "a message record without its header")
+                raise self._damaged(at, "a message record without its header", end)
             number, _, log_time, _ = _MESSAGE.unpack_from(body)
             if number not in self.channels:
-                raise self._damaged(at, f"a message on channel {number}, which was never announced,")
+                raise self._damaged(at, f"a message on channel {number}, which was never announced,", end)
             self._messages += 1
+            self.losses.message(log_time)
             yield Packet(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
         elif opcode == Opcode.SCHEMA:
             schema = self._parsed(Schema.read, body, at)
@@ -148,96 +234,103 @@ class Container:
         elif opcode == Opcode.CHANNEL:
             channel = self._parsed(Channel.read, body, at)
             if channel.schema_id and channel.schema_id not in self.schemas:
-                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never announced,")
+                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never announced,", end)
             self.channels[channel.id] = channel
 
-    def _chunk(self, body: memoryview, at: int) -> Iterator[Packet]:
-        if len(body) < _CHUNK.size:
-            raise self._damaged(at, "a chunk record without its header")
-        _, _, size, crc, name_length = _CHUNK.unpack_from(body)
-        name_end = _CHUNK.size + name_length
-        if name_end + 8 > len(body):
-            raise self._damaged(at, "a chunk record whose lengths do not fit")
-        compression = bytes(body[_CHUNK.size : name_end]).decode("utf-8", "replace")
-        (packed_length,) = struct.unpack_from("<Q", body, name_end)
-        packed = body[name_end + 8 :]
-        if packed_length != len(packed):
-            raise self._damaged(at, "a chunk record whose lengths do not fit")
-        if size > MAX_CHUNK_BYTES:
-            beyond = f"{size}, beyond {MAX_CHUNK_BYTES // 2**20} MiB,"
-            raise self._damaged(at, f"a chunk of {len(packed)} bytes that says it unpacks to {beyond}")
-        records = self._unpacked(packed, compression, size, at)
-        if crc == 0:
-            self._unprotected += 1
-        elif zlib.crc32(records) != crc:
-            raise self._damaged(at, "a chunk with a wrong CRC (its content changed)")
+    def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[Packet]:
+        try:
+            head = chunk_head(body)
+            records = chunk_records(head, f"{self.path}: byte {at}")
+        except ChunkError as error:
+            raise self._damaged(at, str(error), end if error.framed else None) from error
+        self._unprotected += head.crc == 0
         view, place = memoryview(records), 0
-        while place < size:
-            opcode, start, end = self._inner(view, place, at)
-            yield from self._content(opcode, view[start:end], at)
-            place = end
+        while place < len(view):
+            opcode, start, stop = self._inner(view, place, at, end)
+            try:
+                yield from self._content(opcode, view[start:stop], at, end)
+            except DamageError as error:
+                error.resume = end
+                raise
+            place = stop
 
-    def _inner(self, view: memoryview, place: int, at: int) -> tuple[int, int, int]:
+    def _inner(self, view: memoryview, place: int, at: int, end: int) -> tuple[int, int, int]:
         start = place + _RECORD.size
         if start <= len(view):
             opcode, length = _RECORD.unpack_from(view, place)
             if length <= len(view) - start:
                 return opcode, start, start + length
-        raise self._damaged(at, "a chunk that ends within a record")
+        raise self._damaged(at, "a chunk that ends within a record", end)
 
-    def _unpacked(self, packed: memoryview, compression: str, size: int, at: int) -> bytes:
-        """Decompress at most `size` bytes, the number the chunk declares."""
-        import zstandard
+    def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
+        """Take what the index announces, which the lost bytes may have announced. Errors: the damage, without salvage."""
+        if not self.salvage:
+            raise error
+        index = read_summary(view)
+        self.schemas = {**index.schemas, **self.schemas}
+        self.channels = {**index.channels, **self.channels}
+        return index
 
-        try:
-            if compression == "":
-                records = bytes(packed)
-            elif compression == "zstd":
-                declared = zstandard.get_frame_parameters(packed).content_size
-                # the library believes the frame's own size rather than the limit given to it
-                if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
-                    raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and then to {declared},")
-                records = zstandard.ZstdDecompressor().decompress(packed, max_output_size=max(size, 1))
-            elif compression == "lz4":
-                import lz4.frame  # type: ignore[import-untyped]
+    def _resume(self, view: memoryview, at: int) -> int:
+        """Return where reading can go on: at the next record that vouches for itself."""
+        chunked = bool(self._messages - self._loose) or not self._loose
+        return next_record(view, at + 1, channels=None if chunked else self.channels)
 
-                records = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
-            else:
-                raise TraceError(
-                    f"{self.path}: a chunk at byte {at} is compressed by {compression!r}: zstd, lz4 or none is needed"
-                )
-        except (zstandard.ZstdError, RuntimeError) as error:
-            raise self._damaged(at, f"a chunk that cannot be unpacked ({error})") from error
-        if len(records) != size:
-            raise self._damaged(at, f"a chunk that says it unpacks to {size} bytes and unpacks to {len(records)}")
-        return records
+    def _check_data_end(self, size: int, has_footer: bool) -> None:
+        """Report a file without a footer: without an end of the data, too, something may be lost."""
+        if has_footer:
+            return
+        if self._in_data and (not self.losses or self.losses.last.end < size):
+            error = self._damaged(size, "the file ends without a footer")
+            if not self.salvage:
+                raise error
+            self.losses.add(size, size, str(error))
+        elif not self._in_data:
+            if not self.salvage:
+                raise self._damaged(size, "the file ends without a footer")
+            message = f"the file ends without a footer at byte {size}, behind the end of its data: nothing is lost"
+            self.findings.append(QualityFinding("no_footer", "warning", message))
 
-    def _check_summary(self, view: memoryview, at: int, start: int, end: int) -> None:
+    def _check_footer(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""
         footer = self._parsed(Footer.read, view[start:end], at)
         if not summary_is_whole(footer, view, at, end):
-            message = f"the index has a wrong CRC (footer at byte {at}): it is not used, the data are complete"
+            message = f"the index has a wrong CRC (footer at byte {at}): it is not used"
             self.findings.append(QualityFinding("index_damaged", "warning", message))
+        extra = len(view) - end - len(MAGIC)
+        if extra > 0:
+            self._refuse_second_file(view, end + len(MAGIC))
+            message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
+            self.findings.append(QualityFinding("trailing_bytes", "warning", message))
+        elif extra < 0:
+            message = f"the file ends without its closing magic bytes at byte {len(view)}: nothing is lost"
+            self.findings.append(QualityFinding("no_footer", "warning", message))
 
-    def _check_end(self, view: memoryview, end: int) -> None:
-        tail = view[end:]
-        if bytes(tail[: len(MAGIC)]) != MAGIC:
-            raise self._damaged(end, "no closing magic bytes after the footer")
-        extra = len(tail) - len(MAGIC)
-        if extra == 0:
-            return
-        if bytes(tail[len(MAGIC) : 2 * len(MAGIC)]) == MAGIC:
-            raise TraceError(
-                f"{self.path}: a second MCAP file begins at byte {end + len(MAGIC)}: split the two, give each by itself"
-            )
-        message = f"{extra} bytes follow the end of the log at byte {end + len(MAGIC)}: they are not part of it"
-        self.findings.append(QualityFinding("trailing_bytes", "warning", message))
+    def _check_index(self, index: Summary) -> None:
+        """Ask an index with a right CRC what is missing among the data."""
+        for offset, (length, since, until) in sorted(index.chunks.items()):
+            if offset not in self._places and not self.losses.covers(offset):
+                error = self._damaged(offset, "no chunk, where the index has one,")
+                if not self.salvage:
+                    raise error
+                self.losses.add(offset, offset + length, str(error), since, until)
+        if missing := [at for at in index.metadata if at not in self._places]:
+            raise self._damaged(missing[0], "no metadata record, where the index has one,")
+        if index.chunks:
+            self.losses.narrow(index.chunks)
 
-
-def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> bool:
-    """Say whether the index has the CRC, if any, that the footer in bytes `at` to `end` of the file says."""
-    begin = min(footer.summary_start or at, at)
-    return not footer.summary_crc or zlib.crc32(view[begin : end - 4]) == footer.summary_crc
+    def _report(self) -> None:
+        counts = self._statistics
+        is_trusted = not any(each.check_id == "index_damaged" for each in self.findings)
+        if counts is not None and is_trusted and not self.losses and counts.message_count != self._messages:
+            message = f"the index counts {counts.message_count} messages, the file has {self._messages}: these are read"
+            self.findings.append(QualityFinding("index_mismatch", "error", message))
+        if self._unprotected:
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
+            self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
+        elif self._loose and not self._data_crc:
+            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them cannot be seen"
+            self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
 
 
 def message_batches(
@@ -267,4 +360,4 @@ def _name(opcode: int) -> str:
     try:
         return Opcode(opcode).name.lower().replace("_", " ")
     except ValueError:
-        return f"unknown (opcode {opcode})"
+        return f"nameless (opcode {opcode})"

@@ -15,7 +15,7 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 
 from drivelint.errors import DriveLintError
-from drivelint.formats.mcap.reader import MAGIC
+from drivelint.formats.mcap.resume import MAGIC
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Recording, Trace
 
+LIBRARY: Final = "drivelint convert"
+"""What converted logs say that they were written by."""
 TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"

@@ -17,6 +17,7 @@ from mcap.records import Channel
 
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
+from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, message_batches
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
@@ -60,7 +61,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     Of several different OpenDRIVE maps none is taken. Errors: `TraceError` for a damaged file, no or several ground-truth
     topics, or a schema without the fields needed.
     """
-    container = Container(path)
+    container = Container(path, salvage=True)
     truths: list[str] = []  # topics of ground truth
     head, decoder = FirstMessage(), None
     batches: list[FrameBatch] = []
@@ -77,8 +78,10 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
                 decoder.lights = head.lights
-            batches.append(decoder.frames(packets))
-            log_ns += [packet.log_time_ns for packet in packets]
+            frames, readable = decode_readable(container, packets, decoder.frames)
+            if frames is not None:
+                batches.append(frames)
+            log_ns += [packet.log_time_ns for packet in readable]
         elif kind == OPEN_DRIVE:
             for packet in packets:
                 text = _map_text(container, packet)
@@ -89,14 +92,25 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
+    _refuse_lost_end_of_converted(container)
     recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
     if maps:
         recording.embedded_map = own
     recording.findings += [*container.findings, *lost[:1], *(several if maps else head.findings)]
+    recording.lost = container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
+
+
+def _refuse_lost_end_of_converted(container: Container) -> None:
+    """Refuse a log of `drivelint convert` that lost its end: its declared events, of any time, stand there."""
+    if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.found):
+        raise TraceError(
+            f"{container.path}: the end of this converted log is lost, where its declared events stand "
+            f"({container.losses.last.what}): convert it again"
+        )
 
 
 def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema) -> str | None:

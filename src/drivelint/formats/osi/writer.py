@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.road.map_reader import MapSource
 
-LIBRARY: Final = "drivelint convert"
 GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
@@ -41,7 +40,7 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     """
     numbers = osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
-    writer.start(library=LIBRARY)
+    writer.start(library=metadata.LIBRARY)
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})

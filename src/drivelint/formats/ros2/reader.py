@@ -12,6 +12,8 @@ from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.losses import times_of_parts
+from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
@@ -37,7 +39,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Times
-    from drivelint.drive.trace import IngestOptions
+    from drivelint.drive.trace import IngestOptions, LostTime
+    from drivelint.formats.mcap.losses import Losses
     from drivelint.formats.ros2.cdr import Table
 
 STATIC_TOPIC_SUFFIX = "tf_static"
@@ -61,21 +64,27 @@ class _Log:
         self.path = path
         self.topics: dict[str, Topics] = {}  # by the type of their messages
         self.findings: list[QualityFinding] = []
+        self.lost: list[LostTime] = []
         self.carla = False
         self._forward_m = forward_m
 
     def read(self, files: Iterable[Path]) -> None:
+        parts: list[tuple[Path, Losses]] = []
         for file in files:
-            container = Container(file)
+            container = Container(file, salvage=True)
             decoders: dict[int, Decoder] = {}
             for kind, packets in message_batches(container, partial(_kind, file, decoders)):
                 channel = packets[0].channel
-                table = decoders[channel.schema_id].table(packets)
-                log_ns = np.array([packet.log_time_ns for packet in packets], np.int64)
-                parts = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
-                parts.append(self._part(kind, table, log_ns))
+                table, readable = decode_readable(container, packets, decoders[channel.schema_id].table)
+                if table is None:
+                    continue
+                log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
+                read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
+                read.append(self._part(kind, table, log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
+            parts.append((file, container.losses))
+        self.lost = times_of_parts(parts)
 
     def _part(self, kind: str, table: Table, log_ns: Times) -> Any:
         if kind == ros_ego.ODOMETRY:
@@ -175,6 +184,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     for topic, (table, _) in log.parts(ros_ego.WORLD_INFO):
         for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
             maps.setdefault(text, topic)
+    recording.lost = log.lost
     recording.embedded_map, trouble = single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))

@@ -15,11 +15,11 @@ MAX_LISTED: Final = 40
 _GONE: Final = ("changed", "unknown", "lost", "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
 """State of a waiver -> words, those that need somebody to act first."""
-_LABELS: Final = {"new": "new", "known": "known", "waived": "waived", "open": "not waived"}
+_LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
 
 
 class BaselineStatus(NamedTuple):
-    """The status of a finding (new, known, waived; open without a baseline) and the reason for it."""
+    """The status of a finding (new, known, waived, only possible; open without a baseline) and the reason for it."""
 
     kind: str
     label: str
@@ -27,7 +27,7 @@ class BaselineStatus(NamedTuple):
 
     @property
     def is_gating(self) -> bool:
-        """Whether neither the baseline nor a waiver lets it through."""
+        """Whether nothing lets it through: no waiver, no baseline, no want of confidence."""
         return self.kind in {"new", "open"}
 
     @property
@@ -40,16 +40,20 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     """Return the status of a finding against the gate; None without a gate. A waiver takes precedence over the baseline."""
     if gate is None:
         return None
+    kind = gate.standing(finding_id)
     waiver, entry = gate.waiver(finding_id), gate.compared(finding_id)
+    why = ""
     if waiver is not None:
-        kind, why = "waived", f"{descriptions.waiver_reason(waiver)} ({waiver.where})"
-    elif gate.baseline is None:
-        kind, why = "open", ""
-    elif gate.in_baseline(finding_id):
-        kind, why = "known", entry.why if entry and entry.standing == "changed" else ""
-    else:
-        kind, why = "new", entry.why if entry else ""
-    return BaselineStatus(kind, _LABELS[kind], why)
+        why = f"{descriptions.waiver_reason(waiver)} ({waiver.where})"
+    elif kind == "possible":
+        why = descriptions.reason_not_gating(gate, finding_id)
+    elif entry is not None and entry.standing in {"new", "changed"}:
+        why = entry.why
+    return BaselineStatus(kind, _label(gate, kind), why)
+
+
+def _label(gate: Gate, kind: str) -> str:
+    return "not compared" if kind == "open" and not gate.waivers else _LABELS[kind]
 
 
 def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | None:
@@ -61,12 +65,14 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     if gate is None:
         return None
     kinds = Counter(status.kind for name in finding_ids if (status := finding_status(gate, name)) is not None)
-    shown = ("new", "known", "waived") if gate.baseline is not None else ("open", "waived")
+    shown = [kind for kind in _LABELS if kind != ("open" if gate.baseline is not None else "new")]
+    given = {"waived": bool(gate.waivers), "known": gate.baseline is not None, "possible": gate.confidence is not None}
     before = gate.baseline
     gone = {kind: before.with_diff_status(kind) for kind in _GONE} if before else {}
     return {
         "since": before.base_name if before else "",
-        "counts": [(kind, _LABELS[kind], kinds[kind]) for kind in shown if kind != "waived" or gate.waivers],
+        "confidence": gate.confidence,
+        "counts": [(kind, _label(gate, kind), kinds[kind]) for kind in shown if given.get(kind, True)],
         "waivers": [
             (waiver, label, descriptions.waiver_scope(waiver))
             for state, label in _STATES.items()

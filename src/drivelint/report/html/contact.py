@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from drivelint.result.text import seconds
+from drivelint.result.text import closing, seconds
 
 if TYPE_CHECKING:
     from drivelint.result.text import Row
@@ -18,7 +16,7 @@ MOST_BEFORE_NS: Final = 1_000_000_000
 def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
     """Return the speeds at the last recorded point of both ways before the first step of a contact; None: there is none.
 
-    `contact`: a finding. `closing`: how fast their distance vector changed up to that point, None without a point before it.
+    `contact`: a finding, whose own closing speed is told.
     """
     ways = {actor["actor_id"]: actor["path"] or [] for actor in scene["actors"]}
     if contact["object_id"] not in ways:
@@ -30,16 +28,13 @@ def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | 
     if not times or contact["t_start_ns"] - times[-1] > MOST_BEFORE_NS:
         return None
     last = times[-1]
-    closing = None
-    if len(times) > 1 and last - times[-2] <= MOST_BEFORE_NS:
-        apart = [np.array([met[t]["x_m"] - ego[t]["x_m"], met[t]["y_m"] - ego[t]["y_m"]]) for t in times[-2:]]
-        closing = float(np.hypot(*(apart[1] - apart[0]))) / ((last - times[-2]) / 1e9)
     speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]
-    said = [f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None]
-    said += [f"closing at {closing:.1f} m/s"] if closing is not None else []
+    said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
+    # a scene has not every step: the closing speed may be that of a later one
+    nearing = "" if contact["closing_mps"] is None else f"{closing(contact['closing_mps'])} just before the contact"
+    told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
     return {
         "time": seconds(last, start_ns),
         "speeds": speeds,
-        "closing": closing,
-        "words": f"just before the contact, at {seconds(last, start_ns)}: {', '.join(said)}" if said else "",
+        "words": "; ".join(part for part in told if part),
     }

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from drivelint.catalogue.header import CONTACT
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
-from drivelint.report.worst_first import CONTACT
+from drivelint.report.same_contact import as_others_say
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import measure, non_breaking, number, seconds, utc_at
@@ -60,14 +62,18 @@ def finding_line(
     linked: bool,
     steps: Row | None,
     status: BaselineStatus | None,
+    same: Sequence[Row] = (),
 ) -> FindingLine:
-    """Return a finding or near miss as the page shows it; `linked`: its drive has a section in the page; `steps`: its row of `course`."""
+    """Return a finding or near miss as the page shows it.
+
+    `linked`: its drive has a section in the page; `steps`: its row of `course`; `same`: other findings of the same contact.
+    """
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
     required = number(row["required"], unit)
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
-    sure = how_sure(row) if kind == "fail" else None
+    sure = how_sure(row, same) if kind == "fail" else None
     found = [status.filter_key] if status else []
     found += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
     place = anchor("finding", row["finding_id"]) if linked and kind == "fail" else ""
@@ -96,14 +102,19 @@ def _told(row: Row, rule: Row, required: str) -> str:
     return said if row["reason_measures"] else f"{said} ({row['reason']})"
 
 
-def how_sure(finding: Row) -> dict[str, str]:
-    """Return whether a finding is sure or possible (`kind`, '' if no copies of it were judged), of how many copies, and why."""
+def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
+    """Return whether a finding is sure or possible (`kind`, '' if no copies of it were judged), of how many copies, and why.
+
+    `same`: other findings of the same contact.
+    """
     said = certainty(finding)
     if said is None:
         return {"kind": "", "label": "not tested", "why": "no copies with errors like the recording's were judged"}
     of = f"{finding['n_stays']} of {finding['n_copies']}"
     only = "only " if said == POSSIBLE else ""
-    why = f"in {only}{of} copies of the drive with errors like the recording's it is a finding too"
+    why = f"in {only}{of} copies of the drive with errors like the recording's ({MeasurementErrors().words}) it is a finding too"
+    if others := as_others_say(finding, same):
+        why += f"; {others}"
     return {"kind": said, "label": f"{said}, {of}", "why": why}
 
 

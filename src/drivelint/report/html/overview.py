@@ -6,19 +6,16 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
-from drivelint.phrases import plural
-from drivelint.report.html.contact import before_contact
-from drivelint.report.html.incidents import incident_key
-from drivelint.report.outcome import by_severity, outcome_label
-from drivelint.report.worst_first import is_contact
+from drivelint.report.outcome import headline
+from drivelint.report.worst_first import is_contact, sureness
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import measure, non_breaking, seconds
+from drivelint.result.text import closing, measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.report.html.incidents import FindingLine, Key
+    from drivelint.report.html.incidents import FindingLine
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -28,39 +25,17 @@ _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
 
 
-def headline(result: Result, rules: Mapping[str, Row]) -> tuple[str, str, str]:
+def page_headline(result: Result) -> tuple[str, str, str]:
     """Return the outcome (fail, unknown or pass), the word for it, and the sentence at the top of the page."""
-    told, findings = counts.total(result.verdicts), result.findings
-    judged = int(pc.sum(pc.equal(result.drives["status"], "judged")).as_py() or 0)
-    open_ = told["unknown"] + told["error"]
-    names = findings["finding_id"].to_pylist()
-    label = outcome_label(result, sum(result.gate is None or result.gate.is_gating(name) for name in names))
-    if rows := findings.select(["severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist():
-        drives = plural(result.drives.num_rows, "drive")
-        noun = "finding" if len(rows) == 1 else "findings"
-        said = f"{by_severity(rows)} {noun} in {len({row['drive_id'] for row in rows})} of {drives}"
-        touched = {row["drive_id"] for row in rows if is_contact(row, rules)}
-        said += f"; contact in {len(touched)}" if touched else ""
-        possible = sum(certainty(row) == POSSIBLE for row in rows)
-        return "fail", label, said + _of_these(result) + (f"; {possible} only possible" if possible else "")
-    if not judged or not result.verdicts.num_rows:
-        return "unknown", label, "Nothing was judged"
-    if not told["pass"] and open_:
-        return "unknown", label, "Nothing could be decided"
-    if open_ > told["pass"]:
-        return "unknown", label, "Most could not be judged; no finding in the rest"
-    if open_ or judged < result.drives.num_rows:
-        return "unknown", label, "No finding, as far as it could be judged"
-    return "pass", label, "No finding"
+    told = headline(result)
+    return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
 
-def contacts(
-    result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row], scenes: Mapping[Key, Row]
-) -> dict[str, Any] | None:
+def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
     """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to it; `n_more`: those that are not named;
-    `sure`: no contact is only possible.
+    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to its surest finding; `n_more`: those that are
+    not named; `sure`: no contact is only possible.
     """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
@@ -69,32 +44,20 @@ def contacts(
     met = counts.grouped(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
-        first = found[0]
+        first = min(found, key=sureness)
         who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
         depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
         deep = f", {measure(max(depths), 'm')} deep" if depths else ""
-        scene = scenes.get(incident_key(first))
-        before = None if scene is None else before_contact(scene, first, starts[first["drive_id"]] or 0)
-        speed = f", closing at {before['closing']:.1f}\u00a0m/s" if before and before["closing"] is not None else ""
+        speed = "" if first["closing_mps"] is None else f", {closing(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{speed}{deep}{where}"
-        doubt = all(certainty(row) == POSSIBLE for row in found)
+        doubt = certainty(first) == POSSIBLE
         named.append((f"possibly {said}" if doubt else said, hrefs.get(first["finding_id"], ""), doubt))
     if not named:
         return None
     sure = not all(doubt for *_, doubt in named)
     return {"named": [each[:2] for each in named[:_NAMED]], "n_more": len(named[_NAMED:]), "sure": sure}
-
-
-def _of_these(result: Result) -> str:
-    """Return how many findings an earlier result or a waiver does not account for; '' where they were held against nothing."""
-    gate = result.gate
-    if gate is None:
-        return ""
-    ids = result.findings["finding_id"].to_pylist()
-    left = sum(gate.is_gating(name) for name in ids)
-    return f", {left or 'none'} of them {'new' if gate.baseline is not None else 'not waived'}"
 
 
 def rates(result: Result) -> dict[str, Any]:

@@ -27,6 +27,8 @@ from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.report.html.worst_moment import Evidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
+from drivelint.report.outcome import rule_counts
+from drivelint.report.same_contact import same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
 from drivelint.result.counts import grouped
@@ -100,14 +102,14 @@ def content(result: Result) -> dict[str, Any]:
     broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
     return {
         "outcome": exit_status(result),
-        "headline": overview.headline(result, rules),
+        "headline": overview.page_headline(result),
         "inputs": input_notes(result),
         "worst": worst_moment(
             lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
         ),
         "rates": overview.rates(result),
-        "contacts": overview.contacts(result, failed, rules, scenes),
-        "not_decided": len(pc.unique(counts.undecided(result.verdicts)["rule_id"])),
+        "contacts": overview.contacts(result, failed, rules),
+        "rule_counts": rule_counts(result),
         "counts": overview.verdict_shares(totals),
         "names": _NAMES,
         "severities": list(counts.SEVERITIES),
@@ -179,6 +181,7 @@ def _lines(
     shown: set[str],
 ) -> list[FindingLine]:
     """Return the rows with their words, those of drives in `shown` with links."""
+    same = same_contact((row for kind, row in rows if kind == "fail"), rules)
     return [
         finding_line(
             row,
@@ -188,6 +191,7 @@ def _lines(
             linked=row["drive_id"] in shown,
             steps=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
+            same=same.get(row["finding_id"], ()) if kind == "fail" else (),
         )
         for n, (kind, row) in enumerate(rows)
     ]

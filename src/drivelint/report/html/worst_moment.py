@@ -6,11 +6,11 @@ import shlex
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from urllib.parse import quote
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.strips import strips
-from drivelint.report.worst_first import CONTACT
 from drivelint.result.text import utc_at
 
 if TYPE_CHECKING:
@@ -61,7 +61,10 @@ def worst_moment(
         else strips(scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns),
         "before": before_contact(scene, row, start_ns) if touched and scene is not None else None,
         "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
-        "also": list(dict.fromkeys(each.rule["title"] for each in along))[:_ALSO],
+        "also": [
+            (how, list(dict.fromkeys(each.rule["title"] for each in along if each.kind == kind))[:_ALSO])
+            for kind, how in (("fail", "not kept"), ("near", "only just kept"))
+        ],
         "explain": ["drivelint explain", shlex.quote(_name(row)), "--in ."],
         "files": _files(row, folder),
     }

@@ -1,0 +1,11 @@
+-- The rules that were broken most: severity first, then findings.
+SELECT severity, rule_id, n_findings, n_drives, is_contact
+FROM (
+    SELECT
+        f.severity, f.rule_id, count(*) AS n_findings, count(DISTINCT f.key) AS n_drives,
+        coalesce(bool_or(list_contains(r.tags, 'contact')), false) AS is_contact
+    FROM findings f
+    LEFT JOIN rules r USING (rule_id)
+    GROUP BY ALL
+)
+ORDER BY CASE severity WHEN 'critical' THEN 0 WHEN 'major' THEN 1 ELSE 2 END, n_findings DESC, rule_id

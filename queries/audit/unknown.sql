@@ -1,0 +1,6 @@
+-- Why verdicts are unknown, most first.
+SELECT reason_code, count(*) AS n, count(DISTINCT rule_id) AS n_rules, count(DISTINCT key) AS n_drives
+FROM verdicts
+WHERE verdict = 'unknown'
+GROUP BY ALL
+ORDER BY n DESC, reason_code

@@ -1,0 +1,71 @@
+"""The difference of two results, for whoever asks in Python."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from drivelint.api.check_result import CheckResult
+from drivelint.api.options import FailOn, one_of
+from drivelint.errors import ExitCode
+from drivelint.gate import compare_results, descriptions
+from drivelint.result.load import load_result
+
+if TYPE_CHECKING:
+    from drivelint.api.options import AnyPath
+    from drivelint.gate import ComparedFinding, Difference
+    from drivelint.result.gate import Gate
+    from drivelint.result.model import Result
+
+
+class Comparison:
+    """What `drivelint diff` tells of two results."""
+
+    def __init__(self, found: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
+        self._found, self._failing, self._least, self._gate = found, failing, least, gate
+
+    @property
+    def exit_code(self) -> int:
+        """1: a new finding of a stable rule is at or above `fail_on`; 0: none is."""
+        return int(ExitCode.FAILED if self._failing else ExitCode.OK)
+
+    @property
+    def text(self) -> str:
+        """What the command line prints."""
+        return descriptions.difference_text(self._found, self._failing, self._least, self._gate)
+
+    def findings(self) -> list[dict[str, Any]]:
+        """Return every finding of both; `standing`: new, changed, unchanged, fixed, unknown or lost."""
+        return [asdict(entry) for entry in self._found.entries]
+
+    def data(self) -> dict[str, Any]:
+        """Return what `--format json` prints, as plain data."""
+        told: dict[str, Any] = json.loads(descriptions.to_json(self._found, self._failing, self._least))
+        return told
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text)}</pre>"
+
+
+def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: FailOn | None = None) -> Comparison:
+    """Compare two results, or the folders that hold them: new, fixed, changed and unchanged findings.
+
+    `fail_on`: least severity of a new finding that makes exit code 1; None: that of `new`. Errors: `DriveLintError`.
+    """
+    (earlier, base_name), (later, name) = _result(base, "base"), _result(new, "new")
+    least = later.fail_on if fail_on is None else one_of("fail_on", fail_on, FailOn)
+    found, failing = compare_results(earlier, later, (base_name, name), least)
+    return Comparison(found, failing, least, later.gate)
+
+
+def _result(given: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
+    """Return a result and what it is called: by its folder, if it has one."""
+    if isinstance(given, CheckResult):
+        return given.result, name if given.folder is None else given.folder.resolve().name
+    return load_result(Path(given)), Path(given).resolve().name

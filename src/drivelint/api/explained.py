@@ -1,0 +1,42 @@
+"""Why one verdict is what it is, for whoever asks in Python."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.explain import text
+
+if TYPE_CHECKING:
+    from drivelint.explain import Explanation
+
+_WIDTH: Final = 120
+
+
+class Explained:
+    """An explanation as `drivelint explain` gives it: as text, or as data."""
+
+    def __init__(self, found: Explanation) -> None:
+        self._found = found
+
+    @property
+    def text(self) -> str:
+        """What the command line prints."""
+        from rich.console import Console
+
+        console = Console(width=_WIDTH, highlight=False, color_system=None, force_jupyter=False)
+        with console.capture() as captured:
+            console.print(text.render(self._found, _WIDTH))
+        return "\n".join(line.rstrip() for line in captured.get().splitlines())
+
+    def data(self) -> dict[str, Any]:
+        """Return what `--format json` prints, as plain data: the numbers in full."""
+        told: dict[str, Any] = json.loads(text.to_json(self._found))
+        return told
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text)}</pre>"

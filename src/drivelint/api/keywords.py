@@ -1,0 +1,40 @@
+"""Error messages for callers in Python: options are named as keywords."""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import DriveLintError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_FLAGS: Final = frozenset({"strict", "overwrite", "margins", "keep-db", "annotate", "robustness"})
+_OPTION: Final = re.compile(
+    r"(?<![\w-])(?P<command>check )?--(?P<no>no-)?(?P<name>[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b)?"
+)
+
+
+@contextmanager
+def errors_name_keywords() -> Iterator[None]:
+    """Let an error say `overwrite=True` where the command line says `--overwrite`."""
+    try:
+        yield
+    except DriveLintError as error:
+        error.args = tuple(in_keywords(part) if isinstance(part, str) else part for part in error.args)
+        raise
+
+
+def in_keywords(text: str) -> str:
+    """Return a message with its options as keywords; those of a command that is named (`check --out`) stay."""
+    return _OPTION.sub(_keyword, text)
+
+
+def _keyword(option: re.Match[str]) -> str:
+    if option["command"]:
+        return option[0]
+    name = option["name"].replace("-", "_")
+    value = str(not option["no"]) if option["name"] in _FLAGS else option["metavar"]
+    return f"{name}={value}" if value else name

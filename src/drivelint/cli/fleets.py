@@ -1,0 +1,87 @@
+"""What reads whole audits: `report` and `diff` for a folder that `audit --out` wrote, and `what-if`."""
+
+from __future__ import annotations
+
+from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
+from drivelint.cli.console import run_interruptible
+from drivelint.cli.options import argument, option
+from drivelint.errors import ExitCode, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.fleet_report.opened import Audit
+
+
+def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None) -> None:
+    """Write the fleet page of an audit into it, and print its name."""
+    from drivelint.fleet_report import page
+    from drivelint.fleet_report.opened import destination
+
+    if to not in page.FORMATS:
+        raise UsageError(f"--to {to}: of an audit there is {' and '.join(page.FORMATS)}: other formats are of a check")
+    base = None if baseline is None else destination(baseline)
+    name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base))
+    _warn(audit)
+    typer.echo(f"{dest.rstrip('/')}/{name}")
+
+
+def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
+    """Print the difference of two audits."""
+    from drivelint.fleet_report import difference_text
+    from drivelint.fleet_report.difference import difference, write_rows
+    from drivelint.fleet_report.opened import opened_both
+    from drivelint.gate.descriptions import MAX_LINES
+
+    most = difference_text.JSON_ENTRIES if format_ == "json" else MAX_LINES
+
+    def compared() -> None:
+        with opened_both(base, new) as (con, earlier, later):
+            for audit in (earlier, later):
+                _warn(audit)
+            found = difference(con, later, earlier, most)
+            if rows is not None:
+                write_rows(con, rows)
+        least = fail_on or str(later.told.get("fail_on", "critical"))
+        if format_ == "json":
+            typer.echo(difference_text.to_json(found, least))
+        else:
+            typer.echo(difference_text.to_text(found, least, markdown=format_ == "markdown"))
+        raise typer.Exit(int(ExitCode.FAILED if found.n_failing(least) else ExitCode.OK))
+
+    run_interruptible(compared)
+
+
+def what_if(
+    dest: Annotated[Path, argument("DEST", "What audit --out wrote.")],
+    setting: Annotated[str, argument("RULE.PARAM=V", "Another value of a rule's parameter.")],
+    by: Annotated[
+        str | None,
+        option("--by", "TAG", "Tell verdicts apart by a tag of the manifest, or a situation such as weather."),
+    ] = None,
+    format_: Annotated[options.Format, option("--format", None, "What is printed on stdout.")] = "text",
+) -> None:
+    """Tell which verdicts of an audit become others with another value of a parameter, without reading a log.
+
+    Stored verdicts tell it where the parameter is the required value and nothing else. Where they do not, it says that a new audit
+    is needed, and why.
+
+    Exit codes: 0 all is told; 4 only a new audit can tell of some or all verdicts; 2 usage error.
+    """
+    from drivelint.fleet_report.opened import destination
+    from drivelint.fleet_report.what_if import ask_what_if, to_json, to_text
+
+    asked = run_interruptible(lambda: ask_what_if(destination(dest), setting, by))
+    typer.echo(to_json(asked) if format_ == "json" else to_text(asked))
+    raise typer.Exit(int(asked.exit_code))
+
+
+def _warn(audit: Audit) -> None:
+    """Say on stderr that an audit has not ended."""
+    if audit.warning:
+        typer.echo(f"drivelint: {audit.warning}", err=True)

@@ -1,0 +1,58 @@
+"""Starts the command again in place of this process when a rule cannot be ended, without that rule.
+
+DuckDB runs a rule in a thread, and a thread that heeds no interrupt ends only with its process. `exec` keeps the process id, the open
+standard streams and so whoever waits for them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from typing import TYPE_CHECKING, Final, NoReturn
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.evaluate.limits import Excess
+    from drivelint.report.progress import Progress
+
+KNOWN: Final = "DRIVELINT_DEAF_RULES"
+"""The environment variable by which the next process knows: JSON, task -> rule -> limit."""
+_SAID: Final[dict[Excess, str]] = {
+    "rule_timeout": "takes longer than --rule-timeout",
+    "out_of_memory": "takes more memory than there is",
+}
+
+
+class Restart:
+    """Rules that did not end; `work`: the folder with what this run has written, which the next one makes anew."""
+
+    def __init__(self, progress: Progress, work: Path | None) -> None:
+        self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(KNOWN, "{}"))
+        self._progress = progress
+        self._work = work
+
+    @classmethod
+    def if_possible(cls, progress: Progress, work: Path | None) -> Restart | None:
+        """Return one where a process can be replaced; Windows starts another one beside it."""
+        return cls(progress, work) if os.name == "posix" else None
+
+    def known(self, task: str) -> dict[str, Excess]:
+        """Return the rules that did not end in an earlier process, and the limit that they went beyond."""
+        return self._known.get(task, {})
+
+    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+        """Replace this process by one that does not try this rule."""
+        from drivelint.sql import store
+
+        self._progress.note(f"rule {rule_id} {_SAID[excess]} and cannot be stopped: starting again without it")
+        for folder in (*store.spill_folders, *([self._work] if self._work else [])):
+            shutil.rmtree(folder, ignore_errors=True)
+        known = {**self._known, task: {**self.known(task), rule_id: excess}}
+        self._progress.leave()
+        sys.stderr.flush()
+        os.execve(  # noqa: S606 - this very command
+            sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, KNOWN: json.dumps(known)}
+        )

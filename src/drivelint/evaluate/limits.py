@@ -1,0 +1,139 @@
+"""Holds each rule to a wall clock and to an amount of memory.
+
+A statement beyond its limit is interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that
+works on one huge value, or many of them, goes on. What to do about such a rule is for whoever made the limits (`DeafRules`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event, Lock, Thread
+from time import monotonic
+from typing import TYPE_CHECKING, Final, Literal, NoReturn, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    import duckdb
+
+DEFAULT_TIMEOUT_S: Final = 30.0
+"""Per rule and batch."""
+MOST_EXCESSES: Final = 3
+"""A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
+_LOOK_S: Final = 0.05
+_MEMORY_GRACE_S: Final = 0.5
+"""How long a rule may take to heed an interrupt for its memory; it may take gigabytes a second meanwhile."""
+
+Excess = Literal["rule_timeout", "out_of_memory"]
+"""The limit that a rule went beyond, as the reason code of its verdicts."""
+
+
+class Held:
+    """A rule that runs, and the limit that it went beyond, if any."""
+
+    def __init__(self) -> None:
+        self.excess: Excess | None = None
+        self.over = Event()
+        self.lock = Lock()
+        """Held while it is interrupted: an interrupt after its end would meet the next rule."""
+
+
+class DeafRules(Protocol):
+    """What to do about rules that do not heed an interrupt, and which ones are known. `task`: what was judged, drives or copies."""
+
+    def known(self, task: str) -> Mapping[str, Excess]:
+        """Return the rules that are not to be tried, and the limit that they went beyond."""
+        ...
+
+    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+        """End this process, or let another program take its place; called from the thread that watches."""
+        ...
+
+
+class RuleLimits:
+    """The limits of every rule of a run, and which rules have lost their turn.
+
+    `seconds`: per rule and batch, None: no limit. `deaf`: for rules that did not heed the interrupt within the same time again; None:
+    the interrupt is repeated until the rule ends.
+    """
+
+    def __init__(
+        self,
+        seconds: float | None = DEFAULT_TIMEOUT_S,
+        *,
+        task: str = "drives",
+        deaf: DeafRules | None = None,
+    ) -> None:
+        self.seconds = seconds
+        self.memory: Callable[[], int | None] = lambda: None
+        """Bytes by which the process may grow while a rule runs alone; None: any number."""
+        self._task = task
+        self._deaf = deaf
+        self._lost: dict[str, Excess] = {}
+        self._excesses: Counter[str] = Counter()
+        self.forget()
+
+    def lost(self, rule_id: str) -> Excess | None:
+        """Return the limit because of which a rule is not tried any more; None: it is tried."""
+        return self._lost.get(rule_id)
+
+    def forget(self) -> None:
+        """Try every rule again but those that are known to be deaf."""
+        self._lost = {} if self._deaf is None else dict(self._deaf.known(self._task))
+        self._excesses.clear()
+
+    @contextmanager
+    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[Held]:
+        """Hold the statements on `con` inside the block to the limits.
+
+        `alone`: no other rule runs meanwhile, so that the memory that the process takes is this rule's.
+        """
+        held = Held()
+        if self.seconds is None:
+            yield held
+            return
+        args = (con, rule_id, held, self.memory() if alone else None)
+        watch = Thread(target=self._watch, args=args, daemon=True, name=f"limits of {rule_id}")
+        watch.start()
+        try:
+            yield held
+        finally:
+            with held.lock:
+                held.over.set()
+            if held.excess is not None:
+                self._excesses[rule_id] += 1
+                if self._excesses[rule_id] >= MOST_EXCESSES:
+                    self._lost[rule_id] = held.excess
+
+    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, memory: int | None) -> None:
+        seconds = self.seconds or 0.0
+        until, before = monotonic() + seconds, resident_bytes()
+        patience = 0.0
+        while not held.over.wait(min(_LOOK_S, seconds)):
+            now = monotonic()
+            excess = held.excess
+            if excess is None:
+                if memory is not None and resident_bytes() - before > memory:
+                    excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
+                elif now >= until:
+                    excess, patience = "rule_timeout", now + seconds
+                else:
+                    continue
+            with held.lock:
+                if held.over.is_set():
+                    return
+                held.excess = excess
+                con.interrupt()
+                if now >= patience and self._deaf is not None:
+                    self._deaf.found(self._task, rule_id, excess)
+
+
+def resident_bytes() -> int:
+    """Return the memory that this process has at present; 0 where the system does not tell."""
+    try:
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return 0

@@ -1,0 +1,5 @@
+"""What a person reads of whole audits: the fleet page, the difference of two audits, and other values of a parameter.
+
+Everything is grouped in SQL (`drivelint.fleet`, `queries/fleet_report`). Rows of drives and findings reach Python only as far as they
+are shown: each table has at most some of them, and says how many it leaves out.
+"""

@@ -1,0 +1,81 @@
+"""Rates of an audit by the values of a tag, for the values that most drives have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.fleet.rates import rates
+from drivelint.fleet.situations import MEASURED, bound_tag, value_of
+from drivelint.fleet_report.figures import log_axis
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+    from drivelint.fleet.rates import Rate
+    from drivelint.fleet_report.figures import LogAxis
+
+MAX_VALUES: Final = 12
+MAX_RULES: Final = 12
+_SHOWN: Final = "shown_"
+
+
+class RuleByTag(NamedTuple):
+    """The rates of one rule and profile, one per value of the tag; drives that do not have the tag last."""
+
+    rule_id: str
+    profile: str | None
+    rates: list[Rate]
+
+
+@dataclass(frozen=True)
+class RatesByTag:
+    """The rules with most findings by one tag, on one axis of findings per 100 km.
+
+    `n_values_left_out`: values that fewer drives have; `n_rules_left_out`: rules with fewer findings, `n_findings_left_out`: these.
+    """
+
+    tag: str
+    rules: list[RuleByTag]
+    axis: LogAxis
+    n_values_left_out: int
+    n_rules_left_out: int
+    n_findings_left_out: int
+
+
+def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
+    """Return the rates by a tag or a situation. Errors: `UsageError` if no drive has that tag."""
+    n_values, of = 0, ""
+    if tag not in MEASURED:  # those have few values, and they are of an ego
+        con.execute(statement("fleet_report/tag_values", value=value_of(tag)), {**bound_tag(tag), "most": MAX_VALUES})
+        n_values = con.execute("SELECT max(n_values) FROM shown_value").fetchall()[0][0] or 0
+        if n_values > MAX_VALUES:
+            con.execute(statement("fleet_report/tag_drives", value=value_of(tag)), bound_tag(tag))
+            for table in ("drives", "verdicts", "findings"):
+                con.execute(
+                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
+                )
+            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN}rules AS FROM rules")
+            of = _SHOWN
+    by_rule: dict[tuple[str, str | None], list[Rate]] = {}
+    for rate in rates(con, tag, of=of):
+        by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
+    found = [RuleByTag(*name, sorted(told, key=lambda r: r.tag_value is None)) for name, told in by_rule.items()]
+    found = sorted(
+        (each for each in found if _n_findings(each)),
+        key=lambda each: (-_n_findings(each), each.rule_id, each.profile or ""),
+    )
+    left = found[MAX_RULES:]
+    return RatesByTag(
+        tag,
+        found[:MAX_RULES],
+        log_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
+        max(0, n_values - MAX_VALUES),
+        len(left),
+        sum(map(_n_findings, left)),
+    )
+
+
+def _n_findings(each: RuleByTag) -> int:
+    return sum(rate.findings + rate.findings_of_unknown for rate in each.rates)

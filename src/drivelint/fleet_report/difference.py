@@ -1,0 +1,206 @@
+"""The difference of two audits in the words of `drivelint diff`: counts of all, and the gravest findings of each kind."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import duckdb
+
+from drivelint.errors import UsageError
+from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
+from drivelint.fleet.rate_change import RateChange, compare_rates
+from drivelint.fleet_report.opened import BASE
+from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
+from drivelint.result.counts import SEVERITIES, VERDICTS
+from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
+from drivelint.result.text import number
+from drivelint.sql.statements import statement
+from drivelint.sql.store import quoted
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.fleet.compare import Comparison
+    from drivelint.fleet_report.opened import Audit
+
+    Row = dict[str, Any]
+
+_WHY: Final = {
+    "drive_not_checked": "the drive was not checked",
+    "drive_not_judged": "the drive could not be judged",
+    "rule_not_run": "the rule was not run",
+    "profile_not_run": "the profile was not run",
+    "ego_not_judged": "the ego was not judged",
+    "log_ends_before": "the log ends before it",
+    "no_verdict": "there is no verdict of this rule",
+    "object_not_there": "the object is not in this log, or has another id",
+    "not_applicable": "the rule does not apply there",
+}
+"""Why `drivelint.fleet.compare` says what it says -> the same for a person."""
+_JUDGED: Final = {
+    "pass": "the rule is kept there",
+    "fail": "the rule fails there still, at another step or place",
+    "unknown": "the rule is unknown there",
+    "error": "the rule could not be run there",
+}
+"""The verdict there -> the same in words, where the rule was judged."""
+
+
+class Entry(NamedTuple):
+    """A finding of one of two audits. `causes`: what else is known to differ there; `causes_not_known`: of what it is not known."""
+
+    finding: ComparedFinding
+    log: str
+    causes: tuple[str, ...]
+    causes_not_known: tuple[str, ...]
+
+
+class Opened(NamedTuple):
+    """Verdicts that are unknown or errors now and were not, in drives that both audits have; `reason`: that of one of them."""
+
+    reason_code: str
+    cause_code: str | None
+    reason: str
+    n: int
+    rules: list[str]
+    n_drives: int
+
+
+@dataclass(frozen=True)
+class AuditDifference:
+    """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
+
+    `gating`: severity -> new findings of stable rules. `causes`: what else differs -> standing -> number of findings.
+    `base_only`, `new_only`: at most `most` logs that the other has not.
+    """
+
+    base: Audit
+    new: Audit
+    counts: dict[str, int]
+    worse: int
+    fixed: tuple[int, int]
+    gating: dict[str, int]
+    verdicts: tuple[dict[str, int], dict[str, int]]
+    entries: dict[str, list[Entry]]
+    causes: dict[tuple[str, ...], Counter[str]]
+    causes_not_known: Counter[str]
+    comparison: Comparison
+    base_only: list[str]
+    new_only: list[str]
+    opened: list[Opened]
+    rates: list[RateChange]
+
+    @property
+    def headline(self) -> str:
+        """The counts in one sentence."""
+        return f"{self.counts['new']} new, {counts_sentence(self.counts, self.worse, self.fixed)}"
+
+    def n_failing(self, fail_on: str) -> int:
+        """Return how many new findings of stable rules are at or above a severity."""
+        severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
+        return sum(self.gating[severity] for severity in severe)
+
+    @property
+    def called(self) -> list[RateChange]:
+        """The rates that differ."""
+        return [each for each in self.rates if each.is_called]
+
+    @property
+    def n_tested(self) -> int:
+        """Number of rates that were compared."""
+        return sum(each.p_value is not None for each in self.rates)
+
+
+def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: int) -> AuditDifference:
+    """Return the difference of the audits of `opened`, with at most `most` findings of each standing."""
+    found = compare(con, base=BASE, new="", tools=(base.version, new.version))
+    sides = {"base": BASE, "new": ""}
+    (gating,) = _rows(con, "gating", new="")
+    only = [_rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
+    causes: dict[tuple[str, ...], Counter[str]] = {}
+    not_known: Counter[str] = Counter()
+    for each in found.differences:
+        if each.standing != "unchanged":
+            causes.setdefault(each.causes, Counter())[each.standing] += each.n
+            not_known.update(dict.fromkeys(each.causes_not_known, each.n))
+    counted = found.counts()
+    return AuditDifference(
+        base=base,
+        new=new,
+        counts={standing: counted[standing] for standing in DIFF_STATUSES},
+        worse=gating["worse"],
+        fixed=(gating["passes"], gating["not_applicable"]),
+        gating={severity: gating[severity] for severity in SEVERITIES},
+        verdicts=(verdict_counts(con, BASE), verdict_counts(con, "")),
+        entries={standing: _entries(con, standing, most) for standing in DIFF_STATUS_TITLES},
+        causes=dict(sorted(causes.items(), key=lambda item: (-item[1].total(), item[0]))),
+        causes_not_known=not_known,
+        comparison=found,
+        base_only=[row["log"] for row in only[0]],
+        new_only=[row["log"] for row in only[1]],
+        opened=[Opened(**row) for row in _rows(con, "opened", base=BASE, new="")],
+        rates=compare_rates(con, base=BASE, new=""),
+    )
+
+
+def verdict_counts(con: duckdb.DuckDBPyConnection, of: str) -> dict[str, int]:
+    """Return verdict -> number of rows, zeros included."""
+    found = {row["verdict"]: row["n"] for row in _rows(con, "verdicts", of=of)}
+    return {verdict: found.get(verdict, 0) for verdict in VERDICTS}
+
+
+def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
+    """Write a row per finding of either audit as Parquet, after `difference`. Errors: `UsageError` where it cannot be written."""
+    entries = statement("fleet_report/all_entries")
+    try:
+        con.execute(f"COPY ({entries}) TO {quoted(path)} (FORMAT parquet, COMPRESSION zstd)")
+    except duckdb.IOException as error:
+        raise UsageError(f"--rows {path}: cannot be written: {' '.join(str(error).split())[:200]}") from error
+
+
+def _entries(con: duckdb.DuckDBPyConnection, standing: str, most: int) -> list[Entry]:
+    rows = _rows(con, "entries", {"standing": standing, "most": most}, base=BASE, new="")
+    return [Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"])) for row in rows]
+
+
+def _finding(row: Row) -> ComparedFinding:
+    same = (
+        "standing", "finding_id", "base_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "stable", "margin",
+        "base_margin", "unit", "there",
+    )  # fmt: skip
+    return ComparedFinding(**{name: row[name] for name in same}, t_s=round(row["t_s"], 3), why=_why(row))
+
+
+def _why(row: Row) -> str:
+    """Return how a finding changed, or why the other audit does not have it."""
+    if row["standing"] != "changed":
+        return _JUDGED[row["there"]] if row["why"] == "judged" else _WHY[row["why"]]
+    if row["is_part"]:
+        whole, part = (
+            ("base_id", "finding_id") if _length(row, "base_") > _length(row, "") else ("finding_id", "base_id")
+        )
+        return f"{row[part]} is a part of {row[whole]}"
+    notes = []
+    if row["severity"] != row["base_severity"]:
+        notes.append(f"severity {row['severity']}, was {row['base_severity']}")
+    if row["margin"] != row["base_margin"]:
+        notes.append(f"margin {number(row['margin'], row['unit'])}, was {number(row['base_margin'], row['unit'])}")
+    ends = [abs(row[name] - row[f"base_{name}"]) for name in ("from_s", "to_s")]
+    if max(ends) > INTERVAL_TOLERANCE_S:
+        now, was = (f"{row[f'{of}from_s']:.2f} s to {row[f'{of}to_s']:.2f} s" for of in ("", "base_"))
+        notes.append(f"{now}, was {was}")
+    return "; ".join(notes)
+
+
+def _length(row: Row, of: str) -> float:
+    return float(row[f"{of}to_s"] - row[f"{of}from_s"])
+
+
+def _rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
+    """Return the rows of a statement of `queries/fleet_report`."""
+    rows: list[Row] = (
+        con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
+    )
+    return rows

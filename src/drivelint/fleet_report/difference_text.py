@@ -1,0 +1,96 @@
+"""A difference of two audits as text, Markdown and JSON, and all its rows as Parquet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from drivelint.fleet_report.figures import figure, interval
+from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
+from drivelint.report.markdown import code, escaped
+from drivelint.result.counts import VERDICTS
+from drivelint.result.text import finite
+from drivelint.result.text_templates import text_template
+
+if TYPE_CHECKING:
+    from drivelint.fleet.coverage import RuleCoverage
+    from drivelint.fleet.rate_change import RateChange
+    from drivelint.fleet_report.difference import AuditDifference
+
+AUDIT_DIFF_SCHEMA: Final = 1
+"""Version of the JSON: raised when a key changes its meaning or goes."""
+JSON_ENTRIES: Final = 1_000
+"""Findings of each standing that the JSON has."""
+
+
+def rate_name(of: RateChange | RuleCoverage) -> str:
+    """Return rule and profile."""
+    return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
+
+
+def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> str:
+    """Return a difference as text for a person, or as Markdown."""
+    filters: dict[str, Any] = {
+        "finding_line": finding_line,
+        "interval": interval,
+        "figure": figure,
+        "rate_name": rate_name,
+        "escaped": escaped,
+        "code": code,
+    }
+    name = "difference.md.j2" if markdown else "difference.txt.j2"
+    text = text_template(__file__, name, **filters).render(
+        diff=found,
+        verdicts=VERDICTS,
+        titles=DIFF_STATUS_TITLES,
+        most=MAX_LINES,
+        exit=exit_sentence(found.n_failing(fail_on), fail_on),
+    )
+    return text.rstrip("\n")
+
+
+def to_json(found: AuditDifference, fail_on: str) -> str:
+    """Return a difference as JSON: all counts, and the first entries of each standing with the number of those left out."""
+    n_failing = found.n_failing(fail_on)
+    content = {
+        "audit_diff_schema": AUDIT_DIFF_SCHEMA,
+        "exit": {"code": int(n_failing > 0), "why": exit_sentence(n_failing, fail_on).partition(": ")[2]},
+        "fail_on": fail_on,
+        "base_name": found.base.name,
+        "name": found.new.name,
+        "counts": found.counts,
+        "gating": found.gating,
+        "base_verdicts": found.verdicts[0],
+        "verdicts": found.verdicts[1],
+        "drives": {
+            "both": found.comparison.drives_both,
+            "base_only": found.comparison.drives_base_only,
+            "new_only": found.comparison.drives_new_only,
+        },
+        "differences": [each._asdict() for each in found.comparison.differences],
+        "entries": [
+            {
+                **msgspec.to_builtins(each.finding),
+                **{key: value for key, value in each._asdict().items() if key != "finding"},
+            }
+            for entries in found.entries.values()
+            for each in entries
+        ],
+        "left_out": {standing: found.counts[standing] - len(entries) for standing, entries in found.entries.items()},
+        "opened": [each._asdict() for each in found.opened],
+        "rates": [_rate_change(each) for each in found.rates if each.p_value is not None],
+    }
+    return msgspec.json.format(msgspec.json.encode(finite(msgspec.to_builtins(content))), indent=2).decode()
+
+
+def _rate_change(each: RateChange) -> dict[str, Any]:
+    told: dict[str, Any] = {"rule_id": each.rule_id, "profile": each.profile}
+    for side, rate in (("base", each.base), ("new", each.new)):
+        told[side] = rate and {
+            "findings": rate.findings,
+            "km": rate.km,
+            "km_unknown": rate.km_unknown,
+            "per_100km": rate.per_100km._asdict(),
+        }
+    return {**told, "p_value": each.p_value, "corrected": each.corrected, "called": each.is_called}

@@ -1,0 +1,54 @@
+"""The command that judges one drive of an audit again, with a report to look at."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.audit.bucket import is_url
+from drivelint.drive.trace import DriveInput
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_OPTION_OF_FIELD: Final = {"sensor_range_m": "--sensor-range"}
+_DEFAULTS: Final = {each.name: each.default for each in fields(DriveInput)}
+_OPTION_OF_SETTING: Final = {
+    "rules": "--rules",
+    "ignore": "--ignore",
+    "profiles": "--profile",
+    "params": "--param",
+    "rules_dirs": "--rules-dir",
+}
+
+
+def check_command(log: str, options: str | None, settings: Mapping[str, Any], drive_id: str) -> list[str]:
+    """Return `drivelint check` of a drive, an option and its value as one part.
+
+    `options`: those of `DriveInput` as JSON; `settings`: those of the audit. `check` reads files of this machine: of a log in an
+    object store its name stands there, as of a copy.
+    """
+    parts = [["drivelint", "check"], [_local(log)]]
+    for name, value in json.loads(options or "{}").items():
+        parts += _words(name, value)
+    for name, option in _OPTION_OF_SETTING.items():
+        parts += [[option, str(value)] for value in settings.get(name, ())]
+    parts.append(["--out", f"drives/{drive_id}"])
+    return [shlex.join(words) for words in parts]
+
+
+def _words(name: str, value: Any) -> list[list[str]]:
+    if name not in _DEFAULTS or value in (None, _DEFAULTS[name], []):
+        return []
+    option = _OPTION_OF_FIELD.get(name, f"--{name.replace('_', '-')}")
+    if name == "env":
+        return [[option, each] for each in value]
+    if isinstance(value, list):  # with '=', since a negative number looks like an option
+        return [[f"{option}={','.join(f'{each:.12g}' for each in value)}"]]
+    return [[option, _local(str(value)) if name in {"map", "map_dir", "mapping"} else str(value)]]
+
+
+def _local(name: str) -> str:
+    return name.rpartition("/")[2] if is_url(name) else name

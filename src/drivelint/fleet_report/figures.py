@@ -1,0 +1,75 @@
+"""Rates, intervals and large numbers as words, and the bars that show intervals."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from drivelint.report.html.svg import percent
+from drivelint.result.text import NONE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.fleet.intervals import Estimate
+
+
+def figure(value: float | None) -> str:
+    """Return a number with three digits that count; a dash for none."""
+    if value is None:
+        return NONE
+    if value == 0 or not math.isfinite(value):
+        return "0" if value == 0 else "no limit"
+    if abs(value) >= 1000:
+        return f"{value:,.0f}"
+    digits = max(0, 2 - math.floor(math.log10(abs(value))))
+    return f"{value:.{digits}f}" if digits < 8 else f"{value:.2e}"
+
+
+def interval(estimate: Estimate) -> str:
+    """Return a rate with the ends of its interval, or that nothing is known."""
+    if estimate.rate is None:
+        return NONE
+    return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
+
+
+def share(estimate: Estimate) -> str:
+    """Return a share and its interval in percent, or a dash."""
+    if estimate.rate is None:
+        return NONE
+    return f"{figure(100 * estimate.rate)} % ({figure(100 * estimate.low)} to {figure(100 * estimate.high)})"
+
+
+class LogAxis(NamedTuple):
+    """Rates from `low` to `high`, both powers of ten, laid out from 0 % to 100 %."""
+
+    low: int
+    high: int
+
+    @property
+    def words(self) -> str:
+        """From what to what it goes."""
+        return f"{10.0**self.low:g} to {10.0**self.high:g}"
+
+    def at(self, value: float) -> float:
+        """Return where a rate lies, in percent; one of 0 at the left end."""
+        if value <= 0:
+            return 0.0
+        return min(100.0, max(0.0, 100 * (math.log10(value) - self.low) / (self.high - self.low)))
+
+    def bar(self, estimate: Estimate) -> dict[str, str] | None:
+        """Return place and width of an interval's bar, and the place of the rate; None: nothing is known."""
+        if estimate.rate is None:
+            return None
+        low, high = self.at(estimate.low), self.at(estimate.high)
+        return {"x": percent(low), "w": percent(max(0.5, high - low)), "rate": percent(self.at(estimate.rate))}
+
+
+def log_axis(estimates: Iterable[Estimate]) -> LogAxis:
+    """Return the axis that shows these rates and the finite ends of their intervals."""
+    known = [each for each in estimates if each.rate is not None]
+    ends = [end for each in known for end in (each.low, each.rate, each.high) if end and math.isfinite(end)]
+    if not ends:
+        return LogAxis(-1, 1)
+    low, high = math.floor(math.log10(min(ends))), math.ceil(math.log10(max(ends)))
+    return LogAxis(low, max(high, low + 1))

@@ -1,0 +1,108 @@
+"""`fleet.html` and `fleet.md`: one page about an audit of any size. The HTML opens offline, in the style of `report.html`."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.audit.bucket import is_url
+from drivelint.fleet.coverage import STANDINGS
+from drivelint.fleet_report import figures
+from drivelint.fleet_report.content import FleetContent, content
+from drivelint.fleet_report.difference_text import rate_name
+from drivelint.fleet_report.opened import opened
+from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
+from drivelint.phrases import plural
+from drivelint.reasons.signals import how_to_provide, remedy
+from drivelint.report.html.environment import page_environment
+from drivelint.report.markdown import code, escaped
+from drivelint.result.counts import SEVERITIES, VERDICTS
+from drivelint.result.text_templates import text_template
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jinja2 import Environment
+
+    from drivelint.fleet.missing import Undecided
+    from drivelint.fleet_report.opened import Audit
+
+FORMATS: Final = ("html", "markdown")
+_FILES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
+_STANDING_TITLES: Final = {
+    "never_decided": "Never decided: unknown each time",
+    "never_triggered": "Never triggered: what they are about did not happen",
+    "never_in_force": "Never in force: another nation, other conditions, or no automated driver",
+    "not_run": "Not run: no drive was judged by them",
+}
+_HERE: Final = Path(__file__).parent
+
+
+def write(dest: str, to: str, by: Sequence[str], baseline: str | None) -> tuple[str, Audit]:
+    """Write the page of an audit into it; return the file's name and the audit.
+
+    `by`: tags by which rates are told apart. Errors: `UsageError` for an audit or tag that is not there; `OutputError`.
+    """
+    with opened(dest, baseline) as (con, audit, base):
+        found = content(con, audit, base, by)
+    page = html(found) if to == "html" else markdown(found)
+    audit.results.write(_FILES[to], page)
+    return _FILES[to], audit
+
+
+def html(found: FleetContent) -> bytes:
+    """Return the page as UTF-8; the same audit gives the same bytes."""
+    text = _environment().get_template("fleet.html.j2").render(_words(found))
+    return text.encode("utf-8", "replace")
+
+
+def markdown(found: FleetContent) -> bytes:
+    """Return the same as Markdown, without pictures."""
+    text = text_template(__file__, "templates/fleet.md.j2", **_FILTERS, escaped=escaped, code=code).render(
+        _words(found)
+    )
+    return text.encode("utf-8", "replace")
+
+
+def _words(found: FleetContent) -> dict[str, Any]:
+    """Return what the templates name."""
+    assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without words would be left out
+    return {
+        "fleet": found,
+        "severities": SEVERITIES,
+        "stored": any(is_url(row["log"]) for row in found.worst),
+        "verdicts": VERDICTS,
+        "standings": [(title, found.coverage.with_standing(name)) for name, title in _STANDING_TITLES.items()],
+        "diff_titles": DIFF_STATUS_TITLES,
+        "titles": {rule_id: rule["title"] for rule_id, rule in found.rules.items()},
+    }
+
+
+def _provide(signal: str) -> str:
+    """Return how to provide a signal, in whatever format."""
+    return how_to_provide(signal, "mapped")
+
+
+def _mend(each: Undecided) -> str:
+    """Return what would decide verdicts that are unknown for a reason."""
+    return remedy(each.reason_code, None, "mapped")
+
+
+_FILTERS: Final[dict[str, Any]] = {
+    "figure": figures.figure,
+    "interval": figures.interval,
+    "share": figures.share,
+    "finding_line": finding_line,
+    "rate_name": rate_name,
+    "provide": _provide,
+    "mend": _mend,
+    "plural": plural,
+}
+
+
+@cache
+def _environment() -> Environment:
+    environment = page_environment(("tables.js", "report.js"), _HERE / "templates", ("fleet.css",))
+    environment.filters |= _FILTERS
+    return environment

@@ -1,0 +1,81 @@
+"""The map of findings: where on the earth they are, as a plan in metres around their middle, and the places with most of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.report.html.svg import num, round_step
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+MAX_MARKS: Final = 3_000
+MAX_PLACES: Final = 20
+_WIDTH: Final = 900
+_MOST_HEIGHT: Final = 620
+_CELL_PX: Final = 6
+_M_PER_DEGREE: Final = 111_320.0
+"""Of latitude, and of longitude at the equator, on a sphere of the earth's mean radius: enough to see where."""
+_LEAST_DEGREES: Final = 0.002
+
+
+@dataclass(frozen=True)
+class FindingMap:
+    """Marks of findings on a grid, and the numbers of those that it shows and does not.
+
+    `marks`: kind (severity), x, y and radius in pixels, number of findings. `places`: rows of `places.sql`.
+    `n_placed`: findings that have a place; `n_left_out`: those of them in cells that are not drawn.
+    """
+
+    width: int
+    height: int
+    marks: list[dict[str, Any]]
+    bar_px: str
+    bar_words: str
+    middle: str
+    places: list[dict[str, Any]]
+    n_placed: int
+    n_findings: int
+    n_left_out: int
+
+
+def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
+    """Return the map of all findings; None: no finding has a place."""
+    (about,) = con.execute(statement("fleet_report/extent")).to_arrow_table().to_pylist()
+    if not about["placed"]:
+        return None
+    stretch = math.cos(math.radians((about["south"] + about["north"]) / 2))
+    across = max((about["east"] - about["west"]) * stretch, _LEAST_DEGREES)
+    down = max(about["north"] - about["south"], _LEAST_DEGREES)
+    px = min((_WIDTH - 2 * _CELL_PX) / across, (_MOST_HEIGHT - 2 * _CELL_PX) / down)  # per degree
+    cell = _CELL_PX / px
+    bound = {"west": about["west"], "north": about["north"], "stretch": stretch, "cell": cell, "most": MAX_MARKS}
+    found = con.execute(statement("fleet_report/marks"), bound).to_arrow_table().to_pylist()
+    bar_m = round_step(_M_PER_DEGREE * across / 8)
+    return FindingMap(
+        width=_WIDTH,
+        height=math.ceil(down * px) + 4 * _CELL_PX,
+        marks=[_mark(row) for row in found],
+        bar_px=num(bar_m / _M_PER_DEGREE * px),
+        bar_words=f"{bar_m / 1000:g} km" if bar_m >= 1000 else f"{bar_m:g} m",
+        middle=f"{(about['south'] + about['north']) / 2:.4f}, {(about['west'] + about['east']) / 2:.4f}",
+        places=con.execute(statement("fleet_report/places"), {"most": MAX_PLACES}).to_arrow_table().to_pylist(),
+        n_placed=about["placed"],
+        n_findings=about["findings"],
+        n_left_out=about["placed"] - sum(row["n"] for row in found),
+    )
+
+
+def _mark(row: dict[str, Any]) -> dict[str, Any]:
+    x, y = ((row[name] + 1.5) * _CELL_PX for name in ("column_no", "row_no"))
+    radius = min(_CELL_PX * 2.0, 2.2 + 1.3 * math.log10(row["n"]))  # legible for one finding and for ten thousand
+    return {
+        "kind": ("critical", "major", "minor")[row["rank"] - 1],
+        "x": num(x),
+        "y": num(y),
+        "r": num(radius),
+        "n": row["n"],
+    }

@@ -1,0 +1,154 @@
+"""`drivelint what-if`: which verdicts of an audit become others with another value of a parameter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from drivelint import catalogue
+from drivelint.errors import ExitCode, UsageError
+from drivelint.fleet.what_if import WhatIf, what_if
+from drivelint.fleet_report.opened import opened
+from drivelint.phrases import hint, plural
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+    from drivelint.fleet.what_if import Flip
+    from drivelint.fleet_report.opened import Audit
+
+WHAT_IF_SCHEMA: Final = 1
+"""Version of the JSON: raised when a key changes its meaning or goes."""
+MAX_VALUES: Final = 50
+"""Values of a tag that the text shows; the JSON has all."""
+
+
+@dataclass(frozen=True)
+class AskedWhatIf:
+    """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart."""
+
+    audit: Audit
+    setting: str
+    was: str
+    by: str | None
+    found: WhatIf
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """OK; NOT_JUDGED where only a new audit can tell."""
+        return ExitCode.NOT_JUDGED if self.found.needs_check or self.found.not_known else ExitCode.OK
+
+
+def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
+    """Return what `RULE.PARAM=VALUE` does to the verdicts of an audit, by the values of a tag.
+
+    Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
+    """
+    with opened(dest) as (con, audit, _):
+        rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
+        ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
+        ((param, value),) = values.items()
+        version, was = _used(con, rule_id, param)
+        rule = rules[rule_id]
+        if version != rule.version:
+            why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
+            return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
+        return AskedWhatIf(audit, setting, was, by, _answer(con, rule, param, value, by))
+
+
+def _answer(
+    con: duckdb.DuckDBPyConnection, rule: Rule, param: str, value: float | str | bool, by: str | None
+) -> WhatIf:
+    if isinstance(value, bool | str):
+        return WhatIf(rule.id, param, 0.0, f"{param} is no number")
+    return what_if(con, rule, param, float(value), by)
+
+
+def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
+    """Return the version of a rule in the audit, and the value of its parameter there."""
+    known = dict(
+        con.execute("SELECT rule_id, {'version': rule_version, 'params': params} FROM rules ORDER BY ALL").fetchall()
+    )
+    if rule_id not in known:
+        raise UsageError(f"the audit has no verdicts of rule {rule_id}; {hint(rule_id, known)}")
+    values = {each["name"]: each["value"] for each in known[rule_id]["params"]}
+    return known[rule_id]["version"], values.get(param, "not there")
+
+
+def to_text(asked: AskedWhatIf) -> str:
+    """Return the answer for a person: what becomes what, by the values of the tag."""
+    found = asked.found
+    lines = [f"{asked.setting} instead of {asked.was}, by the verdicts that {asked.audit.dest} stores"]
+    if asked.audit.warning:
+        lines.append(asked.audit.warning)
+    if found.needs_check:
+        return "\n".join([*lines, f"needs a new audit: {found.needs_check}", _command(asked)])
+    total, flips = sum(each.n for each in found.verdicts), sum(each.n for each in found.flips)
+    words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(found.flips))
+    lines.append(f"{flips} of {total} verdicts become others{f': {words}' if words else ''}")
+    if found.not_known:
+        lines.append(
+            f"{plural(found.not_known, 'verdict')} {'needs' if found.not_known == 1 else 'need'} a new audit: the stored value may be "
+            "only a bound of what was observed"
+        )
+    lines += _table(asked)
+    lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
+    return "\n".join([*lines, _command(asked)] if found.not_known else lines)
+
+
+def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
+    pairs = sorted((each.was, each.becomes or "", each.n) for each in flips)
+    return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
+
+
+def _table(asked: AskedWhatIf) -> list[str]:
+    """Return a line per value of the tag and profile, with what becomes of its verdicts."""
+    told: dict[tuple[str, str], list[Flip]] = {}
+    for each in sorted(
+        asked.found.verdicts,
+        key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
+    ):
+        value = "" if asked.by is None else "(not given)" if each.tag_value is None else each.tag_value
+        told.setdefault((value, each.profile or ""), []).append(each)
+    width = max((len(" ".join(key).strip()) for key in told), default=0)
+    lines = []
+    for key, flips in list(told.items())[:MAX_VALUES]:
+        said = [f"{each.n} {_becomes(each)}" for each in flips]
+        lines.append(f"  {' '.join(key).strip():{width}}  {', '.join(said)}".rstrip())
+    if len(told) > MAX_VALUES:
+        lines.append(f"  ... and {len(told) - MAX_VALUES} more: --format json has them all")
+    return lines
+
+
+def _becomes(flip: Flip) -> str:
+    if flip.becomes is None:
+        return f"{flip.was} -> needs a new audit"
+    return f"stay {flip.was}" if flip.becomes == flip.was else f"{flip.was} -> {flip.becomes}"
+
+
+def _command(asked: AskedWhatIf) -> str:
+    return f"to be told all: drivelint audit SOURCE --param {asked.setting} --out OTHER, then drivelint diff {asked.audit.dest} OTHER"
+
+
+def to_json(asked: AskedWhatIf) -> str:
+    """Return the answer as JSON."""
+    found = asked.found
+    content: dict[str, Any] = {
+        "what_if_schema": WHAT_IF_SCHEMA,
+        "rule_id": found.rule_id,
+        "param": found.param,
+        "value": asked.setting.partition("=")[2],
+        "was": asked.was,
+        "by": asked.by,
+        "needs_audit": found.needs_check,
+        "not_known": found.not_known,
+        "verdicts": [each._asdict() for each in found.verdicts],
+    }
+    return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

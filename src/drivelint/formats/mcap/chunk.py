@@ -1,0 +1,91 @@
+"""The chunks of an MCAP file: unpacked within the size that they declare, and checked by their CRC."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from typing import NamedTuple
+
+from drivelint.errors import TraceError
+
+MAX_CHUNK_BYTES = 512 * 1024 * 1024
+"""A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
+COMPRESSIONS = frozenset({"", "zstd", "lz4"})
+_CHUNK = struct.Struct("<QQQII")
+
+
+class ChunkError(Exception):
+    """A chunk is damaged. `framed`: the length of its record can be believed all the same."""
+
+    def __init__(self, what: str, *, framed: bool = True) -> None:
+        super().__init__(what)
+        self.framed = framed
+
+
+class ChunkHead(NamedTuple):
+    """What a chunk declares, and its bytes as they are in the file."""
+
+    size: int
+    crc: int
+    compression: str
+    packed: memoryview
+
+
+def chunk_head(body: memoryview) -> ChunkHead:
+    """Return what a chunk record declares. Errors: `ChunkError` where its lengths do not fit."""
+    if len(body) < _CHUNK.size:
+        raise ChunkError("a chunk record without its header", framed=False)
+    _, _, size, crc, name_length = _CHUNK.unpack_from(body)
+    name_end = _CHUNK.size + name_length
+    if name_end + 8 > len(body):
+        raise ChunkError("a chunk record whose lengths do not fit", framed=False)
+    compression = bytes(body[_CHUNK.size : name_end]).decode("utf-8", "replace")
+    (packed_length,) = struct.unpack_from("<Q", body, name_end)
+    packed = body[name_end + 8 :]
+    if packed_length != len(packed):
+        raise ChunkError("a chunk record whose lengths do not fit", framed=False)
+    return ChunkHead(size, crc, compression, packed)
+
+
+def chunk_records(head: ChunkHead, where: str) -> bytes:
+    """Return the records of a chunk. Errors: `ChunkError` where they are damaged.
+
+    `TraceError` where they cannot be read at all, `where` (file and byte): too large, or of an unknown compression.
+    """
+    if head.size > MAX_CHUNK_BYTES:
+        raise TraceError(
+            f"{where}: a chunk of {len(head.packed)} bytes that says it unpacks to {head.size}, beyond "
+            f"{MAX_CHUNK_BYTES // 2**20} MiB: record or copy the log again"
+        )
+    if head.compression not in COMPRESSIONS:
+        raise TraceError(f"{where}: a chunk is compressed by {head.compression!r}: zstd, lz4 or none is needed")
+    records = _unpacked(head)
+    if head.crc and zlib.crc32(records) != head.crc:
+        raise ChunkError("a chunk with a wrong CRC (its content changed)")
+    return records
+
+
+def _unpacked(head: ChunkHead) -> bytes:
+    """Decompress at most as many bytes as the chunk declares."""
+    import zstandard
+
+    size, packed = head.size, head.packed
+    try:
+        if head.compression == "":
+            records = bytes(packed) if len(packed) == size else b""
+        elif head.compression == "zstd":
+            declared = zstandard.get_frame_parameters(packed).content_size
+            # the library believes the frame's own size rather than the limit given to it
+            if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
+                raise ChunkError(f"a chunk that says it unpacks to {size} bytes and then to {declared},")
+            records = zstandard.ZstdDecompressor().decompress(packed, max_output_size=max(size, 1))
+        else:
+            import lz4.frame  # type: ignore[import-untyped]
+
+            records = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
+    except (zstandard.ZstdError, RuntimeError, EOFError) as error:
+        raise ChunkError(f"a chunk that cannot be unpacked ({error})") from error
+    if len(records) != size:
+        found = len(records) if head.compression else len(packed)
+        raise ChunkError(f"a chunk that says it unpacks to {size} bytes and unpacks to {found}")
+    return records

@@ -1,0 +1,121 @@
+"""What was lost of an MCAP file: bytes, and the log times of the messages that may have been in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+from drivelint.drive.trace import LostTime
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+MOST_BACKWARD_NS: Final = 1_000_000_000
+"""Log times that go back further do not follow the file: what lies between two messages may be of any time."""
+
+
+@dataclass(frozen=True)
+class LostBytes:
+    """Bytes `start` to `end` of a file, and why they were lost.
+
+    Their messages are of log times after `since_ns` and before `until_ns`; None: any.
+    """
+
+    start: int
+    end: int
+    what: str
+    since_ns: int | None
+    until_ns: int | None = None
+    timed: bool = False
+
+
+@dataclass
+class Losses:
+    """The lost bytes of a file in its order, each between the messages before and after it. False if there are none."""
+
+    found: list[LostBytes] = field(default_factory=list)
+    first_ns: int | None = None
+    last_ns: int | None = None
+    _latest_ns: int = -1
+    _backward: bool = False
+    _open: int = 0
+
+    def __bool__(self) -> bool:
+        return bool(self.found)
+
+    @property
+    def first(self) -> LostBytes:
+        """The first lost bytes; there must be some."""
+        return self.found[0]
+
+    @property
+    def last(self) -> LostBytes:
+        """The lost bytes that were found last; there must be some."""
+        return self.found[-1]
+
+    def message(self, log_ns: int) -> None:
+        """Take note of a message that was read."""
+        if self.first_ns is None:
+            self.first_ns = log_ns
+        for k in range(self._open, len(self.found)):
+            self.found[k] = replace(self.found[k], until_ns=log_ns)
+        self._open = len(self.found)
+        self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_NS
+        self._latest_ns = max(self._latest_ns, log_ns)
+        self.last_ns = log_ns
+
+    def add(self, start: int, end: int, what: str, since: int | None = None, until: int | None = None) -> None:
+        """Take note of lost bytes behind the messages read so far, or of these first and last log times."""
+        if since is None or until is None:
+            self.found.append(LostBytes(start, end, what, self.last_ns))
+        else:
+            self.found.append(LostBytes(start, end, what, since - 1, until + 1, timed=True))
+            self._open = len(self.found)
+
+    def add_message(self, offset: int, what: str, log_ns: int) -> None:
+        """Take note of a message that cannot be decoded."""
+        self.found.append(LostBytes(offset, offset, what, log_ns - 1, log_ns + 1, timed=True))
+
+    def covers(self, offset: int) -> bool:
+        """Whether this byte is lost."""
+        return any(each.start <= offset < each.end for each in self.found)
+
+    def narrow(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
+        """Bound the times of lost bytes by those of the chunks in them, where the index knows these (offset: length, times).
+
+        A loss with nothing but chunks and their message indexes in it cannot be of other times.
+        """
+        for k, each in enumerate(self.found):
+            inside = [times for offset, (_, *times) in chunks.items() if each.start <= offset < each.end]
+            if inside and not each.timed:
+                since, until = min(a for a, _ in inside) - 1, max(b for _, b in inside) + 1
+                self.found[k] = replace(each, since_ns=since, until_ns=until, timed=True)
+
+    def times(self, path: Path) -> list[LostTime]:
+        """Return what was lost as stretches of log time, each with the sentence that tells it."""
+        found = []
+        for each in self.found:
+            since, until = each.since_ns, each.until_ns
+            if self._backward and not each.timed:
+                since = until = None
+            elif since is not None and until is not None and until < since:
+                since, until = until, since
+            what = each.what.removeprefix(f"{path}: ")
+            what = what.partition(": the log is damaged")[0].partition(": record or copy")[0]
+            if each.end > each.start:
+                what = f"{each.end - each.start} bytes from byte {each.start} on cannot be read ({what})"
+            found.append(LostTime(since, until, f"{path.name}: {what}"))
+        return found
+
+
+def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
+    """Return what was lost of a log in several files, in their order: what its neighbours have bounds a file's beginning and end."""
+    found = []
+    for k, (path, losses) in enumerate(parts):
+        before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)
+        after = min((each.first_ns for _, each in parts[k + 1 :] if each.first_ns is not None), default=None)
+        for lost in losses.times(path):
+            since = before if lost.since_ns is None else lost.since_ns
+            found.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
+    return found

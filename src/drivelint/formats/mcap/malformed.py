@@ -1,0 +1,54 @@
+"""Decodes messages of which some may be malformed: these are counted and left out, where they are few."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from drivelint.formats.mcap.reader import MessageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.formats.mcap.reader import Container, Packet
+
+T = TypeVar("T")
+
+MOST_MALFORMED_SHARE: Final = 0.1
+"""Where more of the messages cannot be decoded, the log's schema is not theirs, and what the others say is chance."""
+
+
+def decode_readable(
+    container: Container, packets: list[Packet], decode: Callable[[list[Packet]], T]
+) -> tuple[T | None, list[Packet]]:
+    """Decode a batch without its malformed messages, which are lost; return what was decoded (None: nothing) and of what.
+
+    Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
+    """
+    try:
+        return decode(packets), packets
+    except MessageError as error:
+        first = error
+    malformed = dict(_malformed(packets, decode))
+    if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(packets)):
+        raise first
+    for k, why in malformed.items():
+        container.losses.add_message(packets[k].offset, str(why), packets[k].log_time_ns)
+    readable = [packet for k, packet in enumerate(packets) if k not in malformed]
+    return (decode(readable) if readable else None), readable
+
+
+def _malformed(packets: list[Packet], decode: Callable[[list[Packet]], object]) -> list[tuple[int, MessageError]]:
+    """Return the places of the messages that cannot be decoded, and their errors, by halves."""
+    found: list[tuple[int, MessageError]] = []
+    waiting = [(0, len(packets))]
+    while waiting and len(found) <= max(1, MOST_MALFORMED_SHARE * len(packets)):
+        begin, end = waiting.pop()
+        try:
+            decode(packets[begin:end])
+        except MessageError as error:
+            if end - begin == 1:
+                found.append((begin, error))
+            else:
+                middle = (begin + end) // 2
+                waiting += [(middle, end), (begin, middle)]
+    return found

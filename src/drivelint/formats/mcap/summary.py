@@ -1,0 +1,74 @@
+"""What the index at the end of an MCAP file says is in it, where a CRC shows that it is as it was written."""
+
+from __future__ import annotations
+
+import io
+import struct
+import zlib
+from dataclasses import dataclass, field
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Channel, ChunkIndex, Footer, MetadataIndex, Schema
+
+from drivelint.formats.mcap.resume import MAGIC
+
+_RECORD = struct.Struct("<BQ")
+_FOOTER_BYTES = 20
+
+
+@dataclass
+class Summary:
+    """Schemas and channels by their ids; `chunks`: offset -> length, first and last log time; offsets of metadata records."""
+
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    chunks: dict[int, tuple[int, int, int]] = field(default_factory=dict)
+    metadata: list[int] = field(default_factory=list)
+
+
+def read_summary(view: memoryview) -> Summary:
+    """Return what the index says; nothing where there is none with a right CRC."""
+    end = len(view) - len(MAGIC)
+    at = end - _FOOTER_BYTES - _RECORD.size
+    if at < len(MAGIC) or bytes(view[end:]) != MAGIC or _RECORD.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES):
+        return Summary()
+    footer = Footer.read(_stream(view[at + _RECORD.size : end]))
+    if not footer.summary_crc or not 0 < footer.summary_start < at or not summary_is_whole(footer, view, at, end):
+        return Summary()
+    try:
+        return _records(view, footer.summary_start, at)
+    except (struct.error, McapError, ValueError):
+        return Summary()
+
+
+def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> bool:
+    """Say whether the index has the CRC, if any, that the footer in bytes `at` to `end` of the file says."""
+    begin = min(footer.summary_start or at, at)
+    return not footer.summary_crc or zlib.crc32(view[begin : end - 4]) == footer.summary_crc
+
+
+def _records(view: memoryview, at: int, end: int) -> Summary:
+    found = Summary()
+    while at + _RECORD.size <= end:
+        opcode, length = _RECORD.unpack_from(view, at)
+        body = view[at + _RECORD.size : min(at + _RECORD.size + length, end)]
+        if opcode == Opcode.SCHEMA:
+            schema = Schema.read(_stream(body))
+            found.schemas[schema.id] = schema
+        elif opcode == Opcode.CHANNEL:
+            channel = Channel.read(_stream(body))
+            found.channels[channel.id] = channel
+        elif opcode == Opcode.CHUNK_INDEX:
+            chunk = ChunkIndex.read(_stream(body))
+            times = chunk.message_start_time, chunk.message_end_time
+            found.chunks[chunk.chunk_start_offset] = (chunk.chunk_length, *times)
+        elif opcode == Opcode.METADATA_INDEX:
+            found.metadata.append(MetadataIndex.read(_stream(body)).offset)
+        at += _RECORD.size + length
+    return found
+
+
+def _stream(body: memoryview) -> ReadDataStream:
+    return ReadDataStream(io.BytesIO(body))

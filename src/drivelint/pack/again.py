@@ -1,0 +1,139 @@
+"""Judges the drives of a result again: all of it, and what each finding rests on."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pyarrow.parquet as pq
+
+from drivelint import catalogue
+from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.session import JudgingSession
+from drivelint.errors import UsageError
+from drivelint.evaluate.evaluation import Evaluation
+from drivelint.evaluate.sql_fragments import Binding
+from drivelint.evaluate.temp_tables import drop_tables
+from drivelint.explain.source import open_drive
+from drivelint.pack import finding_rows, finding_sql
+from drivelint.report.progress import Silent
+from drivelint.result.counts import grouped
+from drivelint.run import CheckOptions, check
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import duckdb
+
+    from drivelint.catalogue import Rule
+    from drivelint.engine.batch import Drive
+    from drivelint.pack.finding_sql import Row
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+Evidence = dict[str, dict[str, bytes] | str]
+"""Finding -> the files that give its numbers again, or why there are none."""
+
+
+def rules_of(result: Result, asked: RunRequest) -> list[Rule]:
+    """Return the rules of a result. Errors: `UsageError` for one that is gone or was changed since."""
+    known = catalogue.load_rules(asked.rules_dirs)
+    found = []
+    for row in result.rules.to_pylist():
+        rule = known.get(row["rule_id"])
+        if rule is None or rule.version != row["rule_version"]:
+            what = "is not in the catalogue any more" if rule is None else "was changed since"
+            raise UsageError(f"rule {row['rule_id']} {what}: check the drives again")
+        found.append(rule)
+    return found
+
+
+def check_again(result: Result, asked: RunRequest, work: Path | None) -> Result:
+    """Return the result of the same check. `work`: where its margins go; None: they are not asked for.
+
+    Errors: `UsageError` for a rule that is gone or was changed since, and those of a check.
+    """
+    rules = rules_of(result, asked)
+    given = {name: getattr(asked, name) for name in CheckOptions.__dataclass_fields__ if hasattr(asked, name)}
+    given |= {
+        "traces": tuple(asked.traces[name] for name in sorted(asked.traces)),
+        "rules": tuple(rule.id for rule in rules),
+        "fail_on": result.fail_on,
+        "strict": result.strict,
+        "require": result.required,
+        "robustness": result.findings["n_copies"].null_count < result.findings.num_rows,
+        "out": work,
+        "margins": work is not None,
+        "annotate": False,
+        "evidence": True,
+    }
+    return check(CheckOptions(**given), Silent())
+
+
+def finding_evidence(result: Result, asked: RunRequest, memory: int | None = DEFAULT_MEMORY) -> Evidence:
+    """Return what gives the numbers of each finding again. `asked` says where the logs are."""
+    rules = {rule.id: rule for rule in rules_of(result, asked)}
+    found: Evidence = {}
+    findings = result.findings.to_pylist()
+    for (drive_id, ego_id), mine in grouped(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
+        trace = Path(asked.traces[drive_id])
+        drive, _ = open_drive(trace.parent, asked, drive_id, ego_id, trace=trace, map_=asked.map)
+        found |= _of_drive(drive, mine, rules, asked, memory)
+    return found
+
+
+def _of_drive(
+    drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], asked: RunRequest, memory: int | None
+) -> Evidence:
+    """Return the evidence of the findings of one ego in one drive."""
+    mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
+    names = {rule.id for rule in mine}
+    params = catalogue.parse_params(mine, [p for p in asked.params if p.partition("=")[0].rpartition(".")[0] in names])
+    found: Evidence = {}
+
+    def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
+        for rule in mine:
+            rows = [row for row in findings if row["rule_id"] == rule.id]
+            found.update(_of_rule(con, rule, params.get(rule.id, {}), rows))
+
+    with store.workspace(memory) as con:
+        store.insert(con, "profile", profile_table(load_profiles(asked.rules_dirs), asked.profiles))
+        session = JudgingSession(con, mine, params, None, observers=[look], memory=Memory(con, memory))
+        session.judge([drive])
+        session.close()
+    return found
+
+
+def _of_rule(
+    con: duckdb.DuckDBPyConnection, rule: Rule, given: Mapping[str, object], findings: Sequence[Row]
+) -> Evidence:
+    """Return the evidence of the findings of one rule, while the database has what it reads."""
+    params = {name: given.get(name, param.default) for name, param in rule.params.items()}
+    first = findings[0]
+    try:
+        references: dict[int, int] = {}
+        if rule.kind != "invariant":
+            binding = Binding(rule, 0, given)
+            evaluation = Evaluation(con, [binding], margins=True)
+            evaluation.prepare()
+            evaluation.judge_rule(binding)
+            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
+        tables = {
+            table: finding_rows.rows_of_ego(con, table, first["drive_id"], first["ego_id"])
+            for table in finding_sql.tables_of(rule)
+        }
+    finally:
+        drop_tables(con)
+    return {
+        row["finding_id"]: finding_rows.evidence(rule, params, row, references.get(row["ref_id"]), tables)
+        for row in findings
+    }
+
+
+def same_rows(a: bytes, b: bytes) -> bool:
+    """Tell whether two Parquet files have the same rows, whatever wrote them."""
+    one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
+    return bool(one.schema.equals(other.schema) and one.equals(other))

@@ -1,0 +1,89 @@
+"""What `evidence.json` says of a pack: what was judged, by what, with which outputs and findings."""
+
+from __future__ import annotations
+
+import json
+import platform
+from dataclasses import fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint import __version__
+from drivelint.drive.trace import DriveInput
+from drivelint.pack.bag import sha256_of
+from drivelint.pack.inputs import judged
+from drivelint.result import request as run_request
+
+if TYPE_CHECKING:
+    from drivelint.pack.again import Evidence
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+EVIDENCE: Final = "data/evidence.json"
+RESULT: Final = "data/result"
+SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
+_SAID_OF_DRIVES: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
+_LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
+"""Libraries that have a part in what is judged or how it is written."""
+
+
+def summary_of(folder: Path) -> dict[str, Any]:
+    """Return what `summary.json` in a pack says."""
+    told: dict[str, Any] = json.loads((folder / RESULT / "summary.json").read_text("utf-8"))
+    return told
+
+
+def facts(folder: Path, result: Result, asked: RunRequest) -> dict[str, Any]:
+    """Return what follows from the result and the rules that lie in the pack `folder`, and must be said as it is."""
+    drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
+    return {
+        "tool": summary_of(folder)["tool"],
+        "drives": [{key: drive[key] for key in _SAID_OF_DRIVES} for drive in judged(drives)],
+        "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
+        "options": _options(asked, result),
+        "rules": [_rule(folder, rule["rule_id"]) for rule in rules],
+        "parameters": {f"{rule['rule_id']}.{each['name']}": each["value"] for rule in rules for each in rule["params"]},
+        "outputs": {
+            path.relative_to(folder).as_posix(): sha256_of(path) for path in sorted((folder / RESULT).iterdir())
+        },
+    }
+
+
+def _rule(folder: Path, rule_id: str) -> dict[str, str]:
+    """Return the file of a rule in the pack, its hash and the version that follows from that."""
+    pack, _, name = rule_id.partition(".")
+    file = f"data/rules/{pack}/{name}.sql"
+    digest = sha256_of(folder / file)
+    return {"rule_id": rule_id, "rule_version": digest[:16], "sha256": digest, "file": file}
+
+
+def _options(asked: RunRequest, result: Result) -> dict[str, Any]:
+    """Return the options of the check, but for where logs, maps, mapping and rules lay."""
+    plain = json.loads(run_request.render(asked, Path()))
+    kept = {each.name for each in fields(DriveInput)} - {"map", "map_dir", "mapping"}
+    told = {key: value for key, value in plain.items() if key in {*kept, "profiles"}}
+    return {**told, "fail_on": result.fail_on, "strict": result.strict, "required": list(result.required)}
+
+
+def library_versions() -> dict[str, str]:
+    """Return the versions of what wrote the pack."""
+    return {
+        "drivelint": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in _LIBRARIES},
+    }
+
+
+def findings(result: Result, found: Evidence) -> list[dict[str, Any]]:
+    """Return the findings with their numbers, and the SQL that gives these or why there is none."""
+    told = []
+    for row in result.findings.to_pylist():
+        files = found[row["finding_id"]]
+        has_files = isinstance(files, dict)
+        told.append({
+            **{key: row[key] for key in SAID_OF_FINDINGS},
+            "sql": f"data/findings/{row['finding_id']}/finding.sql" if has_files else None,
+            "without_sql_because": None if has_files else files,
+        })  # fmt: skip
+    return told

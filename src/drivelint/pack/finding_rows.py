@@ -1,0 +1,136 @@
+"""The rows that are enough to give the numbers of a finding again, tried in a DuckDB that has nothing of drivelint."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any, Final
+
+import duckdb
+import pyarrow.parquet as pq
+
+from drivelint.pack import finding_sql
+from drivelint.pack.finding_sql import COMPARED
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import pyarrow as pa
+
+    from drivelint.catalogue import Rule
+    from drivelint.pack.finding_sql import Row
+
+PADDING_NS: Final = 10_000_000_000
+"""How much around a finding is tried before all of a drive is."""
+_SPANS: Final = (("t_ns", "t_ns"), ("t_start_ns", "t_end_ns"), ("t_from_ns", "t_to_ns"), ("t_first_ns", "t_last_ns"))
+_OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
+SQL_FILE: Final = "finding.sql"
+
+
+def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_id: str) -> pa.Table:
+    """Return the rows of a table about a drive and an ego, in an order of their own, ids as text and without shapes."""
+    columns = con.execute(f"DESCRIBE {table}").fetchall()
+    kinds = {str(name): str(kind) for name, kind, *_ in columns}
+    shown = [
+        f"{name}::VARCHAR AS {name}" if kind.startswith("ENUM") else name
+        for name, kind in kinds.items()
+        if not kind.startswith("GEOMETRY")
+    ]
+    keys = {"drive_id": drive_id, "ego_id": ego_id}
+    where = " AND ".join(f"{name}::VARCHAR = ${name}" for name in keys if name in kinds) or "true"
+    values = {name: value for name, value in keys.items() if name in kinds}
+    sql = f"SELECT {', '.join(shown)} FROM {table} WHERE {where} ORDER BY ALL"
+    return con.execute(sql, values).to_arrow_table()
+
+
+def evidence(
+    rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None, tables: Mapping[str, pa.Table]
+) -> dict[str, bytes] | str:
+    """Return file name -> content of what gives the numbers of a finding again, or why nothing does.
+
+    `tables`: all rows about the ego that the rule's condition reads.
+    """
+    sql = finding_sql.query(rule, params, finding, ref_id)
+    with duckdb.connect(config={"threads": "1"}) as con:
+        try:
+            con.execute(";".join(finding_sql.macros(sql)))
+            enough = _enough(con, sql, finding, tables)
+        except duckdb.Error as error:
+            return f"DuckDB alone cannot run it: {str(error).splitlines()[0]}"
+    if enough is None:
+        return "the rule's condition alone does not give its numbers: nobody was there, or a step is missing"
+    files = {f"{table}.parquet": _parquet(table, rows) for table, rows in enough.items()}
+    return {SQL_FILE: finding_sql.file_text(rule, finding, sql, enough).encode(), **files}
+
+
+def _enough(
+    con: duckdb.DuckDBPyConnection, sql: str, finding: Row, tables: Mapping[str, pa.Table]
+) -> dict[str, pa.Table] | None:
+    """Return, of each table, the fewest of the tried rows with which the numbers stay the same; None: all rows give others."""
+    choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
+
+    def gives(chosen: Mapping[str, pa.Table]) -> bool:
+        for table, rows in chosen.items():
+            con.register(table, rows)
+        return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
+
+    least = {table: each[0] for table, each in choices.items()}
+    if gives(least):
+        return least
+    chosen = dict(tables)
+    if not gives(chosen):
+        return None
+    for table, each in choices.items():
+        chosen[table] = _first(each, lambda rows, table=table: gives({**chosen, table: rows}))  # type: ignore[misc]
+    return chosen
+
+
+def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa.Table:
+    """Return the first of these rows that do; the last ones do."""
+    return next((rows for rows in choices[:-1] if gives(rows)), choices[-1])
+
+
+def _is_same(found: list[dict[str, Any]], finding: Row) -> bool:
+    return len(found) == 1 and found[0]["holds"] is False and all(found[0][name] == finding[name] for name in COMPARED)
+
+
+def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
+    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of everybody."""
+    columns = rows.column_names
+    step, around = (
+        _at_time(columns, *times)
+        for times in (
+            (finding["t_worst_ns"], finding["t_worst_ns"]),
+            (finding["t_start_ns"] - PADDING_NS, finding["t_end_ns"] + PADDING_NS),
+        )
+    )
+    parties = ", ".join(store.quoted(finding[key]) for key in ("ego_id", "object_id") if finding[key] is not None)
+    named = [f"{name} IN ({parties})" for name in _OBJECTS if name in columns and finding["object_id"] is not None]
+    ours = " OR ".join(named) or None
+    profile = f"profile = {store.quoted(finding['profile'])}" if "profile" in columns and finding["profile"] else None
+    tried = [(step, ours), (step, None), (around, ours), (around, None), (None, ours), (None, None)]
+    terms = dict.fromkeys(tuple(term for term in (*each, profile) if term is not None) for each in tried)
+    con.register("_rows", rows)
+    found = [
+        con.execute(f"FROM _rows WHERE {' AND '.join(f'({term})' for term in each) or 'true'}").to_arrow_table()
+        for each in terms
+    ]
+    return [*found, rows]
+
+
+def _at_time(columns: Sequence[str], start_ns: int, end_ns: int) -> str | None:
+    for first, last in _SPANS:
+        if first in columns and last in columns:
+            return f"{first} <= {end_ns} AND coalesce({last}, {first}) >= {start_ns}"
+    return None
+
+
+def _parquet(table: str, rows: pa.Table) -> bytes:
+    comments = store.column_comments().get(table, {})
+    described = rows.schema.remove_metadata()
+    for i, field in enumerate(described):
+        metadata = {"comment": comments[field.name]} if field.name in comments else None
+        described = described.set(i, field.with_metadata(metadata))
+    sink = io.BytesIO()
+    pq.write_table(rows.cast(described).combine_chunks(), sink, compression="zstd")
+    return sink.getvalue()

@@ -1,0 +1,109 @@
+"""The SQL of one finding as a file that any DuckDB runs: its macros, its tables from Parquet files, its numbers filled in."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.evaluate.sql_fragments import condition_ctes
+from drivelint.sql import syntax
+from drivelint.sql.statements import texts
+from drivelint.sql.store import macro_definitions, quoted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from drivelint.catalogue import Rule
+
+Row = dict[str, Any]
+
+_NAMED: Final = re.compile(r"\$(\w+)")
+_CALLED: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
+_MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
+_COMMENT: Final = re.compile(r"--.*")
+_SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
+COMPARED: Final = ("observed", "required", "margin")
+"""What the SQL of a finding gives, as the finding has it."""
+
+
+def tables_of(rule: Rule) -> list[str]:
+    """Return the tables that the condition of a rule reads, sorted."""
+    where = f"{rule.path}: @condition"
+    return sorted(syntax.tables_read(syntax.parse_select(rule.sections["condition"], where)))
+
+
+def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
+    """Return the SELECT of a finding's numbers at its worst step; `ref_id`: the reference point, as the condition numbers it."""
+    with_values = _NAMED.sub(lambda m: literal(params[m[1]]) if m[1] in params else m[0], condition_ctes(rule))
+    at = [f"t_ns = {finding['t_worst_ns']}"]
+    if rule.per_object and finding["object_id"] is not None:
+        at.append(f"object_id = {quoted(finding['object_id'])}")
+    if rule.per_profile:
+        at.append(f"profile = {quoted(finding['profile'])}")
+    if rule.has_column("ref_id"):
+        at.append(f"ref_id = {ref_id}")
+    return (
+        f"WITH {with_values}\n"
+        "SELECT t_ns, object_id, profile, finite(observed) AS observed, finite(required) AS required,\n"
+        f"    margin_of({quoted(rule.sense)}, observed, required, holds) AS margin, holds\n"
+        f"FROM _state\nWHERE {' AND '.join(at)}"
+    )
+
+
+def literal(value: object) -> str:
+    """Return a parameter as SQL of the same type: 0.5 alone would be a DECIMAL, which divides otherwise."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        text = repr(value)
+        return text if "e" in text else f"{text}e0"
+    return quoted(value) if isinstance(value, str) else repr(value)
+
+
+def macros(sql: str) -> list[str]:
+    """Return the macros that a statement calls, and those that these call, in the order in which they are defined."""
+    known = _macros()
+    needed: set[str] = set()
+    todo = [sql]
+    while todo:
+        called = {name.lower() for name in _CALLED.findall(_COMMENT.sub("", todo.pop()))}
+        new = (called & known.keys()) - needed
+        needed |= new
+        todo += [known[name] for name in new]
+    return [text for name, text in known.items() if name in needed]
+
+
+@cache
+def _macros() -> dict[str, str]:
+    """Return macro -> its definition: those that rules call, and those of the judging itself."""
+    both = f"{macro_definitions()}\n{texts('judging')['macros']}"
+    found = {}
+    for each in syntax.parser().extract_statements(both):
+        text = "\n".join(line for line in each.query.strip().splitlines() if line.strip() and not line.startswith("--"))
+        if match := _MACRO.search(text):
+            found[match[1].lower()] = text.rstrip().rstrip(";")
+    return found
+
+
+def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
+    """Return the file `finding.sql`: run in its folder, it gives the finding's numbers."""
+    called = macros(sql)
+    spatial = any(_SPATIAL.search(text) for text in (sql, *called))
+    numbers = ", ".join(f"{name} {_shown(finding[name])}" for name in COMPARED)
+    lines = [
+        f"-- Finding {finding['finding_id']} of the rule {rule.id}: {rule.title}",
+        f"-- {' '.join(rule.clause.split())}",
+        "-- Run it in this folder with DuckDB 1.4 or later: duckdb < finding.sql",
+        f"-- It gives what findings.parquet says of the worst step: {numbers}.",
+    ]
+    if rule.quantifier == "eventually":
+        lines.append("-- The rule asks for one step at which it holds. This is the step that comes nearest to it.")
+    lines += ["INSTALL spatial;", "LOAD spatial;"] if spatial else []
+    lines += [f"CREATE TEMP VIEW {table} AS FROM read_parquet('{table}.parquet');" for table in tables]
+    lines += [f"{text};" for text in called]
+    return "\n".join([*lines, f"{sql};", ""])
+
+
+def _shown(value: float | None) -> str:
+    return "NULL" if value is None else repr(value)

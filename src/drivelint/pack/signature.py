@@ -1,0 +1,114 @@
+"""Signs a statement with Ed25519 in a DSSE envelope, and checks such a signature."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import json
+from typing import TYPE_CHECKING, Final
+
+from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
+from cryptography.hazmat.primitives import serialization
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PAYLOAD_TYPE: Final = "application/vnd.in-toto+json"
+_OPENSSH: Final = b"-----BEGIN OPENSSH PRIVATE KEY-----"
+
+
+class EnvelopeError(Exception):
+    """What stands in an envelope's place is none."""
+
+
+def private_key(path: Path) -> Ed25519PrivateKey:
+    """Return the key in a PEM file (PKCS 8, or OpenSSH's form). Errors: `UsageError`."""
+    content = _read(path)
+    load = serialization.load_ssh_private_key if content.startswith(_OPENSSH) else serialization.load_pem_private_key
+    try:
+        key = load(content, password=None)
+    except TypeError as error:
+        raise UsageError(f"{path}: has a password, which drivelint does not ask for: give a key without one") from error
+    except (ValueError, UnsupportedAlgorithm) as error:
+        raise UsageError(f"{path}: no private key in PEM: openssl genpkey -algorithm ed25519 makes one") from error
+    if not isinstance(key, Ed25519PrivateKey):
+        raise UsageError(f"{path}: no Ed25519 key: openssl genpkey -algorithm ed25519 makes one")
+    return key
+
+
+def public_key(path: Path) -> Ed25519PublicKey:
+    """Return the public key in a file, PEM or a line of OpenSSH. Errors: `UsageError`."""
+    content = _read(path)
+    load = serialization.load_ssh_public_key if content.startswith(b"ssh-") else serialization.load_pem_public_key
+    try:
+        key = load(content)
+    except (ValueError, UnsupportedAlgorithm) as error:
+        raise UsageError(f"{path}: no public key: openssl pkey -in KEY -pubout writes it") from error
+    if not isinstance(key, Ed25519PublicKey):
+        raise UsageError(f"{path}: no Ed25519 key")
+    return key
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def public_pem(key: Ed25519PublicKey) -> bytes:
+    """Return a public key as PEM."""
+    return key.public_bytes(serialization.Encoding.PEM, serialization.PublicFormat.SubjectPublicKeyInfo)
+
+
+def key_id(key: Ed25519PublicKey) -> str:
+    """Return the hash by which a key is known: SHA-256 of its DER form, hexadecimal."""
+    der = key.public_bytes(serialization.Encoding.DER, serialization.PublicFormat.SubjectPublicKeyInfo)
+    return hashlib.sha256(der).hexdigest()
+
+
+def envelope(payload: bytes, key: Ed25519PrivateKey) -> bytes:
+    """Return the DSSE envelope of a signed statement: the same bytes each time, as Ed25519 has no random part."""
+    signature = key.sign(_signed_bytes(PAYLOAD_TYPE, payload))
+    content = {
+        "payloadType": PAYLOAD_TYPE,
+        "payload": base64.b64encode(payload).decode(),
+        "signatures": [{"keyid": key_id(key.public_key()), "sig": base64.b64encode(signature).decode()}],
+    }
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def payload_of(content: bytes) -> bytes:
+    """Return the payload of an envelope, whoever signed it. Errors: `EnvelopeError`."""
+    return _opened(content)[1]
+
+
+def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
+    """Tell whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
+    kind, payload, signatures = _opened(content)
+    for signature in signatures:
+        try:
+            key.verify(signature, _signed_bytes(kind, payload))
+        except InvalidSignature:
+            continue
+        return kind == PAYLOAD_TYPE
+    return False
+
+
+def _opened(content: bytes) -> tuple[str, bytes, list[bytes]]:
+    try:
+        told = json.loads(content)
+        payload = base64.b64decode(told["payload"], validate=True)
+        signatures = [base64.b64decode(each["sig"], validate=True) for each in told["signatures"]]
+        return str(told["payloadType"]), payload, signatures
+    except (ValueError, KeyError, TypeError, binascii.Error) as error:
+        raise EnvelopeError(str(error)) from error
+
+
+def _signed_bytes(kind: str, payload: bytes) -> bytes:
+    """Return what DSSE signs: the type and the payload with their lengths, so that neither can be taken for the other."""
+    return b"DSSEv1 %d %s %d %s" % (len(kind.encode()), kind.encode(), len(payload), payload)

@@ -1,0 +1,105 @@
+"""The in-toto statement of a pack: which logs were judged by what, with what result, and which pack says so.
+
+https://in-toto.io/attestation/test-result/v0.1. A test is a rule on an ego of a drive, for one profile if it has profiles. A verdict
+that is unknown is no passed test: such tests stand in a field of our own, and the result is at most WARNED.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.pack import bag
+from drivelint.pack.inputs import judged
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from drivelint.result.model import Result
+
+FILE: Final = "statement.json"
+ENVELOPE: Final = "statement.dsse.json"
+TYPE: Final = "https://in-toto.io/Statement/v1"
+PREDICATE: Final = "https://in-toto.io/attestation/test-result/v0.1"
+SEALED: Final = (bag.DECLARATION, bag.INFO, bag.MANIFEST)
+"""The tag files that a statement names: by the manifest, every file of the payload."""
+
+
+def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence: Mapping[str, Any]) -> bytes:
+    """Return the statement about a result that stands, with its manifest, in the pack `folder`."""
+    drives = judged(result.drives.to_pylist())
+    tests = _tests(result.verdicts.to_pylist())
+    maps = sorted({(drive["map_name"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
+    content = {
+        "_type": TYPE,
+        "subject": [_named(drive["file_name"], drive["sha256"]) for drive in drives],
+        "predicateType": PREDICATE,
+        "predicate": {
+            "result": _result(tests),
+            "configuration": [
+                *(_named(f"map {name}", digest) for name, digest in maps),
+                *(_named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
+                {
+                    "name": "check",
+                    "annotations": {
+                        "tool": evidence["tool"],
+                        **evidence["options"],
+                        "parameters": evidence["parameters"],
+                    },
+                },
+            ],
+            "passedTests": tests["pass"],
+            "warnedTests": tests["near_miss"],
+            "failedTests": tests["fail"],
+            "drivelint_undecidedTests": tests["unknown"],
+            "drivelint_exit": summary["exit"],
+            "drivelint_pack": [_named(name, bag.sha256_of(folder / name)) for name in SEALED],
+        },
+    }
+    return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def differences(said: bytes, due: bytes) -> list[bag.Problem]:
+    """Return in what a statement is not what follows from the pack."""
+    try:
+        a, b = json.loads(said), json.loads(due)
+        parts = ((a, b, ("_type", "predicateType")), (a["predicate"], b["predicate"], ()))
+        found = [key for left, right, keys in parts for key in keys or right if left.get(key) != right[key]]
+        logs = a["subject"] != b["subject"]
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return [bag.Problem("statement not readable", ENVELOPE)]
+    problems = [bag.Problem("statement about another log", "subject")] if logs else []
+    for key in found:
+        kind = {
+            "configuration": "statement about another map, rule or parameter",
+            "drivelint_pack": "statement about another pack",
+        }.get(key, "statement says another result")
+        problems.append(bag.Problem(kind, key))
+    if not problems and said != due:
+        problems.append(bag.Problem("statement says another result", "fields in excess"))
+    return problems
+
+
+def _named(name: str, digest: str) -> dict[str, Any]:
+    return {"name": name, "digest": {"sha256": digest}}
+
+
+def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
+    """Return outcome -> the tests that came out so: the worst verdict of each counts; what did not apply is no test."""
+    order = ("fail", "unknown", "near_miss", "pass")
+    worst: dict[str, int] = defaultdict(lambda: len(order))
+    for row in verdicts:
+        verdict = "unknown" if row["verdict"] == "error" else "near_miss" if row["near_miss"] else row["verdict"]
+        if verdict in order:
+            parts = (row["rule_id"], row["drive_id"], row["ego_id"], row["profile"])
+            name = " ".join(part for part in parts if part)
+            worst[name] = min(worst[name], order.index(verdict))
+    return {word: sorted(name for name, no in worst.items() if order[no] == word) for word in order}
+
+
+def _result(tests: Mapping[str, list[str]]) -> str:
+    if tests["fail"]:
+        return "FAILED"
+    return "PASSED" if tests["pass"] and not (tests["near_miss"] or tests["unknown"]) else "WARNED"

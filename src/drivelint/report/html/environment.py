@@ -1,0 +1,62 @@
+"""The templates of the pages, with the style and the script, which a page's policy names by their hashes."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import duckdb
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from drivelint import __version__
+from drivelint.report.html.anchors import anchor
+from drivelint.result.schemas import OUTPUT_VERSION
+from drivelint.result.text import measure, number
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+TEMPLATES: Final = Path(__file__).parent / "templates"
+_STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
+
+
+def page_environment(scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = ()) -> Environment:
+    """Return the templates of the report, and before them those of `folder`, whose `styles` come after the report's.
+
+    `scripts`: files of the report's templates.
+    """
+    environment = Environment(
+        loader=FileSystemLoader([*([folder] if folder else []), TEMPLATES]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    style = _joined([*(TEMPLATES / name for name in _STYLES), *((folder or TEMPLATES) / name for name in styles)])
+    script = _joined(TEMPLATES / name for name in scripts)
+    environment.globals.update(
+        style=Markup(style),  # noqa: S704 - ours
+        script=Markup(script),  # noqa: S704 - ours
+        policy=(
+            f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}; img-src data:; "
+            "base-uri 'none'; form-action 'none'"
+        ),
+        anchor=anchor,
+        number=number,
+        version=__version__,
+        duckdb_version=duckdb.__version__,
+        output_schema=OUTPUT_VERSION,
+    )
+    environment.filters["measure"] = measure
+    return environment
+
+
+def _joined(files: Iterable[Path]) -> str:
+    return "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -1,0 +1,46 @@
+"""Which findings tell of one contact: it is as sure as the surest of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from drivelint.report.worst_first import is_contact
+from drivelint.result.certainty import POSSIBLE, SURE, certainty
+from drivelint.result.counts import grouped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from drivelint.result.text import Row
+
+SAME_NS: Final = 1_000_000_000
+"""Findings of two rules whose failing stretches are no farther apart tell of the same contact."""
+
+
+def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
+    """Return the id of each finding that is a contact -> the findings of other rules that tell of the same one."""
+    contacts = [row for row in rows if is_contact(row, rules)]
+    met = grouped(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
+    return {
+        row["finding_id"]: [
+            other
+            for other in of_both
+            if other["rule_id"] != row["rule_id"]
+            and other["t_start_ns"] <= row["t_end_ns"] + SAME_NS
+            and row["t_start_ns"] <= other["t_end_ns"] + SAME_NS
+        ]
+        for of_both in met.values()
+        for row in of_both
+    }
+
+
+def as_others_say(finding: Row, others: Iterable[Row]) -> str:
+    """Return in words how sure the other findings of the same contact are, if they are not as sure as this one; '' if they are."""
+    said = certainty(finding)
+    for other in others:
+        of = f"by {other['rule_id']}, in {other['n_stays']} of {other['n_copies']} copies"
+        if (said, certainty(other)) == (POSSIBLE, SURE):
+            return f"the contact itself is sure {of}"
+        if (said, certainty(other)) == (SURE, POSSIBLE):
+            return f"the same contact is only possible {of}"
+    return ""

@@ -1,0 +1,171 @@
+"""A rule that takes time or memory without end is an error within twice its limit, and nothing else changes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint.report.progress import Silent
+from drivelint.run import CheckOptions, check
+from tests.evaluate.bombs import BOMBS, write_pack
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pyarrow as pa
+
+OVERTAKE = ROOT / "fixtures" / "overtake"
+SHIPPED = "ukhc.r162.safe-distance-ahead"
+
+
+def options(pack: Path, *traces: str, seconds: float = 0.5) -> CheckOptions:
+    return CheckOptions(
+        traces=tuple(str(OVERTAKE / f"{name}.csv") for name in traces),
+        map=OVERTAKE / "road.xodr",
+        mapping=str(OVERTAKE / "mapping.toml"),
+        rules=("bomb", SHIPPED),
+        rules_dirs=(pack,),
+        rule_timeout=seconds,
+        robustness=False,
+    )
+
+
+def kept(verdicts: pa.Table) -> list[dict[str, object]]:
+    """Return the rows of the rules that are no bombs."""
+    return [row for row in verdicts.to_pylist() if row["rule_id"] in {"bomb.harmless", SHIPPED}]
+
+
+def reasons(verdicts: pa.Table) -> dict[tuple[str, str], tuple[str, str, str]]:
+    rows = [row for row in verdicts.to_pylist() if row["rule_id"] not in {"bomb.harmless", SHIPPED}]
+    return {
+        (row["rule_id"].partition(".")[2], row["drive_id"].partition("-")[0]): (
+            row["verdict"],
+            row["reason_code"],
+            row["reason"],
+        )
+        for row in rows
+    }
+
+
+def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_path: Path) -> None:
+    names = ("cross_join", "rows", "long_code", "long_reason")
+    found = check(options(write_pack(tmp_path / "bad", names[:3]), "safe", seconds=1.0), Silent()).verdicts
+    alone = check(options(write_pack(tmp_path / "good", ()), "safe"), Silent()).verdicts
+    assert kept(found) == kept(alone)
+    late = "did not end within 1.0 s: make its SQL cheaper, or give it longer with --rule-timeout"
+    long = "Invalid Input Error: it returned a text of more than 10,000 bytes"
+    assert reasons(found) == {
+        ("cross_join", "safe"): ("error", "rule_timeout", f"rule bomb.cross_join: {late}"),
+        ("rows", "safe"): ("error", "rule_timeout", f"rule bomb.rows: {late}"),
+        ("long_code", "safe"): ("error", "rule_error", f"rule bomb.long_code: {long}"),
+    }
+
+
+def test_a_rule_loses_its_turn_after_three_times(tmp_path: Path) -> None:
+    """Once for the batch, then for two of its drives alone: the time that a bomb takes does not grow with the drives."""
+    drives = ("collision", "near_miss", "safe")
+    found = check(options(write_pack(tmp_path / "bad", ("rows",)), *drives), Silent()).verdicts
+    alone = check(options(write_pack(tmp_path / "good", ()), *drives), Silent()).verdicts
+    assert kept(found) == kept(alone)
+    tried = [("before in this run" not in reason) for _, _, reason in reasons(found).values()]
+    assert tried == [True, True, False]
+    assert {(verdict, code) for verdict, code, _ in reasons(found).values()} == {("error", "rule_timeout")}
+
+
+def drivelint(*args: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "drivelint", *args],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=500,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src"), "COLUMNS": "120"},
+    )
+
+
+def by_command(pack: Path, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
+    args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
+    args += ["--rules-dir", str(pack), "--rules", "bomb", "--rules", SHIPPED, "--memory", "400MB", *more]
+    return drivelint("check", str(OVERTAKE / "safe.csv"), *args)
+
+
+def assert_contained(tmp_path: Path, names: tuple[str, ...]) -> subprocess.CompletedProcess[str]:
+    found = by_command(write_pack(tmp_path / "bad", names), tmp_path / "a", "--rule-timeout", "2")
+    alone = by_command(write_pack(tmp_path / "good", ()), tmp_path / "b")
+    assert (found.returncode, alone.returncode) == (2, 0), found.stderr + alone.stderr
+    verdicts = pq.read_table(tmp_path / "a" / "verdicts.parquet")
+    assert kept(verdicts) == kept(pq.read_table(tmp_path / "b" / "verdicts.parquet"))
+    told = reasons(verdicts)
+    assert {name for name, _ in told} == set(names)
+    assert {verdict for verdict, _, _ in told.values()} == {"error"}
+    assert {code for _, code, _ in told.values()} <= {"rule_timeout", "out_of_memory", "rule_error"}
+    assert not [path.name for path in (tmp_path / "a").iterdir() if path.name.startswith(".")]
+    return found
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a process cannot be replaced here")
+def test_the_command_starts_again_without_a_rule_that_heeds_no_interrupt(tmp_path: Path) -> None:
+    found = assert_contained(tmp_path, ("nested_lambda",))
+    why = "rule bomb.nested_lambda takes longer than --rule-timeout and cannot be stopped: starting again without it"
+    assert found.stderr.splitlines().count(f"drivelint: {why}") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="a process cannot be replaced here")
+def test_a_pack_of_bombs_is_contained(tmp_path: Path) -> None:
+    assert len(BOMBS) > 20
+    assert_contained(tmp_path, tuple(BOMBS))
+
+
+ONE = """
+import json, os, sys, time
+from drivelint.evaluate import limits
+from drivelint.report.progress import Silent
+from drivelint.run import check
+from tests.evaluate.test_limits import options
+from pathlib import Path
+
+def told(how):
+    print(json.dumps({"how": how, "s": time.monotonic() - began, "grown": limits.resident_bytes() - before}), flush=True)
+    os._exit(0)
+
+class Deaf:
+    known = staticmethod(lambda task: {})
+    found = staticmethod(lambda task, rule, excess: told("deaf " + excess))
+
+rule = limits.RuleLimits.hold
+def hold(self, con, rule_id, *, alone):
+    global began, before
+    if rule_id == "bomb." + sys.argv[1]:
+        began, before = time.monotonic(), limits.resident_bytes()
+    return rule(self, con, rule_id, alone=alone)
+limits.RuleLimits.hold = hold
+from drivelint.evaluate.evaluation import Evaluation
+blame = Evaluation._blame
+Evaluation._blame = lambda self, binding, error, excess: told(excess or str(error).splitlines()[0])
+check(options(Path(sys.argv[2]), "safe", seconds=2.0), Silent(), None, Deaf)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", BOMBS)
+def test_a_bomb_ends_within_twice_its_limit(name: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", ONE, name, str(write_pack(tmp_path, (name,)))],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+        env={**os.environ, "PYTHONPATH": f"{ROOT / 'src'}{os.pathsep}{ROOT}"},
+    )
+    assert done.stdout, done.stderr
+    told = json.loads(done.stdout)
+    assert told["s"] < 2 * 2.0 + 0.5, told  # and half a second until the watch is scheduled
+    assert told["grown"] < 3 * 1_200_000_000, told

@@ -1,0 +1,137 @@
+"""`drivelint what-if`: equal to another audit with the parameter, or it says that one is needed."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from drivelint.audit import AuditRequest, JudgeSettings, audit
+from drivelint.audit.ask import ask
+from drivelint.report.progress import Silent
+from tests.audit import fleet
+from tests.audit.here import InThisProcess
+from tests.fleet_report import lake
+from tests.fleet_report.command import ran
+
+OWN = """-- title = "Own rule"
+-- clause = "ours"
+-- hypothesis = "Is it kept?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = "<="
+-- unit = "m/s"
+-- reads = ["ego_state"]
+--
+-- [params.limit]
+-- default = 30.0
+-- unit = "m/s"
+-- why = "ours"
+--
+-- [params.factor]
+-- default = 1.0
+-- unit = "1"
+-- why = "ours"
+
+-- @condition
+SELECT drive_id, ego_id, t_ns, $factor * speed_mps AS observed, $limit AS required FROM ego_state"""
+
+
+class Own:
+    """A fleet that is audited by a rule of its own."""
+
+    def __init__(self, home: Path) -> None:
+        self.rules = home / "rules"
+        (self.rules / "own").mkdir(parents=True)
+        (self.rules / "own" / "slow.sql").write_text(OWN, encoding="utf-8")
+        self.fleet = fleet.write(home / "fleet", 12)
+
+    def audit(self, out: Path, *params: str) -> Path:
+        settings = JudgeSettings(rules=("own.slow",), rules_dirs=(self.rules,), params=params, memory=200_000_000)
+        request = AuditRequest(
+            sources=(str(self.fleet.manifest),), map=self.fleet.road, out=str(out), settings=settings
+        )
+        audit(request, Silent(), InThisProcess())
+        return out
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Own:
+    return Own(tmp_path_factory.mktemp("own"))
+
+
+@pytest.fixture(scope="module")
+def judged(own: Own, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return own.audit(tmp_path_factory.mktemp("judged") / "audit")
+
+
+def by_release(out: Path) -> Counter[tuple[str, str]]:
+    query = "SELECT tags['release'] AS r, verdict, count(*) AS n FROM verdicts JOIN drives USING (key) GROUP BY ALL"
+    return Counter({(row["r"], row["verdict"]): row["n"] for row in json.loads(ask(str(out), query, "json"))})
+
+
+@pytest.mark.parametrize("limit", ["11", "11.99", "12.05", "20"])
+def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, limit: str) -> None:
+    done = ran("what-if", judged, f"own.slow.limit={limit}", "--by", "release", "--format", "json")
+    told = json.loads(done.out)
+    assert (done.code, told["needs_audit"], told["not_known"], told["was"]) == (0, None, 0, "30.0")
+    becomes: Counter[tuple[str, str]] = Counter()
+    for each in told["verdicts"]:
+        becomes[each["tag_value"], each["becomes"]] += each["n"]
+    assert becomes == by_release(own.audit(tmp_path / "again", f"own.slow.limit={limit}"))
+    assert sum(becomes.values()) == 12
+
+
+def test_the_text_counts_flips_by_release(judged: Path) -> None:
+    done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
+    assert done.code == 0
+    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    assert [line for line in done.out.splitlines() if line.startswith("  ")] == [
+        "  v0  6 pass -> fail",
+        "  v1  6 pass -> fail",
+    ]
+
+
+def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:
+    done = ran("what-if", judged, "own.slow.factor=2")
+    assert done.code == 4
+    assert "needs a new audit: factor is not the required value alone" in done.out
+    assert "drivelint audit SOURCE --param own.slow.factor=2 --out OTHER" in done.out
+
+
+def test_a_rule_that_is_not_as_it_was_needs_another_audit(own: Own, judged: Path) -> None:
+    file = own.rules / "own" / "slow.sql"
+    before = file.read_text(encoding="utf-8")
+    file.write_text(before.replace("Is it kept?", "Is it kept now?"), encoding="utf-8")
+    try:
+        done = ran("what-if", judged, "own.slow.limit=11")
+    finally:
+        file.write_text(before, encoding="utf-8")
+    assert done.code == 4
+    assert "the rule is not as it was in the audit" in done.out
+
+
+def test_where_only_a_bound_is_stored_it_says_so(filled: lake.Lake) -> None:
+    done = ran("what-if", filled.folder, "ukhc.overtake-zone.margin_s=1.2", "--by", "site")
+    assert done.code == 4
+    assert "only a bound of what was observed" in done.out
+    assert "unknown -> needs a new audit" in done.out
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("own.slow.limit", "write RULE.PARAM=VALUE"),
+        ("own.slow.lim=1", "has no parameter"),
+        ("ukhc.overtake-zone.margin_s=1", "no verdicts of rule"),
+    ],
+)
+def test_mistakes_are_told(judged: Path, setting: str, said: str) -> None:
+    done = ran("what-if", judged, setting)
+    assert done.code == 2
+    assert said in done.err

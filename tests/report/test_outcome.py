@@ -1,0 +1,215 @@
+"""The first screen's words: one count of findings, a contact that is known is a contact, and a run that decided little is no pass."""
+
+from __future__ import annotations
+
+import html
+import io
+import re
+from dataclasses import replace
+from datetime import date
+from typing import Any
+
+import pytest
+from lxml import etree
+from rich.console import Console
+
+from drivelint.drive.trace import OWN_MAP_UNUSABLE
+from drivelint.errors import ExitCode
+from drivelint.gate import GateInputs, Waiver
+from drivelint.report import junit, markdown, terminal
+from drivelint.report.outcome import headline
+from drivelint.report.terminal_summary import verdict_line
+from drivelint.result.model import Result, exit_status
+from tests.report.pages import page
+from tests.report.synthetic import SDA, drive, finding, result, rule, verdict
+
+TODAY = date(2026, 11, 26)
+CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
+LATER = rule("ukhc.spare", title="Time to spare", severity="minor", sense="holds")
+
+
+def crash(**over: Any) -> dict[str, Any]:
+    return finding(rule_id="ukhc.no-collision", profile=None, observed=-0.1, required=0.0, margin=-0.1, **over)
+
+
+def run(findings: list[dict[str, Any]], *more: dict[str, Any], **over: Any) -> Result:
+    """Return a result of three drives in which these findings are all that failed."""
+    rows = [verdict("fail", drive_id=f["drive_id"], rule_id=f["rule_id"], profile=f["profile"]) for f in findings]
+    over = {"drives": [drive(), drive("d2"), drive("d3")], "rules": [rule(), CONTACT, LATER], **over}
+    return result([*rows, verdict("pass", drive_id="d3"), *more], findings, **over)
+
+
+def against(base: Result, new: Result, *waivers: Waiver, confidence: float | None = None) -> Result:
+    return GateInputs(TODAY, base, "main", waivers, confidence).apply_to(new)
+
+
+def screen(of: Result) -> list[str]:
+    console = Console(file=io.StringIO(), width=120, force_terminal=False)
+    console.print(terminal.render(of, "out", 120))
+    return console.file.getvalue().splitlines()  # type: ignore[attr-defined, no-any-return]
+
+
+def heads(of: Result) -> list[str]:
+    """Return the headline as the terminal, the page and the Markdown have it, in one form."""
+    (h1,) = re.findall(r"<h1>(.*?)</h1>", page(of), re.DOTALL)
+    title, sentence = markdown.render(of).decode().split("\n\n")[:2]
+    label = title.removeprefix("## drivelint: ").partition(", exit")[0]
+    said = [
+        verdict_line(of),
+        re.sub(r"<[^>]+>", " ", html.unescape(h1)),
+        f"{label} {sentence.replace('*', '').removesuffix('.')}",
+    ]
+    return [" ".join(each.split()).lower() for each in said]
+
+
+MIXED = [finding(), crash(drive_id="d2"), finding(drive_id="d2", rule_id="ukhc.spare", severity="minor")]
+NONE = run([])
+WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
+
+
+@pytest.mark.parametrize(
+    ("of", "words"),
+    [
+        (run(MIXED), "FAIL 2 critical, 1 minor findings in 2 of 3 drives; CONTACT in 1 drive"),
+        (
+            against(NONE, run(MIXED)),
+            "FAIL 3 findings in 2 of 3 drives: 3 new (2 critical, 1 minor; 2 gate); CONTACT in 1 drive",
+        ),
+        (
+            against(run(MIXED[:1]), run(MIXED)),
+            "FAIL 3 findings in 2 of 3 drives: 2 new (1 critical, 1 minor; 1 gates), 1 known; CONTACT in 1 drive",
+        ),
+        (
+            against(run(MIXED[1:]), run(MIXED), WAIVER),
+            "PASS no new finding; 2 known, 1 waived in 2 of 3 drives; CONTACT in 1 drive (known)",
+        ),
+        (
+            against(run([crash(drive_id="d2")]), run([crash(drive_id="d2"), crash()])),
+            "FAIL 2 findings in 2 of 3 drives: 1 new (1 critical), 1 known; CONTACT in 2 drives (1 new)",
+        ),
+        (
+            against(run(MIXED[1:]), run([finding(n_copies=100, n_stays=53), *MIXED[1:]]), confidence=0.95),
+            "PASS no new finding; 2 known, 1 only possible in 2 of 3 drives; CONTACT in 1 drive (known)",
+        ),
+        (
+            run([finding(n_copies=100, n_stays=53), *MIXED[1:]]),
+            "FAIL 2 critical, 1 minor findings in 2 of 3 drives; CONTACT in 1 drive; 1 of 3 findings only possible",
+        ),
+        (
+            run([finding(n_copies=100, n_stays=53)]),
+            "FAIL 1 critical finding in 1 of 3 drives; only possible",
+        ),
+        (run([]), "PASS no findings"),
+    ],
+)  # fmt: skip
+def test_terminal_page_and_markdown_say_one_count_in_the_same_words(of: Result, words: str) -> None:
+    assert heads(of) == [words.lower()] * 3
+
+
+def test_each_finding_is_counted_once() -> None:
+    of = against(run(MIXED[1:2]), run([*MIXED, finding(drive_id="d3", n_copies=9, n_stays=1)]), WAIVER, confidence=0.95)
+    _, _, told = headline(of).parts[0].words.partition(": ")
+    numbers = [int(n) for n in re.findall(r"(\d+) (?:new|known|waived|only possible)", told)]
+    assert sum(numbers) == of.findings.num_rows == 4
+
+
+def test_a_drive_whose_findings_are_all_known_is_not_said_to_have_none() -> None:
+    lines = screen(against(run(MIXED), run(MIXED)))
+    assert any(re.match(r"d2 +known: +8.00 s CONTACT", line) for line in lines)
+    assert any(re.match(r"d1 +known: +8.00 s 58.00 m", line) for line in lines)
+    assert [line for line in lines if "no finding " in line and not line.startswith("d3")] == []
+    assert "explain  drivelint explain ukhc.no-collision@d2 --in out" in lines
+
+
+def test_a_waived_contact_is_told_with_the_waiver() -> None:
+    waiver = replace(WAIVER, rule="*")
+    lines = screen(GateInputs(TODAY, waivers=(waiver,)).apply_to(run([crash()])))
+    assert "PASS  1 finding in 1 of 3 drives: 1 waived; CONTACT in 1 drive (waived)" in lines
+    assert any(re.match(r"d1 +waived: +8.00 s CONTACT", line) for line in lines)
+
+
+def test_a_run_that_could_decide_little_is_no_pass() -> None:
+    rules = [rule(), *(rule(f"ukhc.m{n}") for n in range(3))]
+    missing = [verdict("unknown", rule_id=f"ukhc.m{n}", reason_code="missing_map") for n in range(3)]
+    of = result([verdict("pass"), *missing], drives=[drive(map_name=None)], rules=rules)
+    assert exit_status(of).code == ExitCode.OK
+    words = "mostly unknown no findings, but most could not be judged; no map was given: 3 rules need one (--map)"
+    assert heads(of) == [words] * 3
+    assert screen(of)[2].startswith("MOSTLY UNKNOWN")
+    even = result([verdict("pass"), missing[0]], drives=[drive(map_name=None)], rules=rules)
+    assert headline(even).label == "PASS"
+    assert "1 rule needs one (--map)" in headline(even).sentence
+    unusable = [{"check_id": OWN_MAP_UNUSABLE, "severity": "warning", "message": "broken", "n": 1}]
+    own = result([verdict("pass"), *missing], drives=[drive(map_name=None, quality=unusable)], rules=rules)
+    assert "the log's own map cannot be used: 3 rules need one (--map)" in headline(own).sentence
+    on_map = result([verdict("pass"), missing[0]], rules=rules)
+    assert "--map" not in headline(on_map).sentence
+
+
+def test_of_many_drives_most_must_be_decided() -> None:
+    drives = [drive(f"d{n}") for n in range(4)]
+    rows = [verdict("pass", drive_id="d0"), *(verdict("unknown", drive_id=f"d{n}") for n in range(1, 4))]
+    assert headline(result(rows, drives=drives)).label == "MOSTLY UNKNOWN"
+    assert headline(result(rows[:2], drives=drives)).label == "PASS"
+
+
+@pytest.mark.parametrize(
+    ("now", "why"),
+    [
+        ([verdict("unknown", t_start_ns=None)], "1 unknown now"),
+        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not looked at"),
+    ],
+)
+def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: str) -> None:
+    of = against(result([verdict("fail")], [finding()]), result(now, rules=[rule(), LATER]))
+    sentence = f"1 finding of the baseline at or above severity critical is gone but not fixed: {why}"
+    assert exit_status(of) == (ExitCode.NOT_JUDGED, sentence)
+    assert sentence in verdict_line(of)
+    assert sentence in markdown.render(of).decode()
+    suites = etree.fromstring(junit.render(of))
+    (case,) = suites.findall("testsuite[@name='baseline']/testcase")
+    assert (suites.get("errors"), case.get("name")) == ("1", f"{SDA} [nominal] of d1")
+    assert str(case.xpath("string(error/@message)")).startswith("gone, not fixed: critical: d1 at 8.00 s")
+
+
+def test_what_is_gone_gates_only_where_it_would_have() -> None:
+    unknown = [verdict("unknown", t_start_ns=None)]
+    for before, least in ((finding(severity="minor"), "critical"), (finding(), "never")):
+        of = against(result([verdict("fail")], [before]), result(unknown, fail_on=least))
+        assert exit_status(of).code == ExitCode.OK
+    fixed = against(result([verdict("fail")], [finding()]), result([verdict("pass")]))
+    assert exit_status(fixed).code == ExitCode.OK
+    worse = against(result([verdict("fail")], [finding()]), run([crash()], *unknown))
+    assert exit_status(worse).code == ExitCode.FAILED
+
+
+def test_what_is_missing_for_some_egos_only_says_for_how_many() -> None:
+    rows = [verdict("unknown", ego_id=f"{n}", reason_code="missing_registration") for n in range(2)]
+    rows += [verdict("pass", ego_id=f"{n}") for n in range(2, 22)]
+    line = next(line for line in screen(result(rows)) if line.startswith("map: "))
+    assert line.endswith("not judged: registration (1 rule, 2 of 22 egos)")
+    rows = [verdict("unknown", drive_id="d1", reason_code="missing_horn"), verdict("pass", drive_id="d2")]
+    line = next(line for line in screen(result(rows, drives=[drive(), drive("d2")])) if line.startswith("map: "))
+    assert line.endswith("not judged: horn (1 rule, 1 of 2 drives)")
+
+
+def test_the_title_of_a_broken_rule_does_not_stand_alone() -> None:
+    rows = [crash(), finding(rule_id="ukhc.spare", profile=None, observed=None, required=None, margin=None)]
+    lines = screen(run(rows[1:]))
+    assert any("not kept: Time to spare" in line for line in lines)
+    text = page(run(rows))
+    worst = re.sub(r"<[^>]+>", " ", text.partition('id="worst"')[2].partition("</section>")[0])
+    worst = " ".join(worst.split())
+    assert "also not kept Time to spare" in worst
+    assert "Not kept: No collision" in worst
+
+
+def test_the_end_says_that_there_is_no_baseline() -> None:
+    assert any(line.startswith("exit 0: ") and line.endswith("(no baseline)") for line in screen(run([])))
+    assert not any("no baseline" in line for line in screen(against(NONE, run([]))))
+
+
+def test_a_near_miss_in_a_run_with_a_baseline_is_not_said_to_lack_one() -> None:
+    near = result([verdict("pass", near_miss=True, margin=0.1)])
+    assert "a near miss is no finding" in page(against(NONE, near))
+    assert "no baseline was given" not in page(against(NONE, near))
