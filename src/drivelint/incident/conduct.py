@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-_ROOM: Final = {"broken": 740, "kept": 280, "near": 90, "reasons": 480}
+_ROOM: Final = {"broken": 820, "kept": 240, "near": 80, "reasons": 330}
 """Characters that each part has on the page at least; the number of what is left out is told."""
 _WASTE: Final = 12
 """Characters that the end of a text's last line leaves empty."""
-_ALL_ROOM: Final = 1600
+_ALL_ROOM: Final = 1680
 """Characters of all parts: what one does not use, the others may."""
 _SECOND_ROOM: Final = 45
 """Characters that fit where the table second by second has a row less than its most."""
