@@ -20,6 +20,7 @@ from drivelint import __version__, cli
 from drivelint.catalogue import load_rules
 from drivelint.drive.trace import DriveInput
 from drivelint.result.request import RunRequest
+from tests.evaluate.packs import invariant
 from tests.shared_data import ROOT
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
@@ -380,21 +381,8 @@ CASES = """
   given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 1.0}}
   expect: %s
 """
-RULE = """-- title = "not faster than 10 m/s"
--- clause = "none"
--- hypothesis = "is it slow?"
--- kind = "invariant"
--- derivation = "direct"
--- severity = "minor"
--- legal = "should"
--- status = "draft"
--- sense = "<="
--- unit = "m/s"
--- reads = ["ego_state"]
-
--- @condition
-SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state
-"""
+SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state"
+RULE = invariant(SPEED)
 
 
 @pytest.mark.parametrize("expect", ["pass", "fail"])

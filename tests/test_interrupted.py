@@ -25,6 +25,7 @@ from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.load import load_result
 from drivelint.run import CheckOptions, check
+from tests.evaluate.packs import invariant
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -37,22 +38,10 @@ SECOND = "(SELECT DISTINCT drive_id::VARCHAR AS name FROM ego_state WHERE starts
 ENDLESS = f"""SELECT count(*) FROM {SECOND} JOIN range(1000000) a(i) ON sin(a.i) < 2 + length(name)
 JOIN range(1000000) b(i) ON sin(a.i + b.i) > 2 + length(name)"""
 """A billion rows a second would take a quarter of an hour, and without that drive there is none."""
-RULE = f"""-- title = "not faster than 10 m/s"
--- clause = "none"
--- hypothesis = "is it slow?"
--- kind = "invariant"
--- derivation = "direct"
--- severity = "minor"
--- legal = "should"
--- status = "draft"
--- sense = "<="
--- unit = "m/s"
--- reads = ["ego_state"]
-
--- @condition
-SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state
-WHERE ({ENDLESS}) = 0
-"""
+RULE = invariant(
+    "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS required FROM ego_state\n"
+    f"WHERE ({ENDLESS}) = 0"
+)
 
 
 @pytest.fixture

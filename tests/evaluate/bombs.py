@@ -4,23 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from tests.evaluate import packs
+
 if TYPE_CHECKING:
     from pathlib import Path
 
-_HEADER: Final = """-- title = "not faster than 10 m/s"
--- clause = "none"
--- hypothesis = "is it slow?"
--- kind = "invariant"
--- derivation = "direct"
--- severity = "minor"
--- legal = "should"
--- status = "draft"
--- sense = "<="
--- unit = "m/s"
--- reads = ["ego_state"]
-
--- @condition
-"""
 _SPEED: Final = (
     "SELECT drive_id, ego_id, t_ns, speed_mps + 0 * ({}) AS observed, 10.0::DOUBLE AS required FROM ego_state"
 )
@@ -69,5 +57,5 @@ def write_pack(folder: Path, names: tuple[str, ...], *, pack: str = "bomb") -> P
     """Write a folder of packs with one that has these bombs, and a harmless rule; return it."""
     (folder / pack).mkdir(parents=True)
     for name, sql in {**{name: BOMBS[name] for name in names}, "harmless": HARMLESS}.items():
-        (folder / pack / f"{name}.sql").write_text(f"{_HEADER}{sql}\n", encoding="utf-8")
+        (folder / pack / f"{name}.sql").write_text(packs.invariant(sql), encoding="utf-8")
     return folder

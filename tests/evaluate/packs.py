@@ -38,6 +38,20 @@ def text(header: dict[str, str], sections: dict[str, str], tables: str = "") -> 
     return "".join(parts)
 
 
+def invariant(
+    condition: str,
+    *,
+    sense: str = "<=",
+    unit: str = "m/s",
+    reads: str = '"ego_state"',
+    status: str = "draft",
+    tables: str = "",
+) -> str:
+    """Return the text of an invariant that does not gate, with this condition."""
+    own = INVARIANT | {"sense": f'"{sense}"', "unit": f'"{unit}"', "reads": f"[{reads}]", "status": f'"{status}"'}
+    return text(HEADER | {"severity": '"minor"', "legal": '"should"'} | own, {"condition": condition}, tables)
+
+
 def write(
     folder: Path, header: dict[str, str], sections: dict[str, str], *, name: str = "rule", tables: str = ""
 ) -> Rule:

@@ -12,39 +12,31 @@ import pytest
 from drivelint import catalogue
 from drivelint.errors import UsageError
 from drivelint.fleet.what_if import Flip, WhatIf, needs_check, what_if
+from tests.evaluate.packs import invariant
 from tests.fleet import audits
 from tests.fleet.conftest import Checked
 from tests.report.synthetic import drive, rule, verdict
 
 CATALOGUE = catalogue.load_rules(())
 ZONE, CHANGE = "ukhc.overtake-zone", "alks-r157.r79.lane-change-done"
-HEADER = """-- title = "Own rule"
--- clause = "ours"
--- hypothesis = "Is it kept?"
--- kind = "invariant"
--- derivation = "model"
--- severity = "minor"
--- legal = "should"
--- status = "stable"
--- sense = "{sense}"
--- unit = "{unit}"
--- reads = [{reads}]
---
--- [params.limit]
--- default = {default}
--- unit = "{unit}"
--- why = "ours"
-
--- @condition
-"""
+LIMIT = '[params.limit]\ndefault = {}\nunit = "{}"\nwhy = "ours"'
 # the second rule is not judged near the overtaken vehicle, so some verdicts are unknown and some that fail are judged in part
 OWN = {
-    "slow": HEADER.format(sense="<=", unit="m/s", reads='"ego_state"', default=12.0)
-    + "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state",
-    "apart": HEADER.format(sense=">", unit="m", reads='"ego_state", "pair"', default=4.0)
-    + """SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $limit AS required,
+    "slow": invariant(
+        "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, $limit AS required FROM ego_state",
+        status="stable",
+        tables=LIMIT.format(12.0, "m/s"),
+    ),
+    "apart": invariant(
+        """SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $limit AS required,
     CASE WHEN p.object_id <> '2' OR abs(p.x_m - e.x_m) > 5 THEN sqrt((p.x_m - e.x_m) ** 2 + (p.y_m - e.y_m) ** 2) END AS observed
 FROM pair p JOIN ego_state e USING (drive_id, ego_id, t_ns)""",
+        sense=">",
+        unit="m",
+        reads='"ego_state", "pair"',
+        status="stable",
+        tables=LIMIT.format(4.0, "m"),
+    ),
 }
 
 

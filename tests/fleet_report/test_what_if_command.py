@@ -13,33 +13,24 @@ from drivelint.audit.ask import ask
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess
+from tests.evaluate.packs import invariant
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 
-OWN = """-- title = "Own rule"
--- clause = "ours"
--- hypothesis = "Is it kept?"
--- kind = "invariant"
--- derivation = "model"
--- severity = "minor"
--- legal = "should"
--- status = "stable"
--- sense = "<="
--- unit = "m/s"
--- reads = ["ego_state"]
---
--- [params.limit]
--- default = 30.0
--- unit = "m/s"
--- why = "ours"
---
--- [params.factor]
--- default = 1.0
--- unit = "1"
--- why = "ours"
+OWN = invariant(
+    "SELECT drive_id, ego_id, t_ns, $factor * speed_mps AS observed, $limit AS required FROM ego_state",
+    status="stable",
+    tables="""[params.limit]
+default = 30.0
+unit = "m/s"
+why = "ours"
 
--- @condition
-SELECT drive_id, ego_id, t_ns, $factor * speed_mps AS observed, $limit AS required FROM ego_state"""
+[params.factor]
+default = 1.0
+unit = "1"
+why = "ours"
+""",
+)
 
 
 class Own:

@@ -1,4 +1,4 @@
-"""What is to be audited: the rows of a manifest, or the logs of files, globs and folders, one after the other."""
+"""Lists the drives of an audit: the rows of a manifest, or the logs of files, globs, folders and buckets."""
 
 from __future__ import annotations
 

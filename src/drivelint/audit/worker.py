@@ -199,11 +199,12 @@ def run_task(task: Task) -> list[Receipt]:
             judge.close()
         _warm.clear()
         _warm[task.settings] = Judge(task.settings)
-    try:
-        return _warm[task.settings].judge(task)
-    except BaseException:
-        _warm.pop(task.settings).close()  # whatever state it is in
-        raise
+    with ExitStack() as after_error:
+        # an error may leave the database in any state, so the next task gets a new one
+        after_error.callback(lambda: _warm.pop(task.settings).close())
+        receipts = _warm[task.settings].judge(task)
+        after_error.pop_all()
+    return receipts
 
 
 def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:

@@ -27,7 +27,10 @@ _SAID: Final[dict[Excess, str]] = {
 
 
 class Restart:
-    """Rules that did not end; `work`: the folder with what this run has written, which the next one makes anew."""
+    """Holds the rules that did not end.
+
+    `work`: the folder with the files of this run. The next run writes them again.
+    """
 
     def __init__(self, progress: Progress, work: Path | None) -> None:
         self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(KNOWN, "{}"))

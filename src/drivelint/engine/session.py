@@ -111,7 +111,7 @@ class JudgingSession:
         return drive.trace.drive_id in self._seen
 
     def forget_judged(self) -> None:
-        """Judge logs anew that were judged before: the results of these were taken out of the database."""
+        """Forget which logs were judged, so that they can be judged again. The caller has taken their results out of the database."""
         self._seen.clear()
         self._limits.forget()  # what a worker judged before is by chance
 

@@ -159,7 +159,7 @@ class Sandbox:
         return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in given}
 
     def _derive_from_profiles(self) -> None:
-        """Derive anew what follows from the profiles."""
+        """Derive the tables again that read the profiles, directly or through other tables."""
         stale: set[str] = set()
         for derivation in needed(self._rule.reads):
             # the profiles are given, not derived: `reads` does not name them

@@ -44,7 +44,7 @@ class Undecided:
 
 @dataclass(frozen=True)
 class Missing:
-    """What is not decided for want of a signal, and for other reasons; both with the most frequent first."""
+    """The undecided verdicts: those that lack a signal, and those with another reason. The most frequent come first."""
 
     signals: tuple[MissingSignal, ...]
     others: tuple[Undecided, ...]

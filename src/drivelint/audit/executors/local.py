@@ -25,7 +25,10 @@ TASKS_PER_WORKER = 500
 
 
 class LocalPool:
-    """Processes that are started anew where one dies; `memory` in bytes is the most that one may take, `timeout_s` a task's time."""
+    """Runs tasks in processes. A process that dies is replaced.
+
+    `workers`: number of processes, None: one per core. `memory`: limit of one process in bytes. `timeout_s`: limit per drive in seconds.
+    """
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
         self._workers = workers or _cores()
