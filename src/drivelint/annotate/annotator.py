@@ -97,8 +97,8 @@ class Annotator:
                 road = self._road(drive.environment)
                 with _whole(self._folder / f"{name}.mcap") as file:
                     write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
-            except ChangedLogError:
-                raise  # its verdicts are about what is not there any more
+            except (ChangedLogError, OutputError):
+                raise  # the verdicts are about what is not there any more; or no log can be written at all
             except Exception as error:  # noqa: BLE001 - verdicts are not given up for a picture of them
                 self._note(f"not annotated: {refused(drive.trace.path, error).error}")
         with _whole(self._folder / LAYOUT_FILE) as file:

@@ -96,7 +96,7 @@ def check(
             raise UsageError("no traces: give files, globs or folders")
         if keep_db and folder is None:
             raise UsageError("--keep-db writes a file: say where with --out DIR")
-        _check_confidence(confidence, robustness)
+        values.check_confidence(confidence, robustness)
         day = values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(
             options.path(baseline),
@@ -145,14 +145,6 @@ def check(
             if folder is not None:
                 outputs.write(result, folder, work, overwrite=overwrite)
         return CheckResult(result, folder, tuple(listener.notes), scratch)
-
-
-def _check_confidence(confidence: float | None, robustness: bool) -> None:
-    """Raise an error for a confidence that is none, or that nothing tells."""
-    if confidence is not None and not robustness:
-        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
-    if confidence is not None and not 0 <= confidence <= 1:
-        raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
 
 
 def _interruptible(settings: run.CheckOptions, listener: NoteKeeper) -> Result:

@@ -170,8 +170,7 @@ def check(
     from drivelint.result.model import exit_status
     from drivelint.settings import SETTINGS_FILE
 
-    if confidence is not None and not robustness:
-        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+    values.check_confidence(confidence, robustness)
     gate_inputs = GateInputs.from_files(
         baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
     )

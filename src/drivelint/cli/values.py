@@ -40,6 +40,14 @@ def parse_memory(text: str | None) -> int | None:
     return size
 
 
+def check_confidence(confidence: float | None, robustness: bool) -> None:
+    """Refuse a confidence that is no share, or that nothing tells. Errors: `UsageError`."""
+    if confidence is not None and not robustness:
+        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+    if confidence is not None and not 0 <= confidence <= 1:
+        raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
+
+
 def parse_shard(text: str | None) -> tuple[int, int] | None:
     """Read I/N, the I-th of N parts. Errors: `UsageError`."""
     if text is None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.incident.words import CONTACT, how_sure, measured, profile
+from drivelint.catalogue.header import CONTACT
+from drivelint.incident.words import how_sure, measured, profile
 from drivelint.phrases import listed
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
 from drivelint.result.counts import SEVERITIES, grouped
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
+_UNDECIDED: Final = frozenset({"unknown", "error"})
 _ROOM: Final = {"broken": 820, "kept": 240, "near": 80, "reasons": 330}
 """Characters that each part has on the page at least; the number of what is left out is told."""
 _WASTE: Final = 12
@@ -37,19 +39,25 @@ def conduct(
 ) -> dict[str, Any]:
     """Return what the verdicts and findings of one ego say about a span of the drive.
 
-    A rule counts once, by its worst verdict there: broken, not decided, kept, or never asked. `near`: of the rules that are kept,
+    A rule counts once, by its worst verdict there: broken, not decided (or in error), kept, or never asked; `elsewhere`: broken, but
+    only outside the span. `near`: of the rules that are kept,
     those with a near miss. A verdict without a time is about the whole drive. `seconds_left`: rows that the table second by second
     does not fill. `only_hit`: nothing but a contact was found.
     """
     told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
     by_rule = grouped(told["v"], lambda row: row["rule_id"])
     found = grouped(told["f"], lambda row: row["rule_id"])
-    failed = {rule for rule, rows in by_rule.items() if any(row["verdict"] in {"fail", "error"} for row in rows)}
+    failures = {rule: [row for row in rows if row["verdict"] == "fail"] for rule, rows in by_rule.items()}
+    # a verdict is about a judged interval, which may be longer than the span: its findings say when the rule was broken
+    failed = {rule for rule, rows in failures.items() if any(not row["finding_ids"] for row in rows)}
+    elsewhere = {rule for rule, rows in failures.items() if rows} - failed - found.keys()
     broken = sorted(found.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule))
     rest = {rule: rows for rule, rows in sorted(by_rule.items()) if rule not in set(broken)}
-    undecided = {rule: rows for rule, rows in rest.items() if any(row["verdict"] == "unknown" for row in rows)}
+    undecided = {rule: rows for rule, rows in rest.items() if any(row["verdict"] in _UNDECIDED for row in rows)}
     kept = [
-        rule for rule, rows in rest.items() if rule not in undecided and any(row["verdict"] == "pass" for row in rows)
+        rule
+        for rule, rows in rest.items()
+        if rule not in undecided and rule not in elsewhere and any(row["verdict"] == "pass" for row in rows)
     ]
     parts = {
         "broken": [_line(rules[rule], found.get(rule) or by_rule[rule], start_ns) for rule in broken],
@@ -68,7 +76,8 @@ def conduct(
         "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
         **told_parts,
         "only_hit": bool(broken) and all(CONTACT in rules[rule]["tags"] for rule in broken),
-        "never": len(rules) - len(broken) - len(undecided) - len(kept),
+        "elsewhere": len(elsewhere - undecided.keys()),
+        "never": len(rules) - len(broken) - len(undecided) - len(kept) - len(elsewhere - undecided.keys()),
     }
 
 
@@ -121,7 +130,7 @@ def _line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
 
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[str]:
     """Return why rules are not decided, in words, the reason of most rules first."""
-    unknown = [row for rows in undecided.values() for row in rows if row["verdict"] == "unknown"]
+    unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     told = []
     for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
         titles = [_quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows})]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.incident.words import CONTACT
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result

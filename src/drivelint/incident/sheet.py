@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct
 from drivelint.incident.judge import same_finding
@@ -18,7 +19,7 @@ from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_sec
 from drivelint.incident.record import held_elements
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
-from drivelint.incident.words import CONTACT, closing, contact, how_sure, measured, minus, profile, speed, story
+from drivelint.incident.words import closing, contact, how_sure, measured, minus, profile, speed, story
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
 from drivelint.result.certainty import POSSIBLE, SURE, certainty
@@ -163,6 +164,7 @@ def _party(
     v = motion.speed[number]
     window = v[(motion.t >= -BEFORE_S - 1e-9) & (motion.t <= (0.0 if before_s is None else before_s) + 1e-9)]
     fastest = window[~np.isnan(window)].max(initial=-math.inf)
+    gaps = " (not known throughout)" if np.isnan(window).any() else ""
     size = [about.get(name) for name in ("length_m", "width_m", "height_m")]
     return {
         "letter": LETTERS[number],
@@ -172,7 +174,7 @@ def _party(
         "size_source": size_source(case.asked, ego=number == 0),
         "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
         "speed": "not known" if at is None else speed(float(v[at])),
-        "fastest": "not known" if math.isinf(fastest) else speed(float(fastest)),
+        "fastest": "not known" if math.isinf(fastest) else f"{speed(float(fastest))}{gaps}",
         "slowed": _slowed(slowed, before_s),
         "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),
         "lights": _brake_lights(case, actor_id),

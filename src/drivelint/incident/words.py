@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.incident.motion import slowing_known
 from drivelint.result.certainty import certainty
 from drivelint.result.text import number
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from drivelint.incident.motion import Motion, Slowing
     from drivelint.result.text import Row
 
-CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
 _SENSE: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
 _KMH, _MPH = 3.6, 1 / 0.44704

@@ -10,6 +10,7 @@ import json
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.errors import ExitCode
 from drivelint.pack import bag
 from drivelint.pack.inputs import judged
 
@@ -37,7 +38,7 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
         "subject": [_named(drive["file_name"], drive["sha256"]) for drive in drives],
         "predicateType": PREDICATE,
         "predicate": {
-            "result": _result(tests),
+            "result": _result(tests, is_clean=summary["exit"]["code"] == ExitCode.OK),
             "configuration": [
                 *(_named(f"map {name}", digest) for name, digest in maps),
                 *(_named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
@@ -99,7 +100,9 @@ def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
     return {word: sorted(name for name, no in worst.items() if order[no] == word) for word in order}
 
 
-def _result(tests: Mapping[str, list[str]]) -> str:
+def _result(tests: Mapping[str, list[str]], *, is_clean: bool) -> str:
+    """`is_clean`: the exit code is 0, so every drive was judged, on a map that fits, and from a whole log."""
     if tests["fail"]:
         return "FAILED"
-    return "PASSED" if tests["pass"] and not (tests["near_miss"] or tests["unknown"]) else "WARNED"
+    passed = is_clean and tests["pass"] and not (tests["near_miss"] or tests["unknown"])
+    return "PASSED" if passed else "WARNED"

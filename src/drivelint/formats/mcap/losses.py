@@ -59,7 +59,8 @@ class Losses:
         if self.first_ns is None:
             self.first_ns = log_ns
         for k in range(self._open, len(self.found)):
-            self.found[k] = replace(self.found[k], until_ns=log_ns)
+            if not self.found[k].timed:
+                self.found[k] = replace(self.found[k], until_ns=log_ns)
         self._open = len(self.found)
         self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_NS
         self._latest_ns = max(self._latest_ns, log_ns)
@@ -76,6 +77,11 @@ class Losses:
     def add_message(self, offset: int, what: str, log_ns: int) -> None:
         """Take note of a message that cannot be decoded."""
         self.found.append(LostBytes(offset, offset, what, log_ns - 1, log_ns + 1, timed=True))
+
+    @property
+    def has_lost_bytes(self) -> bool:
+        """Whether bytes are lost, not only single messages that cannot be decoded."""
+        return any(each.end > each.start for each in self.found)
 
     def covers(self, offset: int) -> bool:
         """Whether this byte is lost."""

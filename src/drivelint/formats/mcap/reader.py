@@ -188,8 +188,8 @@ class Container:
         if opcode == Opcode.DATA_END:
             self._in_data = False
             crc = self._parsed(DataEnd.read, body, at).data_section_crc
-            self._data_crc = crc
-            if crc and not self.losses and zlib.crc32(view[:at]) != crc:
+            self._data_crc = 0 if self.losses.has_lost_bytes else crc  # of what is left, it cannot be checked
+            if self._data_crc and zlib.crc32(view[:at]) != crc:
                 self._data_changed(at)
         elif opcode == Opcode.HEADER:
             self.library = self._parsed(Header.read, body, at).library
