@@ -9,4 +9,4 @@ SELECT
     coalesce(sum(round(duration_s * 1e6)::HUGEINT), 0) / 3.6e9 AS hours,
     coalesce(sum(unknown), 0)::BIGINT AS unknown,
     coalesce(sum(counts['error']), 0)::BIGINT AS errors
-FROM receipts
+FROM {of}

@@ -1,7 +1,7 @@
--- Per reason of unknown verdicts that is not a missing signal: how many rules, drives and verdicts are unknown for it.
+-- Per reason of verdicts that are unknown or in error, and that is not a missing signal: how many rules, drives and verdicts it is about.
 WITH {subject}
 SELECT v.reason_code, v.cause_code, count(DISTINCT v.rule_id) AS rules, count(DISTINCT v.key) AS drives, count(*) AS verdicts
 FROM {of}verdicts v SEMI JOIN subject s ON s.key = v.key AND s.ego_id = v.ego_id
-WHERE v.verdict = 'unknown' AND NOT starts_with(v.reason_code, 'missing_')
+WHERE v.verdict IN ('unknown', 'error') AND NOT starts_with(v.reason_code, 'missing_')
 GROUP BY ALL
 ORDER BY verdicts DESC, v.reason_code, v.cause_code NULLS FIRST

@@ -14,8 +14,12 @@ from drivelint import run
 from drivelint.audit import AuditRequest, JudgeSettings, audit, merge
 from drivelint.audit.ask import ask
 from drivelint.audit.driver import MOST_ATTEMPTS
+from drivelint.audit.executors import Outcome
+from drivelint.audit.lock import locked
+from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
 from drivelint.errors import ExitCode, UsageError
+from drivelint.fleet_report.opened import opened
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import SETTINGS, InThisProcess, judged
@@ -221,12 +225,68 @@ def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_pa
     judged(drives, tmp_path / "out", shard=(1, 3))
     judged(drives, tmp_path / "out", shard=(3, 3))
     partial = merge(str(tmp_path / "out"), Silent())
-    assert partial.missing_parts == ["2/3"]
+    assert partial.missing_parts == ["2-of-3"]
     assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
-    assert "INCOMPLETE: 2/3" in summary_text(partial, "out", ExitCode.NOT_JUDGED)
+    assert "INCOMPLETE: these parts have not ended: 2-of-3" in summary_text(partial, "out", ExitCode.NOT_JUDGED)
     judged(drives, tmp_path / "out", shard=(2, 3))
     assert merge(str(tmp_path / "out"), Silent()).missing_parts == []
     assert judged(drives, tmp_path / "out", shard=(2, 3)).reused > 0
+
+
+def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 12)
+    (tmp_path / "fleet" / "logs" / "drive-00001.parquet").write_bytes(b"PAR1")
+    first = judged(few, tmp_path / "out", shard=(1, 1))
+    assert (first.refused, first.failed) == (1, {"critical": len(few.planted - {"drive-00001.parquet"})})
+    merge(str(tmp_path / "out"), Silent())
+    again = judged(few, tmp_path / "out", shard=(1, 1))
+    assert (again.judged, again.refused, again.failed) == (first.judged, first.refused, first.failed)
+    assert again.exit_code("critical", strict=False) == first.exit_code("critical", strict=False) == ExitCode.FAILED
+
+
+def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 20)
+
+    class Stopped(InThisProcess):
+        def wait(self) -> list[Outcome]:
+            if len(self.tasks) < 2:
+                raise KeyboardInterrupt
+            return super().wait()
+
+    for shard in (None, (1, 2)):
+        out = tmp_path / f"out{shard}"
+        with pytest.raises(KeyboardInterrupt):
+            judged(few, out, Stopped(), shard=shard)
+        partial = merge(str(out), Silent())
+        assert partial.missing_parts
+        assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
+        with opened(str(out)) as (_, found, _):
+            assert "has not ended" in found.warning
+
+
+def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="--retry-errors and --prune"):
+        judged(drives, tmp_path / "out", shard=(1, 2), retry_errors=True)
+    few = fleet.write(tmp_path / "fleet", 3)
+    judged(few, tmp_path / "few", shard=(1, 1))
+    merge(str(tmp_path / "few"), Silent())
+    log = tmp_path / "fleet" / "logs" / "drive-00000.parquet"
+    rows = pq.read_table(log)
+    pq.write_table(rows.slice(0, rows.num_rows - 1), log)
+    with pytest.raises(UsageError, match="1 log changed since"):
+        judged(few, tmp_path / "few", shard=(1, 1))
+
+
+def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path: Path) -> None:
+    with (
+        locked(LocalFolder(tmp_path / "out"), shared=False),
+        pytest.raises(UsageError, match="another audit is at work"),
+    ):
+        judged(drives, tmp_path / "out")
+    with locked(LocalFolder(tmp_path / "out"), shared=True):
+        judged(drives, tmp_path / "out", shard=(1, 2))
+        with pytest.raises(UsageError, match="another audit is at work"):
+            merge(str(tmp_path / "out"), Silent())
 
 
 def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_path: Path) -> None:
@@ -235,7 +295,8 @@ def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_pat
     log.write_bytes(b"PAR1")
     text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
     n = len(few.planted - {log.name})
-    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n}; how sure they are was not examined" in text
+    assert n > 1
+    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; how sure they are was not examined" in text
     assert f"critical {fleet.RULE}: {n} finding" in text
     assert "not judged: 1 drive" in text
     assert "refused: " in text

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,8 @@ import pytest
 
 from drivelint.audit import merge
 from drivelint.audit.claims import Claims
-from drivelint.audit.model import AuditDrive
+from drivelint.audit.driver import TASK_DRIVES, tasks
+from drivelint.audit.model import AuditDrive, JudgeSettings
 from drivelint.audit.store import LocalFolder
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import ExitCode
@@ -36,14 +38,17 @@ def test_each_drive_is_given_to_one_of_two(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     first, second = Claims(results, 0.5), Claims(results, 0.5)
     with first.alive(), second.alive():
-        one = first.mine(lambda: _drives(6))
+        one = first.mine(_drives(6))
         got = [next(one), next(one)]
-        other = second.mine(lambda: _drives(6))
-        rest = [next(other) for _ in range(4)]
-        first.done(got)
-        assert list(other) == []
-        second.done(rest)
+        rest = list(second.mine(_drives(6)))
+        assert second.n_waiting == 2
         assert list(one) == []
+        assert first.n_waiting == 4
+        first.done(got)
+        second.done(rest)
+        for each in (first, second):
+            assert list(each.mine(_drives(6))) == []
+            assert each.n_waiting == 0
     assert sorted(drive.log for drive in got + rest) == [f"log{i}" for i in range(6)]
 
 
@@ -51,10 +56,37 @@ def test_what_a_dead_one_has_claimed_is_taken_over(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     dead = Claims(results, 0.3)
     with dead.alive():
-        next(iter(dead.mine(lambda: _drives(3))))
+        next(iter(dead.mine(_drives(3))))
     living = Claims(results, 0.3)
     with living.alive():
-        assert [drive.log for drive in living.mine(lambda: _drives(3))] == ["log0", "log1", "log2"]
+        assert [drive.log for drive in living.mine(_drives(3))] == ["log0", "log1", "log2"]
+
+
+def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> None:
+    results = LocalFolder(tmp_path)
+    n = 3 * TASK_DRIVES
+    done: list[list[str]] = [[], []]
+
+    def share(no: int) -> None:
+        claims = Claims(results, 2.0)
+        with claims.alive():
+            while True:
+                given = tasks(claims.mine(_drives(n)), "", "run", JudgeSettings(), ahead=TASK_DRIVES)
+                for task in given:
+                    done[no] += [drive.log for drive in task.drives]
+                    claims.done(task.drives)
+                if not claims.n_waiting:
+                    return
+                if not claims.n_taken:
+                    claims.pause()
+
+    threads = [threading.Thread(target=share, args=[no], daemon=True) for no in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+        assert not thread.is_alive()
+    assert sorted(done[0] + done[1]) == sorted(f"log{i}" for i in range(n))
 
 
 @pytest.mark.parametrize("n_killed", [0, 1])

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.audit.driver import TASK_DRIVES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from drivelint.audit.model import AuditDrive
     from drivelint.audit.store import ResultStore
@@ -34,6 +34,7 @@ class Claims:
         self._lease_s = lease_s
         self._owner = uuid.uuid4().hex
         self._stop = threading.Event()
+        self.n_waiting = self.n_taken = 0
 
     @contextmanager
     def alive(self) -> Iterator[None]:
@@ -48,34 +49,33 @@ class Claims:
             beat.join()
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
-    def mine(self, todo: Callable[[], Iterable[AuditDrive]]) -> Iterator[AuditDrive]:
-        """Yield the drives that this audit gets. Those of others are waited for: done, or free again when the other one is dead.
+    def mine(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
+        """Yield the drives that this audit gets in one pass over `todo`, what is to be judged by all.
 
-        `todo`: what is to be judged by all, as often as it is asked.
+        `n_waiting` is then how many somebody else has who is alive: after a while they are done, or free. This never waits itself, as
+        what is judged meanwhile is said to be done by whoever takes the drives.
         """
-        while True:
-            n_waiting = n_taken = 0
-            left = iter(todo())
-            while some := list(islice(left, TASK_DRIVES)):
-                alive: dict[str, bool] = {}
-                for drive in some:
-                    owner = self._take(drive)
-                    if owner is None:
-                        n_taken += 1
-                        yield drive
-                    elif owner != "":
-                        if owner not in alive:
-                            alive[owner] = self._is_alive(owner)
-                        if alive[owner]:
-                            n_waiting += 1
-                        else:
-                            self._results.write(_name(drive), self._claim())
-                            n_taken += 1
-                            yield drive
-            if not n_waiting:
-                return
-            if not n_taken:
-                time.sleep(self._lease_s / 6)
+        self.n_waiting = self.n_taken = 0
+        left = iter(todo)
+        while some := list(islice(left, TASK_DRIVES)):
+            alive: dict[str, bool] = {}
+            for drive in some:
+                owner = self._take(drive)
+                if owner == "":
+                    continue
+                if owner is not None:
+                    if owner not in alive:
+                        alive[owner] = self._is_alive(owner)
+                    if alive[owner]:
+                        self.n_waiting += 1
+                        continue
+                    self._results.write(_name(drive), self._claim())
+                self.n_taken += 1
+                yield drive
+
+    def pause(self) -> None:
+        """Wait for others, after a pass that got nothing."""
+        time.sleep(self._lease_s / 6)
 
     def done(self, drives: Iterable[AuditDrive]) -> None:
         """Say that drives have their results."""

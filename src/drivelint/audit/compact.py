@@ -162,6 +162,10 @@ def _loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[li
 
 def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> int:
     """Write a chunk of these receipts and their rows, then remove the small files. Return how many drives it has."""
+    lost = {batch for batch in {each.batch for each in receipts} if results.read(batch_name("drives", batch)) is None}
+    if lost:  # somebody removed the rows: without its receipt, a drive is judged again
+        results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
+        receipts = [receipt for receipt in receipts if receipt.batch not in lost]
     known = _known(results, con, receipts, home)
     new = [receipt for receipt in receipts if receipt.key not in known]
     if new:

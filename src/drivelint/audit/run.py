@@ -9,15 +9,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit import listing
+from drivelint.audit import listing, parts
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
 from drivelint.audit.identity import rule_table, run_id, versions
+from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.store import LocalFolder, open_store
-from drivelint.audit.summary import AuditSummary, summed
+from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import duckdb
+    import pyarrow as pa
 
     from drivelint.audit.executors import Executor
     from drivelint.audit.model import Receipt
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
 AUDIT_FILE: Final = "audit.json"
 SUMMARY_FILE: Final = "summary.json"
 RULES_FILE: Final = "rules.parquet"
+_LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
+"""The receipts of the drives of this part that were packed before."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 
 
@@ -76,6 +80,20 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     results = open_store(request.out)
     _begin(request, results, id_)
     alone = request.shard is None and not request.claim
+    if not alone and (request.retry_errors or request.prune):
+        raise UsageError("--retry-errors and --prune take results out: give them without --shard and --claim")
+    part = parts.name_of(request.shard, claim=request.claim)
+    with locked(results, shared=not alone):
+        parts.begin(results, part)
+        counted = _audited(request, results, progress, id_=id_, executor=executor)
+        parts.end(results, part)
+    return counted
+
+
+def _audited(
+    request: AuditRequest, results: ResultStore, progress: Progress, *, id_: str, executor: Executor | None
+) -> AuditSummary:
+    alone = request.shard is None and not request.claim
     if alone:
         if isinstance(results, LocalFolder):
             results.sweep()
@@ -93,13 +111,12 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
+        if not alone and (n_stale := len(_stale(con, retry=False))):
+            raise UsageError(f"{plural(n_stale, 'log')} changed since: give the audit once without --shard and --claim")
         counted = _judge(request, con, results, progress, id_=id_, executor=executor)
         n_reused = n_known + counted.reused
         if not alone:
-            _write_part(results, request, n_drives)
-            return replace(
-                counted, n_drives=counted.n_drives + n_known, judged=counted.judged + n_known, reused=n_reused
-            )
+            return replace(counted.plus(summed_receipts(con, _LISTED)), reused=n_reused)
         counted = _close(con, results, Path(home), n_reused)
         return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
@@ -137,11 +154,16 @@ def _judge(
     try:
         with claims.alive() if claims else nullcontext():
             ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
-            todo = claims.mine(lambda: listing.todo(con)) if claims else listing.todo(con)
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = task_size(n_left, workers.capacity)
-            given = tasks(todo, request.out, id_, request.settings, ahead=ahead, most=most)
-            Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None).run(given)
+            driver = Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None)
+            while True:
+                todo = claims.mine(listing.todo(con)) if claims else listing.todo(con)
+                driver.run(tasks(todo, request.out, id_, request.settings, ahead=ahead, most=most))
+                if claims is None or not claims.n_waiting:
+                    break
+                if not claims.n_taken:
+                    claims.pause()
     finally:
         workers.close()
     return counted
@@ -149,9 +171,13 @@ def _judge(
 
 def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
     """Take out the results of logs that have changed, with `retry` also those of drives that were not judged; return how many."""
-    stale = con.execute(statement("audit/stale"), {"retry": retry}).to_arrow_table()["key"].combine_chunks()
+    stale = _stale(con, retry=retry)
     drop(results, stale)
     return len(stale)
+
+
+def _stale(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
+    return con.execute(statement("audit/stale"), {"retry": retry}).to_arrow_table()["key"].combine_chunks()
 
 
 def _close(
@@ -175,28 +201,11 @@ def merge(out: str, progress: Progress) -> AuditSummary:
     if results.read(AUDIT_FILE) is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
     progress.stage("packing", None)
-    if isinstance(results, LocalFolder):
-        results.sweep()
-    missing = _missing_parts(results)
-    compact(results)
-    results.delete(list(results.names("claims")))
-    with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
-        return _close(con, results, Path(home), 0, missing)
-
-
-def _write_part(results: ResultStore, request: AuditRequest, n_listed: int) -> None:
-    """Say that a shard, or an audit that shares its drives, has come to its end."""
-    name = "claim" if request.shard is None else f"{request.shard[0]}-of-{request.shard[1]}"
-    results.write(f"parts/{name}.json", (json.dumps({"n_listed": n_listed}) + "\n").encode())
-
-
-def _missing_parts(results: ResultStore) -> list[str]:
-    """Return which shards have not come to their end, as `2/3`; `claim` where drives are shared and no audit has."""
-    names = {Path(name).stem for name in results.names("parts")}
-    sizes = {name.partition("-of-")[2] for name in names} - {""}
-    missing = [f"{i}/{n}" for n in sorted(sizes) for i in range(1, int(n) + 1) if f"{i}-of-{n}" not in names]
-    shared = next(iter(results.names("claims")), None) is not None
-    return missing + (["claim"] if shared and "claim" not in names else [])
+    with locked(results, shared=False), database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
+        if isinstance(results, LocalFolder):
+            results.sweep()
+        results.delete(list(results.names("claims")))
+        return _close(con, results, Path(home), 0, parts.missing(results))
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.compact import tables_digest
@@ -46,6 +46,7 @@ class AuditSummary:
     n_absent: int = 0
     missing_parts: list[str] = field(default_factory=list)
     findings: dict[str, int] = field(default_factory=dict)
+    contacts: int = 0
     broken: list[dict[str, Any]] = field(default_factory=list)
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
@@ -65,6 +66,12 @@ class AuditSummary:
         self.unknown += receipt.unknown
         self.errors += receipt.counts.get("error", 0)
 
+    def plus(self, other: AuditSummary) -> AuditSummary:
+        """Return what both come to together, but for what is only told of a whole audit."""
+        names = ("n_drives", "judged", "lossy", "refused", "quarantined", "km", "hours", "unknown", "errors")
+        both = {name: getattr(self, name) + getattr(other, name) for name in names}
+        return replace(self, **both, failed=dict(Counter(self.failed) + Counter(other.failed)))
+
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
         """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0."""
         gating = SEVERITIES[: SEVERITIES.index(fail_on) + 1] if fail_on != "never" else ()
@@ -78,18 +85,23 @@ class AuditSummary:
         return ExitCode.LOSSY if self.lossy else ExitCode.OK
 
 
+def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
+    """Return what these receipts come to; `of`: a relation with the columns of `receipts`."""
+    (row,) = con.execute(statement("audit/summed", of=of)).to_arrow_table().to_pylist()
+    return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
+
+
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
-    (row,) = con.execute(statement("audit/summed")).to_arrow_table().to_pylist()
-    failed = dict(con.execute(statement("audit/failed")).fetchall())
     broken, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}")).to_arrow_table() for name in ("broken", "unknown", "not_judged")
     )
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
-    return AuditSummary(
-        **row,
+    (contacts,) = con.execute(statement("audit/contacts")).fetchall()[0]
+    return replace(
+        summed_receipts(con, "receipts"),
         reused=n_reused,
-        failed=failed,
+        contacts=contacts,
         digest=tables_digest(con),
         findings={
             each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])

@@ -32,16 +32,17 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     if counted.n_asked is not None and counted.n_asked != counted.n_drives:
         yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
     if counted.missing_parts:
-        yield f"INCOMPLETE: {', '.join(counted.missing_parts)} of the shards have not ended: run them, and merge again"
+        yield f"INCOMPLETE: these parts have not ended: {', '.join(counted.missing_parts)}: give the same audits again"
     if counted.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
+    contact = f"; CONTACT in {plural(counted.contacts, 'drive')}" if counted.contacts else ""
     found = [f"{counted.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
-    yield f"findings: {', '.join(found)}{_contacts(counted)}; how sure they are was {'' if counted.robust else 'not '}examined"
+    yield f"findings: {', '.join(found)}{contact}; how sure they are was {'' if counted.robust else 'not '}examined"
     for row in counted.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
     if counted.unknown_for:
-        yield f"unknown: {counted.unknown} verdicts"
+        yield f"unknown: {counted.unknown} verdicts of stable rules"
     for row in counted.unknown_for:
         yield f"  {row['reason_code']}: {row['n']} of {plural(row['n_rules'], 'rule')} in {plural(row['n_drives'], 'drive')}"
     if left := counted.refused + counted.quarantined:
@@ -62,8 +63,3 @@ def _difference(counted: AuditSummary) -> str:
     if doubles > 0:
         parts.append(f"{plural(doubles, 'log')} of the name and content of another, judged once")
     return f"; {'; '.join(parts)}" if parts else ""
-
-
-def _contacts(counted: AuditSummary) -> str:
-    contact = max((row["n_drives"] for row in counted.broken if row["is_contact"]), default=0)
-    return f"; CONTACT in {contact}" if contact else ""

@@ -10,7 +10,7 @@ import typer
 from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
-from drivelint.errors import ExitCode, UsageError
+from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +52,7 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
             typer.echo(difference_text.to_json(found, least))
         else:
             typer.echo(difference_text.to_text(found, least, markdown=format_ == "markdown"))
-        raise typer.Exit(int(ExitCode.FAILED if found.n_failing(least) else ExitCode.OK))
+        raise typer.Exit(int(difference_text.exit_code(found, least)))
 
     run_interruptible(compared)
 

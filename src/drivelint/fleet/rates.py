@@ -106,7 +106,7 @@ def rates(
     `by`: a tag, or a situation of `situations.SITUATIONS`. `of`: what the names of the audit's views begin with. `without`: the same of
     another audit; logs that are in it, too, are left out. Errors: `UsageError` if no drive has that tag.
     """
-    _check_tag(con, by, of)
+    check_tag(con, by, of)
     fragments = {
         "of": of,
         "value": value_of(by),
@@ -119,7 +119,7 @@ def rates(
     return [Rate(**dict(zip(names, row, strict=True))) for row in rows.fetchall()]
 
 
-def _check_tag(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
+def check_tag(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
     """Refuse a tag that no drive has: all would be of unknown value."""
     if by is None or by in SITUATIONS:  # that no drive has one is an answer
         return

@@ -67,6 +67,12 @@ class FleetContent:
         return int(self.totals["drives"] - self.totals["judged"])
 
     @property
+    def is_all_decided(self) -> bool:
+        """Whether the audit has ended, drives were judged, and none of their verdicts is open."""
+        left = self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged or self.audit.warning
+        return bool(self.totals["judged"]) and not left
+
+    @property
     def headline(self) -> tuple[str, str]:
         """The outcome (fail, unknown or pass), and the sentence at the top."""
         if self.n_findings:
@@ -77,7 +83,7 @@ class FleetContent:
             return "fail", f"{said} {noun} in {self.n_drives_with_findings:,} of {self.totals['drives']:,} drives"
         if not self.verdicts["pass"]:
             return "unknown", "Nothing could be decided"
-        if self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged:
+        if self.audit.warning or self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged:
             return "unknown", "No finding, as far as it could be judged"
         return "pass", "No finding"
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from drivelint.errors import ExitCode
 from drivelint.fleet_report.figures import figure, interval
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.report.markdown import code, escaped
@@ -29,6 +30,24 @@ def rate_name(of: RateChange | RuleCoverage) -> str:
     return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
 
 
+def exit_code(found: AuditDifference, fail_on: str) -> ExitCode:
+    """FAILED for new findings that gate; NOT_JUDGED where one of the audits has not ended, so that more may come."""
+    if found.n_failing(fail_on):
+        return ExitCode.FAILED
+    return ExitCode.NOT_JUDGED if _warnings(found) else ExitCode.OK
+
+
+def _warnings(found: AuditDifference) -> list[str]:
+    return [audit.warning for audit in (found.base, found.new) if audit.warning]
+
+
+def _exit(found: AuditDifference, fail_on: str) -> str:
+    """Return the exit code and its reason, in one line."""
+    if exit_code(found, fail_on) == ExitCode.NOT_JUDGED:
+        return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(found)[0]}"
+    return exit_sentence(found.n_failing(fail_on), fail_on)
+
+
 def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> str:
     """Return a difference as text for a person, or as Markdown."""
     filters: dict[str, Any] = {
@@ -45,17 +64,17 @@ def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> 
         verdicts=VERDICTS,
         titles=DIFF_STATUS_TITLES,
         most=MAX_LINES,
-        exit=exit_sentence(found.n_failing(fail_on), fail_on),
+        exit=_exit(found, fail_on),
     )
     return text.rstrip("\n")
 
 
 def to_json(found: AuditDifference, fail_on: str) -> str:
     """Return a difference as JSON: all counts, and the first entries of each standing with the number of those left out."""
-    n_failing = found.n_failing(fail_on)
     content = {
         "audit_diff_schema": AUDIT_DIFF_SCHEMA,
-        "exit": {"code": int(n_failing > 0), "why": exit_sentence(n_failing, fail_on).partition(": ")[2]},
+        "exit": {"code": int(exit_code(found, fail_on)), "why": _exit(found, fail_on).partition(": ")[2]},
+        "warnings": _warnings(found),
         "fail_on": fail_on,
         "base_name": found.base.name,
         "name": found.new.name,

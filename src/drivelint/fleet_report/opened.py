@@ -9,9 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.audit import parts
 from drivelint.audit.bucket import as_url
-from drivelint.audit.compact import create_views, database, escaped
-from drivelint.audit.run import AUDIT_FILE, RULES_FILE, SUMMARY_FILE
+from drivelint.audit.compact import create_views, database
+from drivelint.audit.run import AUDIT_FILE, SUMMARY_FILE
 from drivelint.audit.store import open_store
 from drivelint.errors import UsageError
 
@@ -39,6 +40,7 @@ class Audit:
     told: dict[str, Any]
     digest: str | None
     n_loose: int
+    missing_parts: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -60,10 +62,15 @@ class Audit:
     @property
     def warning(self) -> str:
         """What is not in its tables though it was or will be judged; '' where nothing is."""
-        if self.digest is not None and not self.n_loose:
+        if self.digest is not None and not self.n_loose and not self.missing_parts:
             return ""
         more = f"{self.n_loose} judged drives are not packed yet; " if self.n_loose else ""
-        return f"{self.dest}: the audit has not ended: {more}give the same audit again, or drivelint merge, to have all"
+        again = (
+            "give the same audit again"
+            if self.missing_parts in {(), (parts.ALL,)}
+            else (f"parts without an end: {', '.join(self.missing_parts)}; give them again, then drivelint merge")
+        )
+        return f"{self.dest}: the audit has not ended: {more}{again}, to have all"
 
 
 def destination(path: Path) -> str:
@@ -100,7 +107,6 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str) ->
     if content is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
     create_views(con, results, home, prefix)
-    con.read_parquet(escaped([str(results.fetch(RULES_FILE, home))])).create_view(f"{prefix}rules")
     summary = json.loads(results.read(SUMMARY_FILE) or b"{}")
     n_loose = sum(1 for _ in results.names("receipts"))
-    return Audit(dest, results, json.loads(content), summary.get("digest"), n_loose)
+    return Audit(dest, results, json.loads(content), summary.get("digest"), n_loose, tuple(parts.missing(results)))

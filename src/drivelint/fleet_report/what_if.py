@@ -11,6 +11,7 @@ import msgspec
 
 from drivelint import catalogue
 from drivelint.errors import ExitCode, UsageError
+from drivelint.fleet.rates import check_tag
 from drivelint.fleet.what_if import WhatIf, what_if
 from drivelint.fleet_report.opened import opened
 from drivelint.phrases import hint, plural
@@ -42,8 +43,9 @@ class AskedWhatIf:
 
     @property
     def exit_code(self) -> ExitCode:
-        """OK; NOT_JUDGED where only a new audit can tell."""
-        return ExitCode.NOT_JUDGED if self.found.needs_check or self.found.not_known else ExitCode.OK
+        """OK; NOT_JUDGED where only a new audit can tell, where the audit has not ended, or has no verdict of the rule."""
+        left = self.found.needs_check or self.found.not_known or self.audit.warning or not self.found.verdicts
+        return ExitCode.NOT_JUDGED if left else ExitCode.OK
 
 
 def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
@@ -52,6 +54,7 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
     Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
     """
     with opened(dest) as (con, audit, _):
+        check_tag(con, by, "")
         rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
         ((param, value),) = values.items()
@@ -149,6 +152,7 @@ def to_json(asked: AskedWhatIf) -> str:
         "by": asked.by,
         "needs_audit": found.needs_check,
         "not_known": found.not_known,
+        "warning": asked.audit.warning,
         "verdicts": [each._asdict() for each in found.verdicts],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

@@ -1,0 +1,84 @@
+"""Keeps two audits, or an audit and a merge, from packing one place at the same time."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Final
+
+from drivelint.audit.store import LocalFolder
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.audit.store import ResultStore
+
+LAPSE_S: Final = 60.0
+"""Seconds without a sign of life after which the lock of an object store lapses. That of a folder ends with its process."""
+_NAME: Final = "lock.json"
+
+
+@contextmanager
+def locked(results: ResultStore, *, shared: bool) -> Iterator[None]:
+    """Hold a place while the block runs. `shared`: with others that share it, as shards do, which pack nothing.
+
+    Errors: `UsageError` where somebody else has it.
+    """
+    if isinstance(results, LocalFolder):
+        with _locked_folder(results, shared=shared):
+            yield
+    elif shared:
+        yield
+    else:
+        with _locked_store(results):
+            yield
+
+
+@contextmanager
+def _locked_folder(results: LocalFolder, *, shared: bool) -> Iterator[None]:
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    results.root.mkdir(parents=True, exist_ok=True)
+    with (results.root / ".lock").open("wb") as file:
+        try:
+            fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        except OSError:
+            raise _taken(str(results.root)) from None
+        yield
+
+
+@contextmanager
+def _locked_store(results: ResultStore) -> Iterator[None]:
+    def sign() -> bytes:
+        return f'{{"at": {time.time()}}}\n'.encode()
+
+    if not results.create(_NAME, sign()):
+        seen = json.loads(results.read(_NAME) or b'{"at": 0}')["at"]
+        if time.time() - seen < LAPSE_S:
+            raise _taken(f"sign of life {time.time() - seen:.0f} s ago")
+        results.write(_NAME, sign())
+    stop = threading.Event()
+
+    def beat() -> None:
+        while not stop.wait(LAPSE_S / 6):
+            results.write(_NAME, sign())
+
+    thread = threading.Thread(target=beat, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
+        with suppress(Exception):  # it lapses by itself
+            results.delete([_NAME])
+
+
+def _taken(where: str) -> UsageError:
+    return UsageError(f"{where}: another audit is at work there: wait for its end, or share the drives with --claim")

@@ -1,0 +1,38 @@
+"""Which parts of an audit have begun and which have come to their end, so that an unfinished audit never looks whole."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from drivelint.audit.store import ResultStore
+
+ALL, CLAIM = "all", "claim"
+"""The names of an audit of all drives, and of audits that share their drives. That of a shard is `2-of-3`."""
+
+
+def name_of(shard: tuple[int, int] | None, *, claim: bool) -> str:
+    """Return the name of a part."""
+    if shard is not None:
+        return f"{shard[0]}-of-{shard[1]}"
+    return CLAIM if claim else ALL
+
+
+def begin(results: ResultStore, part: str) -> None:
+    """Say that a part has begun. With a shard, all the others are expected, too."""
+    _, is_shard, n = part.partition("-of-")
+    for name in [f"{i}-of-{n}" for i in range(1, int(n) + 1)] if is_shard else [part]:
+        results.create(f"parts/begun/{name}", b"\n")
+    results.delete([f"parts/ended/{part}"])
+
+
+def end(results: ResultStore, part: str) -> None:
+    """Say that a part has come to its end."""
+    results.write(f"parts/ended/{part}", b"\n")
+
+
+def missing(results: ResultStore) -> list[str]:
+    """Return the parts that have begun, or are expected, and have not come to their end."""
+    begun, ended = ({Path(name).name for name in results.names(f"parts/{state}")} for state in ("begun", "ended"))
+    return sorted(begun - ended)
