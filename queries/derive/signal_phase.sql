@@ -21,7 +21,10 @@ repeat_period AS (
     HAVING quantile_disc(gap_ns, 0.5) <= 1_000_000_000
 ),
 known_state AS (
-    SELECT drive_id, signal_id, t_ns, state FROM state_sample
+    -- A change after a sample within a lost stretch may be lost, too.
+    SELECT k.drive_id, k.signal_id, k.t_ns, CASE WHEN l.t_to_ns > k.t_ns THEN NULL ELSE k.state END AS state
+    FROM state_sample k
+    ASOF LEFT JOIN lost_time l ON l.drive_id = k.drive_id AND l.t_from_ns < k.t_ns
     UNION ALL
     SELECT s.drive_id, s.signal_id, s.t_ns + c.max_gap_ns + 1, NULL
     FROM sample_spacing s

@@ -129,7 +129,7 @@ def check(
         )
         progress.stage("checking", len(paths))
         refused: list[RefusedLog] = []
-        notes = _Notes(progress)
+        notes = _Notes(progress, len(paths))
         ids: dict[Path, str] = {}
         read = _announced(read_drives(paths, options, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
@@ -137,11 +137,7 @@ def check(
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    failed = _judge(session, batch, progress, notes)
-                    refused += failed
-                    if len(paths) > 1:  # a single one is the error of the whole run
-                        for each in failed:
-                            notes.add(f"not judged: {each.error}")
+                    _judge(session, batch, refused, progress, notes)
         finally:
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
@@ -184,8 +180,9 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
 class _Notes:
     """Shows what is to be said of the logs, and keeps it for the result."""
 
-    def __init__(self, progress: Progress) -> None:
+    def __init__(self, progress: Progress, n_logs: int) -> None:
         self.texts: list[str] = []
+        self._n_logs = n_logs
         self._progress = progress
         self._said: set[str] = set()
 
@@ -193,6 +190,11 @@ class _Notes:
         """Show and keep a note."""
         self.texts.append(text)
         self._progress.note(text)
+
+    def add_refused(self, refused: Iterable[RefusedLog]) -> None:
+        """Add why logs are not judged; that of a single one is the error of the whole run."""
+        for each in refused if self._n_logs > 1 else ():
+            self.add(f"not judged: {each.error}")
 
     def add_of_log(self, name: str, said: Iterable[str]) -> None:
         """Add what its reader said of a log, unless it said that of an earlier one: not a thousand times for a thousand logs."""
@@ -203,10 +205,14 @@ class _Notes:
 
 
 def _judge(
-    session: JudgingSession, batch: Iterable[Drive | RefusedLog], progress: Progress, notes: _Notes
-) -> list[RefusedLog]:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Return what could not be judged."""
-    refused: list[RefusedLog] = []
+    session: JudgingSession,
+    batch: Iterable[Drive | RefusedLog],
+    refused: list[RefusedLog],
+    progress: Progress,
+    notes: _Notes,
+) -> None:
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused`."""
+    n_before = len(refused)
     drives: list[Drive] = []
     for item in batch:
         if isinstance(item, RefusedLog):
@@ -217,6 +223,9 @@ def _judge(
             drives.append(item)
             notes.add_of_log(item.trace.path.name, item.trace.notes)
     progress.doing(f"judging {plural(len(drives), 'drive')}")
-    refused += judge_apart(session, drives)
-    progress.advance(len(drives) + len(refused))
-    return refused
+    n_unread = len(refused) - n_before
+    try:
+        judge_apart(session, drives, refused)
+    finally:
+        notes.add_refused(refused[n_before:])
+    progress.advance(len(drives) + n_unread)

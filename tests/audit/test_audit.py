@@ -296,7 +296,9 @@ def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_pat
     text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
     n = len(few.planted - {log.name})
     assert n > 1
-    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; how sure they are was not examined" in text
+    assert (
+        f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; how sure they are was not examined" in text
+    )
     assert f"critical {fleet.RULE}: {n} finding" in text
     assert "not judged: 1 drive" in text
     assert "refused: " in text

@@ -133,7 +133,10 @@ class Judge:
                 store.recreate_empty(self._con, [table])
         self._session.forget_judged()
         drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
-        failed = {each.path: each for each in judge_apart(self._session, drives)} if drives else {}
+        refusals: list[RefusedLog] = []
+        if drives:
+            judge_apart(self._session, drives, refusals)
+        failed = {each.path: each for each in refusals}
         told = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}
         judged = collect.drives(self._con)
         rows: dict[str, list[pa.Table]] = {table: [] for table in TABLES}

@@ -12,6 +12,7 @@ import typer
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
+from drivelint.phrases import inert, inert_line
 
 Traces = Annotated[
     list[Path] | None, option("--trace", "FILE", "Where a log is, if it was moved. Repeatable: its hash tells which.")
@@ -81,11 +82,11 @@ def verify(
     request = VerifyRequest(folder, key, tuple(traces or ()), map_)
     found = run_interruptible(lambda: verified(request))
     for note in found.notes:
-        typer.echo(f"drivelint: {note}", err=True)
+        typer.echo(f"drivelint: {inert_line(note)}", err=True)
     for problem in found.problems:
-        typer.echo(f"{problem.kind}: {problem.what}")
+        typer.echo(f"{problem.kind}: {inert_line(problem.what)}")
     if not found.problems:
-        typer.echo(found.sentence)
+        typer.echo(inert(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))
 
 

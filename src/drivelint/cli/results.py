@@ -10,7 +10,7 @@ import typer
 from drivelint.cli import completion, fleets, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
-from drivelint.errors import ExitCode, UsageError
+from drivelint.errors import UsageError
 from drivelint.phrases import inert, inert_line
 
 if TYPE_CHECKING:
@@ -118,7 +118,8 @@ def diff(
     What NEW did not judge is not fixed: it is listed apart, with the reason. Findings that NEW's run waived do not gate.
     Of two audits it also says what else differs (software, rules, parameters, data, map, tool), and which rates do.
 
-    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error.
+    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error; 4 there is none so far, but
+    findings of BASE are unknown or not looked at in NEW, or a run has not ended.
     """
     from drivelint.fleet_report.opened import destination, is_audit
     from drivelint.gate import compare_results, descriptions
@@ -142,7 +143,7 @@ def diff(
         typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
         typer.echo(inert(descriptions.difference_text(found, failing, least, later.gate)))
-    raise typer.Exit(int(ExitCode.FAILED if failing else ExitCode.OK))
+    raise typer.Exit(int(descriptions.exit_code(found, failing, least)))
 
 
 def explain(

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from drivelint.engine.session import JudgingSession
 
 
-def judge_apart(session: JudgingSession, drives: Sequence[Drive]) -> list[RefusedLog]:
-    """Judge a batch; if it fails, drive by drive, so that one bad drive harms no other. Return what could not be judged.
+def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list[RefusedLog]) -> None:
+    """Judge a batch; if it fails, drive by drive, so that one bad drive harms no other. What could not be judged is added to `refusals`.
 
     Errors: those whose fault is no drive's, such as a folder that cannot be written (`exit_code` 75).
     """
@@ -30,10 +30,10 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive]) -> list[Refuse
         if isinstance(error, DriveLintError) and error.is_of_the_run:
             raise
         if len(drives) == 1:
-            return [refused(drives[0].trace.path, error)]
+            refusals.append(refused(drives[0].trace.path, error))
+            return
         # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
         many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
-        pieces = [drives[at : at + many] for at in range(0, len(drives), many)]
-        return [each for piece in pieces for each in judge_apart(session, piece)]
-    return []
+        for at in range(0, len(drives), many):
+            judge_apart(session, drives[at : at + many], refusals)

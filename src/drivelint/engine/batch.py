@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import file_digest
 from typing import TYPE_CHECKING, Final
+from weakref import WeakSet
 
 import numpy as np
 import pyarrow.compute as pc
@@ -95,6 +96,7 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
             while True:
                 while len(waiting) < READ_AHEAD and (path := next(todo, None)) is not None:
                     waiting.append((path, pool.submit(read_trace, path, options)))
+                    _reading.add(waiting[-1][1])
                 if not waiting:
                     return
                 path, future = waiting.popleft()
@@ -102,6 +104,14 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
         finally:
             for _, future in waiting:
                 future.cancel()
+
+
+_reading: WeakSet[Future[Trace]] = WeakSet()
+
+
+def logs_being_read() -> bool:
+    """Whether logs are being read in other threads."""
+    return any(not future.done() for future in list(_reading))
 
 
 def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:

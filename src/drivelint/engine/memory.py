@@ -58,12 +58,14 @@ class Memory:
         return True
 
     def most_growth(self) -> int | None:
-        """Return by how many bytes the process may grow while a rule runs; None where the system does not tell what is free.
+        """Return by how many bytes the process may grow while a rule runs; None where that tells nothing of the rule.
+
+        The system may not tell what is free, or logs are being read meanwhile.
 
         The database counts what its tables take. Functions on huge values take more than that without being counted.
         """
         free = free_bytes()
-        if free is None:
+        if free is None or batch.logs_being_read():
             return None
         return min(2 * self._limit, free) if self.limited and self._limit is not None else int(0.8 * free)
 

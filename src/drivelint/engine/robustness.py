@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
@@ -99,6 +100,7 @@ class Robustness:
         load: Callable[[Sequence[Drive]], None],
         forget: Callable[[Sequence[str]], None],
         limits: RuleLimits,
+        is_stopped: Callable[[], bool],
     ) -> None:
         self._con = con
         self._rules = {rule.id: rule for rule in rules}
@@ -109,25 +111,29 @@ class Robustness:
         self._forget = forget
         self._limits = limits
         self._limits.memory = memory.most_growth
+        self._is_stopped = is_stopped
 
     def judge(self, drives: Sequence[Drive]) -> None:
-        """Write `n_copies` and `n_stays` of the findings of these drives, whose own tables are not needed any more."""
+        """Write `n_copies` and `n_stays` of the findings of these drives, whose own tables are not needed any more.
+
+        A finding that is not settled when the run is stopped stays without an answer.
+        """
         ids = [drive.trace.drive_id for drive in drives]
         rows = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table().to_pylist()
         questions = [Question(row, self._rules[row["rule_id"]]) for row in rows]
         by_id = {drive.trace.drive_id: drive for drive in drives}
         open_ = questions
-        while open_:
-            for chunk in _chunks(windows(by_id, open_, N_COPIES)):
+        while open_ and not self._is_stopped():
+            for chunk in takewhile(lambda _chunk: not self._is_stopped(), _chunks(windows(by_id, open_, N_COPIES))):
                 self._try(chunk)
             open_ = [q for q in open_ if q.size < Window.SIZES and not q.is_settled]
-        self._answer([q for q in questions if q.n_copies])
+        self._answer([q for q in questions if q.n_copies and q.is_settled])
 
     def _try(self, chunk: Sequence[Window]) -> None:
         """Judge windows together; if that errs, one by one, so that one rule's fault is not the others'."""
         try:
             found = self._stays(chunk)
-        except (DriveLintError, duckdb.Error) as error:
+        except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:
                 for window in chunk:
                     self._try([window])

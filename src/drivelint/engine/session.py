@@ -75,6 +75,7 @@ class JudgingSession:
         self._interruption = interruption or Interruption()
         self._limits = limits or RuleLimits()
         self._limits.memory = self._memory.most_growth
+        self._limits_of_copies = limits_of_copies or RuleLimits()
         self._robustness = None
         if errors:
             self._robustness = Robustness(
@@ -85,7 +86,8 @@ class JudgingSession:
                 memory=self._memory,
                 load=self._load,
                 forget=self._forget_copies,
-                limits=limits_of_copies or RuleLimits(),
+                limits=self._limits_of_copies,
+                is_stopped=lambda: self._interruption.requested,
             )
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
@@ -113,7 +115,8 @@ class JudgingSession:
     def forget_judged(self) -> None:
         """Forget which logs were judged, so that they can be judged again. The caller has taken their results out of the database."""
         self._seen.clear()
-        self._limits.forget()  # what a worker judged before is by chance
+        for limits in (self._limits, self._limits_of_copies):
+            limits.forget()  # what a worker judged before is by chance
 
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, nothing of it stays behind.
@@ -135,11 +138,15 @@ class JudgingSession:
                 # what one ego needs and cannot be spilled to disk may take what the machine has
                 if len(drives) > 1 or not self._memory.lift_limit():
                     raise
-        self._seen.update(drive.trace.drive_id for drive in drives)
-        if self._margins:
-            self._margins.add(self._con, self._memory)
-        if self._robustness:
-            self._robustness.judge(drives)
+        ids = [drive.trace.drive_id for drive in drives]
+        with ExitStack() as undo:
+            undo.callback(self._forget, ids)
+            if self._margins:
+                self._margins.add(self._con, self._memory)
+            if self._robustness:
+                self._robustness.judge(drives)
+            undo.pop_all()
+        self._seen.update(ids)
         store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
 
     def _judge(self, drives: Sequence[Drive]) -> bool:

@@ -69,7 +69,7 @@ class RuleLimits:
     ) -> None:
         self.seconds = seconds
         self.memory: Callable[[], int | None] = lambda: None
-        """Bytes by which the process may grow while a rule runs alone; None: any number."""
+        """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
         self._deaf = deaf
         self._lost: dict[str, Excess] = {}
@@ -95,7 +95,7 @@ class RuleLimits:
         if self.seconds is None:
             yield held
             return
-        args = (con, rule_id, held, self.memory() if alone else None)
+        args = (con, rule_id, held, alone)
         watch = Thread(target=self._watch, args=args, daemon=True, name=f"limits of {rule_id}")
         watch.start()
         try:
@@ -108,7 +108,7 @@ class RuleLimits:
                 if self._excesses[rule_id] >= MOST_EXCESSES:
                     self._lost[rule_id] = held.excess
 
-    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, memory: int | None) -> None:
+    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool) -> None:
         seconds = self.seconds or 0.0
         until, before = monotonic() + seconds, resident_bytes()
         patience = 0.0
@@ -116,6 +116,9 @@ class RuleLimits:
             now = monotonic()
             excess = held.excess
             if excess is None:
+                memory = self.memory() if alone else None
+                if memory is None:
+                    before = resident_bytes()
                 if memory is not None and resident_bytes() - before > memory:
                     excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
                 elif now >= until:

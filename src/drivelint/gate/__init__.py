@@ -81,5 +81,5 @@ def compare_results(
     base: Result, new: Result, names: tuple[str, str], fail_on: str
 ) -> tuple[Difference, list[ComparedFinding]]:
     """Return the difference of two results and its new findings that fail the run."""
-    found = diff.compare(base, new, *names)
+    found = replace(diff.compare(base, new, *names), is_partial=new.interrupted)
     return found, descriptions.gating_findings(found, fail_on, new.gate)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.result import counts
 from drivelint.result.text import number
@@ -87,24 +88,45 @@ def difference_text(
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
         groups=group_by_reason(difference.opened),
-        exit=exit_summary(failing, fail_on),
+        exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )
     return text.removesuffix("\n")
 
 
-def exit_summary(failing: Sequence[ComparedFinding], fail_on: str) -> str:
+def exit_summary(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return the exit code of a difference and its reason, in one line."""
-    return exit_sentence(len(failing), fail_on)
+    return exit_sentence(len(failing), fail_on, not_looked_at(difference, fail_on))
 
 
-def exit_sentence(n_failing: int, fail_on: str) -> str:
+def exit_code(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> ExitCode:
+    """Return FAILED for new findings that gate; NOT_JUDGED where the newer result did not look at what the earlier one had found."""
+    if failing:
+        return ExitCode.FAILED
+    return ExitCode.NOT_JUDGED if not_looked_at(difference, fail_on) else ExitCode.OK
+
+
+def not_looked_at(difference: Difference, fail_on: str) -> str:
+    """Return what of the earlier result the newer one did not look at or cannot tell, in words; '' for nothing that gates."""
+    if fail_on == "never":
+        return ""
+    severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
+    gone = [*difference.with_diff_status("unknown"), *difference.with_diff_status("lost")]
+    n = sum(entry.stable and entry.severity in severe for entry in gone)
+    said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
+    said += ["the newer run was interrupted"] if difference.is_partial else []
+    return " and ".join(said)
+
+
+def exit_sentence(n_failing: int, fail_on: str, not_looked_at: str = "") -> str:
     """Return the exit code for a number of findings that gate and its reason, in one line."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
     if n_failing:
         return f"exit 1: {plural(n_failing, 'new finding')} {what}"
+    if not_looked_at:
+        return f"exit 4: no new finding {what}, but {not_looked_at}"
     return f"exit 0: no new finding {what}"
 
 
@@ -112,7 +134,10 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
     """Return a difference as JSON: all entries, and what it comes to."""
     content = {
         "diff_schema": DIFF_SCHEMA,
-        "exit": {"code": 1 if failing else 0, "why": exit_summary(failing, fail_on).partition(": ")[2]},
+        "exit": {
+            "code": int(exit_code(difference, failing, fail_on)),
+            "why": exit_summary(difference, failing, fail_on).partition(": ")[2],
+        },
         "fail_on": fail_on,
         "counts": difference.counts(),
         "gating": [entry.finding_id for entry in failing],

@@ -78,7 +78,7 @@ def render(result: Result, base_url: str | None = None) -> bytes:
 
 def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
     """Return two results' difference as Markdown."""
-    summary, titles = descriptions.exit_summary(failing, fail_on), descriptions.DIFF_STATUS_TITLES
+    summary, titles = descriptions.exit_summary(diff, failing, fail_on), descriptions.DIFF_STATUS_TITLES
     return "\n\n".join(_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate, target=None))
 
 

@@ -39,14 +39,29 @@ def working_folder(out: Path, patterns: Sequence[str], *, overwrite: bool = Fals
             f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
-    for left in out.glob(f"{_WORK}.*"):  # of a run that was killed
-        shutil.rmtree(left, ignore_errors=True)
+    for left in sorted(out.glob(f"{_WORK}.*")):
+        if _runs(int(left.suffix[1:])):
+            raise UsageError(f"--out {out}: another check is writing there: wait for its end, or choose another folder")
+        shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
     work = out / f"{_WORK}.{os.getpid()}"
     try:
         work.mkdir()
         yield work
     finally:
         shutil.rmtree(work, ignore_errors=True)
+
+
+def _runs(pid: int) -> bool:
+    """Whether another process of this number runs. A process that took this one's place has its number."""
+    if pid == os.getpid() or os.name != "posix":
+        return False
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 def replace(

@@ -80,6 +80,8 @@ class Difference:
     new_only: tuple[str, ...]
     base_name: str = "base"
     name: str = "new"
+    is_partial: bool = False
+    """The newer run was interrupted."""
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
