@@ -87,7 +87,7 @@ def crowd() -> tuple[Drive, ...]:
         standing("x", halves, times(33.0), 150, halves.own),
     ]
     found.append(drive(actors, halves.environment, drive_id="halves"))
-    return (*found, rarely(), *bridged(), *streets())
+    return (*found, rarely(), crashed(), *bridged(), *streets())
 
 
 def rarely() -> Drive:
@@ -98,6 +98,15 @@ def rarely() -> Drive:
     over = standing("over", way, t, 155.0, way.own, turned=np.pi / 2)
     crossing = replace(over, y=over.y + 12 * (t - 5.4), vy=np.full(len(t), 12.0))
     return drive([ego, crossing], way.environment, drive_id="rarely")
+
+
+def crashed() -> Drive:
+    """Return a drive in which the ego hits a standing car at 12 m/s and pushes it on at 4 m/s."""
+    way = road()
+    t = times(10.0)
+    before, after = np.minimum(t, 5.0), np.maximum(t - 5.0, 0.0)
+    ego = moving("ego", way, t, 100 + 12 * before + 4 * after, way.own)
+    return drive([ego, moving("hit", way, t, 164.9 + 4 * after, way.own)], way.environment, drive_id="crashed")
 
 
 def bridged() -> tuple[Drive, ...]:

@@ -182,7 +182,7 @@ taken_ground AS (
 ),
 -- The first stop of the object. An object that waits for the ego to leave the object's lane stops.
 first_stop AS (
-    SELECT b.drive_id, b.object_id, b.t_from_ns, min(s.t_ns) AS t_stop_ns
+    SELECT b.drive_id, b.object_id, b.t_from_ns, min(s.t_ns) AS t_ns
     FROM braking b
     JOIN state_dynamics s ON s.drive_id = b.drive_id AND s.actor_id = b.object_id AND s.t_ns >= b.t_from_ns AND s.t_ns <= b.t_from_ns + 2 * conflict_ns()
     WHERE s.speed_mps <= standing_mps()
@@ -192,16 +192,16 @@ braking_for_ego AS MATERIALIZED (
     SELECT
         t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, min(t.t_ego_first_ns) AS t_ego_in_ns, max(t.t_ego_last_ns) AS t_ego_out_ns,
         (greatest(min(t.t_ego_first_ns), min(t.t_object_ns)) - least(max(t.t_ego_last_ns), max(t.t_object_ns))) / 1e9 AS pet_s, min({'t_object_ns': t.t_object_ns, 'angle_rad': t.angle_rad}).angle_rad AS angle_rad,
-        min(w.t_stop_ns) AS t_stop_ns
+        -- Who stands after an impact has not stopped by braking.
+        min(w.t_ns) FILTER (coalesce(w.t_ns < i.t_ns, true)) AS t_stop_ns
     FROM taken_ground t
     JOIN braking b USING (drive_id, object_id, t_from_ns)
     LEFT JOIN impact i USING (drive_id, ego_id, object_id)
-    -- Who stands after an impact has not stopped by braking.
-    LEFT JOIN first_stop w ON w.drive_id = t.drive_id AND w.object_id = t.object_id AND w.t_from_ns = t.t_from_ns AND coalesce(w.t_stop_ns < i.t_ns, true)
+    LEFT JOIN first_stop w USING (drive_id, object_id, t_from_ns)
     GROUP BY t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, b.is_gentle
     HAVING NOT b.is_gentle AND t.t_from_ns >= min(t.t_ego_first_ns) - forced_apart_ns()
         -- An oncoming driver sees the ego from afar and stops before the ego is there.
-        OR min(w.t_stop_ns) <= CASE WHEN b.is_gentle THEN least(max(t.t_ego_last_ns), b.t_to_ns + waits_ns()) ELSE max(t.t_ego_last_ns) END
+        OR t_stop_ns <= CASE WHEN b.is_gentle THEN least(max(t.t_ego_last_ns), b.t_to_ns + waits_ns()) ELSE max(t.t_ego_last_ns) END
             AND abs(min({'t_object_ns': t.t_object_ns, 'angle_rad': t.angle_rad}).angle_rad) >= head_on_rad()
 ),
 -- An object that waited for the ego moves off when the ego has left, or a moment before. An object that keeps standing has another reason.
