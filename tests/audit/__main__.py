@@ -22,7 +22,7 @@ from tests.audit.plan import plan
 
 
 def kills(n_drives: int, n_kills: int) -> None:
-    """Print what was seen; exit 1 where the tables differ."""
+    """Print what was seen; exit 1 where the tables differ, or the findings are not those planted."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         drives = fleet.write(Path(home) / "fleet", n_drives)
         begin = time.monotonic()
@@ -34,14 +34,11 @@ def kills(n_drives: int, n_kills: int) -> None:
         told = [json.loads((Path(home) / name / "summary.json").read_text("utf-8")) for name in ("killed", "whole")]
         for each in told:
             print(json.dumps(each, sort_keys=True))
-        found = _run(
-            ["sql", str(Path(home) / "killed"), "SELECT DISTINCT file_name FROM findings JOIN drives USING (key)"]
-        )
-        names = {name for name in found.stdout.decode().split() if name.endswith(".parquet")}
-        print(
-            f"planted contacts: {len(drives.planted)}, all shown of {len(names)} are planted: {names <= drives.planted}"
-        )
-        sys.exit(int(told[0]["digest"] != told[1]["digest"]))
+        broken = f"SELECT DISTINCT file_name FROM findings JOIN drives USING (key) WHERE rule_id = '{fleet.RULE}'"
+        found = _run(["sql", str(Path(home) / "killed"), broken, "--format", "csv"])
+        names = set(found.stdout.decode().split()[1:])
+        print(f"planted contacts: {len(drives.planted)}; found: {len(names)}; the same: {names == drives.planted}")
+        sys.exit(int(told[0]["digest"] != told[1]["digest"] or names != drives.planted))
 
 
 def memory(n_drives: int) -> None:

@@ -142,8 +142,11 @@ def test_kills_lose_nothing_and_double_nothing(
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
     assert (summary["n_drives"], summary["quarantined"]) == (N_DRIVES, 0)
     assert summary["digest"] == undisturbed[1].digest
-    left = [path for path in (tmp_path / "out").rglob("*") if path.is_file() and path.parent.parent.name != "tables"]
-    assert {path.name for path in left} == {"audit.json", "rules.parquet", "summary.json"}
+    out = tmp_path / "out"
+    left = {path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()}
+    parts = {"parts/begun/all", "parts/ended/all"}
+    files = {".lock", "audit.json", "rules.parquet", "summary.json"}
+    assert {name for name in left if not name.startswith("tables/")} == parts | files
 
 
 def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged(
