@@ -56,11 +56,13 @@ SINGLE = [
 
 
 def verdicts(*paths: Path, **options: Any) -> dict[str, pa.Table]:
-    """Return the rows of every rule and profile by the log's stem, without the drive's id."""
+    """Return the rows of every rule and profile by the log's stem, without ids, which hold the hash of the log."""
     profiles = ("relaxed", "nominal", "aggressive", "observed")
     rows = check(CheckOptions(tuple(map(str, paths)), rules=("ukhc",), profiles=profiles, **options), Silent()).verdicts
     return {
-        drive.rpartition("-")[0]: rows.filter(pc.equal(rows["drive_id"], drive)).drop_columns("drive_id")
+        drive.rpartition("-")[0]: rows.filter(pc.equal(rows["drive_id"], drive)).drop_columns(
+            ["drive_id", "finding_ids"]
+        )
         for drive in rows["drive_id"].unique().to_pylist()
     }
 

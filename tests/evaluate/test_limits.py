@@ -71,7 +71,7 @@ def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_pat
 def test_a_rule_loses_its_turn_after_three_times(tmp_path: Path) -> None:
     """Once for the batch, then for two of its drives alone: the time that a bomb takes does not grow with the drives."""
     drives = ("collision", "near_miss", "safe")
-    found = check(options(write_pack(tmp_path / "bad", ("rows",)), *drives), Silent()).verdicts
+    found = check(options(write_pack(tmp_path / "bad", ("rows",)), *drives, seconds=2.0), Silent()).verdicts
     alone = check(options(write_pack(tmp_path / "good", ()), *drives), Silent()).verdicts
     assert kept(found) == kept(alone)
     tried = [("before in this run" not in reason) for _, _, reason in reasons(found).values()]

@@ -95,6 +95,16 @@ def test_what_a_killed_run_left_goes_with_the_next(tmp_path: Path) -> None:
     assert not [name for name in names(tmp_path) if name.startswith(".")]
 
 
+def test_two_runs_at_a_time_into_one_folder_are_refused(tmp_path: Path) -> None:
+    with working_folder(tmp_path) as work:
+        assert work is not None
+        (work / "drivelint.duckdb").write_bytes(b"half")
+        with pytest.raises(UsageError, match="another check is writing there"):
+            checked(tmp_path, "a")
+        assert (work / "drivelint.duckdb").read_bytes() == b"half"
+    checked(tmp_path, "a")
+
+
 @pytest.mark.parametrize("n", range(1, 60, 4))
 def test_a_machine_that_fails_while_files_are_replaced_leaves_no_half_result(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, n: int

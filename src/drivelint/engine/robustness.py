@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 import pyarrow as pa
 
-from drivelint.engine import batch
+from drivelint.engine.batch import BATCH_STATES
 from drivelint.engine.copies import copies
 from drivelint.engine.derive import derive
 from drivelint.engine.window import Window, windows
@@ -220,8 +220,8 @@ def _chunks(all_: Sequence[Window]) -> Iterator[list[Window]]:
     """Cut windows into those whose copies fit into one pass, a larger one being parts of fewer copies."""
     chunk: list[Window] = []
     n_states = 0
-    for window in (part for whole in all_ for part in whole.parts(batch.BATCH_STATES)):
-        if chunk and n_states + window.n_states > batch.BATCH_STATES:
+    for window in (part for whole in all_ for part in whole.parts(BATCH_STATES)):
+        if chunk and n_states + window.n_states > BATCH_STATES:
             yield chunk
             chunk, n_states = [], 0
         chunk.append(window)

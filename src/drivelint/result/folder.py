@@ -39,29 +39,44 @@ def working_folder(out: Path, patterns: Sequence[str], *, overwrite: bool = Fals
             f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
-    for left in sorted(out.glob(f"{_WORK}.*")):
-        if _runs(int(left.suffix[1:])):
-            raise UsageError(f"--out {out}: another check is writing there: wait for its end, or choose another folder")
-        shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
-    work = out / f"{_WORK}.{os.getpid()}"
+    with _locked(out) as is_ours:
+        for left in out.glob(f"{_WORK}.*") if is_ours else ():
+            shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
+        work = out / f"{_WORK}.{os.getpid()}"
+        try:
+            work.mkdir()
+            yield work
+        finally:
+            shutil.rmtree(work, ignore_errors=True)
+
+
+@contextmanager
+def _locked(out: Path) -> Iterator[bool]:
+    """Hold a folder for this process alone; say whether that is so, which not every file system can tell.
+
+    The system ends a lock with its process. Numbers of processes would not tell: every container has a process 1.
+    Errors: `UsageError` where another process has the folder.
+    """
     try:
-        work.mkdir()
-        yield work
+        import fcntl
+
+        place = os.open(out, os.O_RDONLY)
+    except (ImportError, OSError):  # Windows; a folder that cannot be listed
+        yield False
+        return
+    try:
+        try:
+            fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            is_ours = True
+        except BlockingIOError:
+            raise UsageError(
+                f"--out {out}: another check is writing there: wait for its end, or choose another folder"
+            ) from None
+        except OSError:
+            is_ours = False
+        yield is_ours
     finally:
-        shutil.rmtree(work, ignore_errors=True)
-
-
-def _runs(pid: int) -> bool:
-    """Whether another process of this number runs. A process that took this one's place has its number."""
-    if pid == os.getpid() or os.name != "posix":
-        return False
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
+        os.close(place)
 
 
 def replace(
