@@ -30,9 +30,9 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
-    monkeypatch.setattr(derivations, "ALWAYS_NEEDED", ())
     made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
-    monkeypatch.setattr(derivations, "derivations", lambda: made)
+    monkeypatch.setattr(derivations, "_files", lambda: made)
+    monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
 
 
 CLOCK = """SELECT drive_id, ego_id, max(cell) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
@@ -57,7 +57,7 @@ def test_each_runs_after_what_it_reads(
         return fill(con, step)
 
     monkeypatch.setattr(derive, "_fill", telling)
-    derive.derive(con, ["clock"], of_the_map=False)
+    derive.derive(con, ["clock"], of_the_map=False, also=())
     assert told == ["step", "visited_cell", "clock"]
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 
@@ -76,7 +76,7 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
 
     monkeypatch.setattr(derive, "_fill", late)
     with pytest.raises(DriveLintError, match=r"^queries/derive/step\.sql: .*'x'"):
-        derive.derive(con, ["step", "visited_cell"], of_the_map=False)
+        derive.derive(con, ["step", "visited_cell"], of_the_map=False, also=())
     assert con.execute("SELECT (SELECT count(*) FROM visited_cell), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
 
 
@@ -88,7 +88,7 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
         {"visited_cell": ("SELECT 'd' AS drive_id, range AS cell FROM range(20000000) ORDER BY hash(range)", set())},
     )
     with pytest.raises(duckdb.OutOfMemoryException):
-        derive.derive(con, ["visited_cell"], of_the_map=False)
+        derive.derive(con, ["visited_cell"], of_the_map=False, also=())
 
 
 SAMPLES = (91, 91, 16, 91, 91, 34, 29, 23, 18, 17, 91)

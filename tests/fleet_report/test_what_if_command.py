@@ -98,7 +98,8 @@ def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> No
 def test_a_rule_that_is_not_as_it_was_needs_another_audit(own: Own, judged: Path) -> None:
     file = own.rules / "own" / "slow.sql"
     before = file.read_text(encoding="utf-8")
-    file.write_text(before.replace("Is it kept?", "Is it kept now?"), encoding="utf-8")
+    assert "$factor * speed_mps" in before
+    file.write_text(before.replace("$factor * speed_mps", "2 * $factor * speed_mps"), encoding="utf-8")
     try:
         done = ran("what-if", judged, "own.slow.limit=11")
     finally:

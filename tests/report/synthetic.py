@@ -29,7 +29,7 @@ def verdict(said: str, **over: Any) -> dict[str, Any]:
         "t_start_ns": 108 * SECOND, "t_end_ns": 108 * SECOND, "t_worst_ns": 108 * SECOND, "verdict": said,
         "reason_code": said, "reason": f"because {said}", "reason_measures": False,
         "observed": 58.0, "required": 64.0, "margin": -6.0,
-        "unit": "m", "near_miss": False, "assumes": None, "n_expected": 1, "n_judged": 1,
+        "unit": "m", "near_miss": False, "assumes": None, "n_expected": 1, "n_judged": 1, "finding_ids": [],
     } | over  # fmt: skip
 
 
