@@ -91,7 +91,7 @@ def crowd(rules: list[Rule]) -> dict[str, list[tuple[Any, ...]]]:
 
 
 def test_the_scene_has_every_kind_of_verdict(crowd: dict[str, list[tuple[Any, ...]]]) -> None:
-    kinds = {value for row in crowd["verdict"] for value in row if value in {"pass", "fail", "unknown"}}
+    kinds = {value for row in crowd["verdict"] for value in row if value in ("pass", "fail", "unknown")}
     assert kinds == {"pass", "fail", "unknown"}
     assert len(crowd["verdict"]) > 300
     assert len(crowd["finding"]) > 300
