@@ -170,7 +170,7 @@ def test_asking_for_margins_changes_no_verdict(
     load(con, [(scene(rows, by_hand=by_hand), references) for rows, references, by_hand in subjects])
     evaluate(con, rules)
     first = con.execute("SELECT * FROM verdict ORDER BY ALL").fetchall()
-    con.execute("DELETE FROM verdict")
+    con.execute("DELETE FROM verdict; DELETE FROM finding")
     evaluate(con, rules, margins=True)
     assert con.execute("SELECT * FROM verdict ORDER BY ALL").fetchall() == first
     margins = "SELECT rule_id, ego_id, count(*), count(holds) FROM margin GROUP BY ALL ORDER BY ALL"
