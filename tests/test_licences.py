@@ -2,57 +2,13 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
-from importlib.metadata import PackageNotFoundError, distribution
-from itertools import chain
+from importlib.metadata import distribution
 
 from packaging.requirements import Requirement
-from packaging.utils import canonicalize_name
 
+from tests.installed import installed, refused
 from tests.shared_data import ROOT
-
-ACCEPTED = re.compile(
-    r"\b(?:MIT|0?BSD|Apache|ISCL?|PSF|Python Software Foundation|Zlib|CC0|Unlicense"
-    r"|MPL|Mozilla Public License|LGPL|Lesser General Public License)\b",
-    re.IGNORECASE,
-)
-COPYLEFT = re.compile(r"(?<!L)GPL|(?<!Lesser )General Public License|AGPL|SSPL|EUPL|CC-BY-SA", re.IGNORECASE)
-USED = ("dask", "lanelet2", "ray", "viewers")
-"""The extras of users; `dev` is what tests need."""
-
-
-def licence(name: str) -> str:
-    about = distribution(name).metadata
-    classes = [
-        each.rpartition(" :: ")[2] for each in about.get_all("Classifier") or [] if each.startswith("License ::")
-    ]
-    (expression, *_) = about.get_all("License-Expression") or [""]
-    (text, *_) = about.get_all("License") or [""]
-    return expression or "; ".join(classes) or text.split("\n")[0]
-
-
-def installed() -> dict[str, str]:
-    """Return the distributions that drivelint and its extras need, as far as they are installed, and their licences."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    wanted = [*project["dependencies"], *chain.from_iterable(project["optional-dependencies"][name] for name in USED)]
-    todo = [Requirement(each) for each in wanted]
-    found: dict[str, str] = {}
-    while todo:
-        requirement = todo.pop()
-        name = canonicalize_name(requirement.name)
-        if name in found or (requirement.marker and not requirement.marker.evaluate({"extra": ""})):
-            continue
-        try:
-            found[name] = licence(name)
-        except PackageNotFoundError:
-            continue  # of an extra that is not installed here
-        todo += [Requirement(each) for each in distribution(name).requires or []]
-    return found
-
-
-def refused(licences: dict[str, str]) -> dict[str, str]:
-    return {name: said for name, said in licences.items() if COPYLEFT.search(said) or not ACCEPTED.search(said)}
 
 
 def test_every_licence_is_known_and_none_is_strong_copyleft() -> None:

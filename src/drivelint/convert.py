@@ -19,7 +19,7 @@ from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
 from drivelint.formats.tables import parquet
-from drivelint.phrases import listed
+from drivelint.phrases import listed, one_line
 from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
 
@@ -230,7 +230,5 @@ def summary_text(written: ConvertedTrace) -> str:
     command = (
         f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'} --out results"
     )
-    return (
-        f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}\n"
-        f"check it, without a mapping, with: {command}"
-    )
+    said = f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}"
+    return f"{one_line(said)}\n{one_line(f'check it, without a mapping, with: {command}')}"

@@ -14,20 +14,36 @@ _INVISIBLE = re.compile(
     r"\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
 )
 """Characters that steer a terminal, or turn the order of what is read; a line's end is none."""
-_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\[)", re.MULTILINE)
-"""What a build server may take for a command when it stands in a job's output (`::error::`, `##[error]`)."""
+_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
+"""What a build server may take for a command when it stands in a job's output (`::error::`, `##[error]`, `##vso[task.x]`)."""
+_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
+_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
 _PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
+
+
+def shown(text: str) -> str:
+    """Return text that may hold words of a log with the characters that nobody sees shown as their codes, such as `\\x1b`."""
+    return _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
 
 
 def inert(text: str) -> str:
     """Return text that may hold words of a log for a terminal: characters that steer one are shown, and it gives no commands."""
-    shown = _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
-    return _COMMAND.sub(lambda found: f"{found[0]}\\", shown)
+    return _COMMAND.sub(lambda found: f"{found[0]}\\", shown(text))
+
+
+def one_line(text: str) -> str:
+    """Return text without ends of lines: a word of a log must not look like a line of ours."""
+    return _BREAK.sub(" ", text.rstrip())
 
 
 def inert_line(text: str) -> str:
-    """Return such a text as one line."""
-    return inert(" ".join(text.split()))
+    """Return such a text for a terminal as one line."""
+    return inert(one_line(text))
+
+
+def inert_json(text: str) -> str:
+    """Return JSON that means the same and is inert on a terminal."""
+    return _IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:

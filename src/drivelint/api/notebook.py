@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from drivelint.report.html.environment import visible
 from drivelint.report.inputs import input_notes
 from drivelint.report.terminal_summary import verdict_line, worst_gating
 from drivelint.result import counts
@@ -69,6 +70,7 @@ def summary_html(result: Result) -> str:
 @cache
 def _template() -> Template:
     environment = Environment(
+        finalize=visible,
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
         undefined=StrictUndefined,

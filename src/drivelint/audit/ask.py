@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 
@@ -13,10 +14,17 @@ from drivelint.audit.compact import create_views, database, escaped
 from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.errors import UsageError
+from drivelint.phrases import inert, inert_json
 from drivelint.sql.store import quoted
 
 if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
+
+
+_CELL: Final = re.compile(r'(")((?:[^"]|"")*)"|[^,"\r\n]+')
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:inf|nan)")
+_FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
+"""What a cell begins with that a spreadsheet takes for a formula; so does a tab, which is shown as a backslash and t."""
 
 
 def ask(dest: str, query: str, format_: str) -> str:
@@ -28,15 +36,22 @@ def ask(dest: str, query: str, format_: str) -> str:
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
                 raise UsageError("drivelint sql takes one SELECT: give one, without others before or behind it")
             if format_ == "text":
-                return f"{con.sql(query)}\n"
+                return inert(f"{con.sql(query)}\n")
             if format_ == "csv":
                 file = Path(home) / "rows.csv"
                 con.execute(f"COPY ({query.strip().rstrip(';')}) TO {quoted(file)} (FORMAT csv, HEADER)")
-                return file.read_text(encoding="utf-8")
+                return _CELL.sub(_inert_cell, file.read_text(encoding="utf-8"))
             rows = con.execute(statements[0]).to_arrow_table().to_pylist()
         except duckdb.Error as error:
             raise UsageError(f"drivelint sql: {' '.join(str(error).split())[:400]}") from error
-    return json.dumps(rows, indent=2, default=str, ensure_ascii=False) + "\n"
+    return inert_json(json.dumps(rows, indent=2, default=str, ensure_ascii=False)) + "\n"
+
+
+def _inert_cell(cell: re.Match[str]) -> str:
+    """Return a cell of CSV that is a text to a spreadsheet, and inert on a terminal; a number stays one."""
+    quote, text = cell[1] or "", inert(cell[2] if cell[1] else cell[0])
+    is_formula = text.startswith(_FORMULA) and not _NUMBER.fullmatch(text)
+    return f"{quote}{chr(39) * is_formula}{text}{quote}"
 
 
 def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path) -> None:

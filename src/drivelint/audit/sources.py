@@ -15,7 +15,7 @@ from drivelint.audit.bucket import download, is_url, list_objects, look
 from drivelint.audit.model import AuditDrive
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.formats.files import TRACE_SUFFIXES
+from drivelint.formats.files import TRACE_SUFFIXES, is_utf8
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -44,6 +44,8 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
             logs.append(source)
     if logs:
         for path in expand_traces(logs):
+            if not is_utf8(str(path)):
+                raise UsageError(f"{path}: its name is not UTF-8, in which results name it: rename it")
             yield AuditDrive(str(path), options)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.phrases import plural
+from drivelint.phrases import one_line, plural
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
     """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, and what to do next."""
-    return "\n".join(_lines(counted, out, code))
+    return "\n".join(map(one_line, _lines(counted, out, code)))
 
 
 def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:

@@ -25,6 +25,8 @@ PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 SECTIONS = ("applies", "reference", "condition", "anchor")
 _MARK = re.compile(r"^--\s*@(\S+)\s*$")
+_HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+"""Characters that end a line unseen, steer a terminal or turn the order of what is read."""
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least")
 _CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
@@ -126,6 +128,9 @@ def read_rule(file: Path) -> Rule:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
+    if hidden := _HIDDEN.search(text):
+        line = text.count("\n", 0, hidden.start()) + 1
+        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: take it out")
     toml, sections = split_sections(text, str(file))
     header = parse_header(toml, str(file))
     if header.reference is not None:

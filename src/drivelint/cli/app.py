@@ -24,7 +24,7 @@ from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import DriveLintError, ExitCode, UsageError
-from drivelint.phrases import inert, inert_line
+from drivelint.phrases import inert, inert_json, inert_line
 
 app = typer.Typer(
     name="drivelint",
@@ -168,6 +168,7 @@ def check(
     from drivelint.report import summary, terminal
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
+    from drivelint.result.one_line import on_one_line
     from drivelint.settings import SETTINGS_FILE
 
     values.check_confidence(confidence, robustness)
@@ -210,9 +211,10 @@ def check(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
             )
     if format_ == "json":
-        typer.echo(summary.render(result), nl=False)
+        typer.echo(inert_json(summary.render(result).decode()), nl=False)
     else:
-        print_rich(lambda width: terminal.render(result, None if out is None else str(out), width, verbose=verbose))
+        told = on_one_line(result)
+        print_rich(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))
     if result.interrupted:
         say_kept(result.drives["status"].to_pylist(), out)
     raise typer.Exit(int(exit_status(result).code))
@@ -259,7 +261,7 @@ def inspect(
     )
     found = run_interruptible(lambda: inspection.inspect(request))
     if format_ == "json":
-        typer.echo(inspection.to_json(found))
+        typer.echo(inert_json(inspection.to_json(found)))
     else:
         from drivelint.inspect.text import render
 

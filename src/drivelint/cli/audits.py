@@ -10,7 +10,7 @@ from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
-from drivelint.phrases import inert
+from drivelint.phrases import inert, inert_line
 
 
 @options.takes_drive_input
@@ -123,7 +123,10 @@ def audit(
         try:
             counted = run_interruptible(lambda: audited(request, progress))
         except KeyboardInterrupt:
-            typer.echo(f"drivelint: what was judged stays in {out}: the same command goes on with the rest", err=True)
+            typer.echo(
+                f"drivelint: what was judged stays in {inert_line(out)}: the same command goes on with the rest",
+                err=True,
+            )
             raise
     code = counted.exit_code(fail_on, strict=strict)
     typer.echo(inert(summary_text(counted, out, code)))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from drivelint.phrases import inert, plural
+from drivelint.phrases import inert, inert_line, plural
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -50,15 +50,13 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
     why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
     if out is not None:
         earlier = (out / "summary.json").is_file()
-        why += (
-            f"; {out} {'is unchanged: it still holds the result of an earlier run' if earlier else 'holds no result'}"
-        )
+        why += f"; {inert_line(str(out))} {'is unchanged: it still holds the result of an earlier run' if earlier else 'holds no result'}"
     typer.echo(f"drivelint: {why}", err=True)
 
 
 def say_kept(statuses: Sequence[str], out: Path | None) -> None:
     """Tell a person how much of an interrupted check is kept."""
-    where = "" if out is None else f" in {out}"
+    where = "" if out is None else f" in {inert_line(str(out))}"
     kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
     typer.echo(f"drivelint: {kept}", err=True)
 

@@ -11,6 +11,7 @@ from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations u
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
+from drivelint.phrases import inert, inert_json, inert_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +29,7 @@ def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None) -
     base = None if baseline is None else destination(baseline)
     name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base))
     _warn(audit)
-    typer.echo(f"{dest.rstrip('/')}/{name}")
+    typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
 
 
 def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
@@ -49,9 +50,11 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
                 write_rows(con, rows)
         least = fail_on or str(later.told.get("fail_on", "critical"))
         if format_ == "json":
-            typer.echo(difference_text.to_json(found, least))
+            typer.echo(inert_json(difference_text.to_json(found, least)))
+        elif format_ == "markdown":
+            typer.echo(difference_text.to_text(found, least, markdown=True))
         else:
-            typer.echo(difference_text.to_text(found, least, markdown=format_ == "markdown"))
+            typer.echo(inert(difference_text.to_text(found, least)))
         raise typer.Exit(int(difference_text.exit_code(found, least)))
 
     run_interruptible(compared)
@@ -77,11 +80,11 @@ def what_if(
     from drivelint.fleet_report.what_if import ask_what_if, to_json, to_text
 
     asked = run_interruptible(lambda: ask_what_if(destination(dest), setting, by))
-    typer.echo(to_json(asked) if format_ == "json" else to_text(asked))
+    typer.echo(inert_json(to_json(asked)) if format_ == "json" else inert(to_text(asked)))
     raise typer.Exit(int(asked.exit_code))
 
 
 def _warn(audit: Audit) -> None:
     """Say on stderr that an audit has not ended."""
     if audit.warning:
-        typer.echo(f"drivelint: {audit.warning}", err=True)
+        typer.echo(f"drivelint: {inert_line(audit.warning)}", err=True)

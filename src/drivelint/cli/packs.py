@@ -55,10 +55,11 @@ def pack(
     findings = told["findings"]
     n = sum(1 for finding in findings if finding["sql"])
     signed = "signed" if sign else "not signed"
-    typer.echo(f"{out}: {signed}; {n} of {len(findings)} findings have SQL that gives their margin")
+    typer.echo(f"{inert_line(str(out))}: {signed}; {n} of {len(findings)} findings have SQL that gives their margin")
     for finding in findings:
         if finding["without_sql_because"]:
-            typer.echo(f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}")
+            why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
+            typer.echo(inert_line(why))
 
 
 def verify(

@@ -11,7 +11,7 @@ from drivelint.cli import completion, fleets, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_line
+from drivelint.phrases import inert, inert_json, inert_line
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -82,7 +82,7 @@ def report(
 
         asked = IncidentRequest(incident, folder, pdf, trace, map_)
         for path in run_interruptible(lambda: write_incident(asked)):
-            typer.echo(str(path))
+            typer.echo(inert_line(str(path)))
         return
     if pdf or trace is not None or map_ is not None:
         raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
@@ -97,7 +97,7 @@ def report(
     result = load_result(folder)
     _warn_of_partial(folder, result)
     add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
-    typer.echo(str(folder / name))
+    typer.echo(inert_line(str(folder / name)))
 
 
 def diff(
@@ -124,6 +124,7 @@ def diff(
     from drivelint.fleet_report.opened import destination, is_audit
     from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
+    from drivelint.result.one_line import on_one_line
 
     if is_audit(destination(base)) or is_audit(destination(new)):
         fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
@@ -131,12 +132,14 @@ def diff(
     if rows is not None:
         raise UsageError("--rows is of two audits: of two checks, --format json has all findings")
     earlier, later = load_result(base), load_result(new)
+    if format_ == "text":
+        earlier, later = on_one_line(earlier), on_one_line(later)
     _warn_of_partial(base, earlier)
     _warn_of_partial(new, later)
     least = later.fail_on if fail_on is None else fail_on
     found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
     if format_ == "json":
-        typer.echo(descriptions.to_json(found, failing, least))
+        typer.echo(inert_json(descriptions.to_json(found, failing, least)))
     elif format_ == "markdown":
         from drivelint.report import markdown
 
@@ -208,7 +211,7 @@ def explain(
     _warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
-        typer.echo(to_json(found))
+        typer.echo(inert_json(to_json(found)))
     else:
         print_rich(lambda width: render(found, width))
 

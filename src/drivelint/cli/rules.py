@@ -11,6 +11,7 @@ import typer
 from drivelint.cli import completion, options
 from drivelint.cli.console import print_rich, progress, run_interruptible
 from drivelint.cli.options import Texts, argument, option
+from drivelint.phrases import inert, inert_json
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 
@@ -33,7 +34,7 @@ def list_(
     known = load_rules(tuple(rules_dir or ()))
     rules = select_rules(known, selectors, ()) if selectors else list(known.values())
     if format_ == "json":
-        typer.echo(rules_text.listing_json(rules))
+        typer.echo(inert_json(rules_text.listing_json(rules)))
     else:
         print_rich(lambda width: rules_text.listing(rules, width))
 
@@ -94,7 +95,7 @@ def page_(
 
     rules = load_rules((folder,) if folder else ()).values()
     packs = folder or shipped("queries") / "assertions"
-    text = page([rule for rule in rules if rule.path.is_relative_to(packs)], packs)
+    text = inert(page([rule for rule in rules if rule.path.is_relative_to(packs)], packs))
     if out is None:
         typer.echo(text, nl=False)
     else:
@@ -125,7 +126,7 @@ def run_tests(
         shown.stage("judging mutants")
 
         def say(text: str) -> None:
-            typer.echo(text, file=out)
+            typer.echo(inert(text), file=out)
             shown.advance()
 
         raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), say))))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.requirement_parts import read_parts
 from drivelint.explain.model import Part, Step, TableRows
 from drivelint.reasons import reason_text
 from drivelint.sql import store
+from drivelint.sql.syntax import with_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +26,6 @@ TRACK_TABLES: Final = ("pair",)
 """Tables with a row at each step of an object's track. Where the track has ended, its last row says where the object was."""
 SERIES_PADDING_NS: Final = 30_000_000_000
 """How much of a longer episode is shown on each side of what is explained."""
-_NAMED = re.compile(r"\$(\w+)")
 _SPANS: Final = (
     ("t_ns", "t_ns"),
     ("t_start_ns", "t_end_ns"),
@@ -39,10 +38,8 @@ _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
 
 def sql_with_values(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
     """Return the rule's SQL sections with parameter values written in, for reading only."""
-    return {
-        section: _NAMED.sub(lambda m: _literal(params[m[1]]) if m[1] in params else m[0], sql)
-        for section, sql in rule.sections.items()
-    }
+    literals = {name: _literal(value) for name, value in params.items()}
+    return {section: with_values(sql, literals) for section, sql in rule.sections.items()}
 
 
 def _literal(value: object) -> str:

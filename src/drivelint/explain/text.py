@@ -15,6 +15,7 @@ from rich.text import Text
 from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
+from drivelint.phrases import one_line
 from drivelint.reasons.signals import condition_of, remedy
 from drivelint.result.text import finite, seconds
 from drivelint.result.text_templates import text_template
@@ -85,7 +86,7 @@ def _title(found: Explanation, width: int) -> list[RenderableType]:
         who.append(f"finding {row['finding_id']}")
     word = row["verdict"].replace("_", " ").upper()
     return [
-        Text(f"{rule['rule_id']}: {rule['title']}", "bold"),
+        Text(f"{rule['rule_id']}: {one_line(rule['title'])}", "bold"),
         Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_MEANS[row['verdict']]}"),
         *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
     ]
@@ -156,7 +157,7 @@ def _comment(text: str) -> str:
 
 
 def _series(found: Explanation, width: int) -> list[str]:
-    unit = found.rule["unit"] or ""
+    unit = one_line(found.rule["unit"] or "")
     lines = [f"|{line}" for line in plot(found.series, width - 16, PLOT_HEIGHT, found.drive["t_start_ns"] or 0, unit)]
     if not lines:
         return ["It was judged at one moment only."] if len(found.series) == 1 else []
@@ -170,7 +171,7 @@ def _folded(lines: list[str], width: int) -> list[str]:
     folded: list[str] = []
     for line in lines:
         if line.startswith("|"):
-            folded.append(f"  {line[1:]}".replace("\v", "\n"))
+            folded.append(f"  {line[1:]}".replace("\v", "\\n"))
         else:
             folded += textwrap.wrap(
                 line, width, initial_indent="  ", subsequent_indent="    " if line[:2] == "- " else "  "

@@ -9,6 +9,7 @@ import msgspec
 from drivelint.errors import ExitCode
 from drivelint.fleet_report.figures import figure, interval
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
+from drivelint.phrases import one_line
 from drivelint.report.markdown import code, escaped
 from drivelint.result.counts import VERDICTS
 from drivelint.result.text import finite
@@ -59,7 +60,7 @@ def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> 
         "code": code,
     }
     name = "difference.md.j2" if markdown else "difference.txt.j2"
-    text = text_template(__file__, name, **filters).render(
+    text = text_template(__file__, name, None if markdown else _one_line, **filters).render(
         diff=found,
         verdicts=VERDICTS,
         titles=DIFF_STATUS_TITLES,
@@ -67,6 +68,10 @@ def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> 
         exit=_exit(found, fail_on),
     )
     return text.rstrip("\n")
+
+
+def _one_line(value: Any) -> Any:
+    return one_line(value) if isinstance(value, str) and "\n" in value else value
 
 
 def to_json(found: AuditDifference, fail_on: str) -> str:

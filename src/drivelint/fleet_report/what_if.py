@@ -14,7 +14,7 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet.rates import check_tag
 from drivelint.fleet.what_if import WhatIf, what_if
 from drivelint.fleet_report.opened import opened
-from drivelint.phrases import hint, plural
+from drivelint.phrases import hint, one_line, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -124,7 +124,7 @@ def _table(asked: AskedWhatIf) -> list[str]:
     lines = []
     for key, flips in list(told.items())[:MAX_VALUES]:
         said = [f"{each.n} {_becomes(each)}" for each in flips]
-        lines.append(f"  {' '.join(key).strip():{width}}  {', '.join(said)}".rstrip())
+        lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(said)}"))
     if len(told) > MAX_VALUES:
         lines.append(f"  ... and {len(told) - MAX_VALUES} more: --format json has them all")
     return lines

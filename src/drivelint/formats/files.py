@@ -14,6 +14,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
 from drivelint.formats.mcap.bag import mcap_files as files_of_bag
 from drivelint.formats.sumo import fcd as sumo
+from drivelint.phrases import shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,6 +132,11 @@ def _checked(folder: Path) -> bool:
     return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 
+def is_utf8(path: str) -> bool:
+    """Whether a path can be written as text: the system takes any bytes for a name."""
+    return not re.search("[\ud800-\udfff]", path)
+
+
 def identify(path: Path) -> Identity:
     """Hash a trace: a file's bytes, or a folder's tables in name order or parts in order, each with its name.
 
@@ -152,7 +158,10 @@ def identify(path: Path) -> Identity:
             digest = _sha256(path)
     except OSError as error:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
-    name = Path(os.path.abspath(path)).name  # noqa: PTH100 (resolve would name the target of a link)
+    whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
+    if not is_utf8(whole):
+        raise TraceError(f"{shown(whole)}: its name is not UTF-8, in which results name it: rename it")
+    name = Path(whole).name
     stem = name if path.is_dir() else Path(name).stem
     return Identity(f"{stem}-{digest[:8]}", name, digest)
 

@@ -8,7 +8,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
+from drivelint.formats.files import is_utf8
 from drivelint.formats.probe import wrapping
+from drivelint.phrases import shown
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 if TYPE_CHECKING:
@@ -52,6 +54,8 @@ def read_source(path: Path) -> MapSource:
         raise MapError(f"map {path} is empty: give the complete file")
     if (told := wrapping(content)) is not None:
         raise MapError(f"map {path}: {told}")
+    if not is_utf8(path.name):
+        raise MapError(f"map {shown(path.name)}: its name is not UTF-8, in which results name it: rename it")
     return MapSource(path.name, content)
 
 

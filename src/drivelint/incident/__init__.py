@@ -21,6 +21,7 @@ from drivelint.incident.finding import named_finding
 from drivelint.incident.judge import Judge, Judged
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
+from drivelint.report.html.environment import visible
 from drivelint.result import request as run_request
 from drivelint.result.files import publish
 from drivelint.result.load import load_result
@@ -120,6 +121,7 @@ def _log(request: IncidentRequest, asked: RunRequest, finding: NamedFinding) -> 
 @cache
 def _environment() -> Environment:
     environment = Environment(
+        finalize=visible,
         loader=FileSystemLoader([_HERE, _REPORT_TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,

@@ -89,4 +89,4 @@ def _unit(column: str, known: Mapping[str, float]) -> str | None:
 def _text(value: str) -> str:
     """Return a TOML string."""
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in escaped) + '"'
+    return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'

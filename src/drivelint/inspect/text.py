@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
 from rich.console import Group
 from rich.padding import Padding
 from rich.table import Table
@@ -14,6 +15,7 @@ from drivelint.formats.registry import FORMATS
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import grouped
+from drivelint.result.one_line import flat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -43,6 +45,8 @@ Line = tuple[str, Text]
 
 def render(found: model.Inspection, trace: str) -> Group:
     """Return the whole inspection; `trace` is what the user called the log."""
+    draft = found.content.draft_mapping
+    found = msgspec.convert(flat(msgspec.to_builtins(found)), type(found))
     lines = [*_content(found.content)]
     if found.file.drive_id:
         lines.append(("drive", Text(found.file.drive_id)))
@@ -53,7 +57,7 @@ def render(found: model.Inspection, trace: str) -> Group:
     parts: list[RenderableType] = [_title(found), _labelled(lines)]
     if found.drive is not None:
         parts.append(_decidable_rules(found.drive, found.file.name))
-    if (draft := found.content.draft_mapping) is not None:
+    if draft is not None:
         save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
         parts += [
             Text(f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{draft}"),

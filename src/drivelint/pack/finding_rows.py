@@ -51,7 +51,10 @@ def evidence(
     `tables`: all rows about the ego that the rule's condition reads.
     """
     sql = finding_sql.query(rule, params, finding, ref_id)
+    if not finding_sql.is_read_alike(sql):
+        return "DuckDB's shell would read it otherwise: the rule has a comment in /* */, or a text in E'' or $$"
     with duckdb.connect(config={"threads": "1"}) as con:
+        store.lock(con)  # the rule may be a stranger's, and so may the pack that is verified
         try:
             con.execute(";".join(finding_sql.macros(sql)))
             enough = _enough(con, sql, finding, tables)
@@ -104,10 +107,16 @@ def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> li
             (finding["t_start_ns"] - PADDING_NS, finding["t_end_ns"] + PADDING_NS),
         )
     )
-    parties = ", ".join(store.quoted(finding[key]) for key in ("ego_id", "object_id") if finding[key] is not None)
+    parties = ", ".join(
+        finding_sql.text_literal(finding[key]) for key in ("ego_id", "object_id") if finding[key] is not None
+    )
     named = [f"{name} IN ({parties})" for name in _OBJECTS if name in columns and finding["object_id"] is not None]
     ours = " OR ".join(named) or None
-    profile = f"profile = {store.quoted(finding['profile'])}" if "profile" in columns and finding["profile"] else None
+    profile = (
+        f"profile = {finding_sql.text_literal(finding['profile'])}"
+        if "profile" in columns and finding["profile"]
+        else None
+    )
     tried = [(step, ours), (step, None), (around, ours), (around, None), (None, ours), (None, None)]
     terms = dict.fromkeys(tuple(term for term in (*each, profile) if term is not None) for each in tried)
     con.register("_rows", rows)

@@ -6,10 +6,13 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
+import duckdb
+
 from drivelint.evaluate.sql_fragments import condition_ctes
+from drivelint.phrases import inert_line
 from drivelint.sql import syntax
 from drivelint.sql.statements import texts
-from drivelint.sql.store import macro_definitions, quoted
+from drivelint.sql.store import macro_definitions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,7 +21,6 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-_NAMED: Final = re.compile(r"\$(\w+)")
 _CALLED: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
 _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
@@ -35,18 +37,18 @@ def tables_of(rule: Rule) -> list[str]:
 
 def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
     """Return the SELECT of a finding's numbers at its worst step; `ref_id`: the reference point, as the condition numbers it."""
-    with_values = _NAMED.sub(lambda m: literal(params[m[1]]) if m[1] in params else m[0], condition_ctes(rule))
+    with_values = syntax.with_values(condition_ctes(rule), {name: literal(value) for name, value in params.items()})
     at = [f"t_ns = {finding['t_worst_ns']}"]
     if rule.per_object and finding["object_id"] is not None:
-        at.append(f"object_id = {quoted(finding['object_id'])}")
+        at.append(f"object_id = {text_literal(finding['object_id'])}")
     if rule.per_profile:
-        at.append(f"profile = {quoted(finding['profile'])}")
+        at.append(f"profile = {text_literal(finding['profile'])}")
     if rule.has_column("ref_id"):
         at.append(f"ref_id = {ref_id}")
     return (
         f"WITH {with_values}\n"
         "SELECT t_ns, object_id, profile, finite(observed) AS observed, finite(required) AS required,\n"
-        f"    margin_of({quoted(rule.sense)}, observed, required, holds) AS margin, holds\n"
+        f"    margin_of({text_literal(rule.sense)}, observed, required, holds) AS margin, holds\n"
         f"FROM _state\nWHERE {' AND '.join(at)}"
     )
 
@@ -55,10 +57,25 @@ def literal(value: object) -> str:
     """Return a parameter as SQL of the same type: 0.5 alone would be a DECIMAL, which divides otherwise."""
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, float):
-        text = repr(value)
-        return text if "e" in text else f"{text}e0"
-    return quoted(value) if isinstance(value, str) else repr(value)
+    if isinstance(value, str):
+        return text_literal(value)
+    text = repr(value)
+    if isinstance(value, float) and "e" not in text:
+        text += "e0"
+    return f"({text})" if text.startswith("-") else text  # two minus signs begin a comment
+
+
+def text_literal(text: str) -> str:
+    """Return a text as SQL on one line, without a character that nobody sees: an id is a log's own word."""
+    shown = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
+    return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
+
+
+def is_read_alike(sql: str) -> bool:
+    """Whether DuckDB's shell ends a statement where its parser does: what it takes for the next one, nobody has checked."""
+    content = sql.encode()
+    kinds = (content[at : at + 1] for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.string_const)
+    return "/*" not in sql and all(first == b"'" for first in kinds)
 
 
 def macros(sql: str) -> list[str]:
@@ -92,8 +109,8 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     spatial = any(_SPATIAL.search(text) for text in (sql, *called))
     numbers = ", ".join(f"{name} {_shown(finding[name])}" for name in COMPARED)
     lines = [
-        f"-- Finding {finding['finding_id']} of the rule {rule.id}: {rule.title}",
-        f"-- {' '.join(rule.clause.split())}",
+        f"-- Finding {finding['finding_id']} of the rule {rule.id}: {inert_line(rule.title)}",
+        f"-- {inert_line(rule.clause)}",
         "-- Run it in this folder with DuckDB 1.4 or later: duckdb < finding.sql",
         f"-- It gives what findings.parquet says of the worst step: {numbers}.",
     ]

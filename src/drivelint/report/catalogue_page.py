@@ -16,6 +16,7 @@ from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
+from drivelint.phrases import shown
 from drivelint.resources import toml_beside
 from drivelint.result.counts import grouped
 from drivelint.result.text_templates import cell, text_template
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 _MANY = 8  # rules; more are counted
 _COMMENT = re.compile(r"--.*")
+_TAG = re.compile(r"<(?=[A-Za-z/!?])(?!br>)")
 _CITED = re.compile(r"\b(?:R|H)\d+")
 _NUMBER = re.compile(r"(H?)(\d+)(?:-(\d+))?")
 
@@ -105,7 +107,7 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = grouped(rules, lambda rule: rule.pack)
     known = {pack: read_clauses(folder / pack) for pack in packs}
-    return text_template(__file__, "catalogue.md.j2", finalize=cell).render(
+    return text_template(__file__, "catalogue.md.j2", finalize=_inert_cell).render(
         rules=rules,
         packs=packs,
         clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
@@ -124,6 +126,13 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
         map_features=map_features()["feature"],
         signs={kind: _sign(kind, part) for kind, part in map_features()["name_parts"].items()},
     )
+
+
+def _inert_cell(value: Any) -> Any:
+    """Return what may stand in a cell: no HTML but a break, no link or picture of a stranger's rule."""
+    if not isinstance(value, str):
+        return value
+    return cell(shown(_TAG.sub("&lt;", value).replace("](", "]\\(")))
 
 
 def map_features() -> dict[str, Any]:

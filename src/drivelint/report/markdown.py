@@ -10,7 +10,7 @@ from urllib.parse import quote
 import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
-from drivelint.phrases import plural
+from drivelint.phrases import inert_line, plural, shown
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import headline
@@ -106,16 +106,18 @@ def escaped(words_: str) -> str:
 
     A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
     """
-    one_line = " ".join(words_.split())
-    apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", one_line)
-    escaped = re.sub(r"([\\`*_\[\]<>|~&!])", r"\\\1", apart)
+    line = shown(" ".join(words_.split()))
+    apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", line)
+    escaped = re.sub(r"([\\`*_\[\]<>|~&!$])", r"\\\1", apart)
     return re.sub(r"^([-+#])", r"\\\1", escaped)
 
 
 def code(words_: str) -> str:
-    """Return an id as code, in a table too; a backtick in it becomes an apostrophe."""
-    plain = " ".join(words_.split()).replace("`", "'").replace("|", "\\|")
-    return f"`{plain}`" if plain else ""
+    """Return an id or a command as code, in a table too; more backticks enclose it than stand in it."""
+    plain = inert_line(" ".join(words_.split())).replace("|", "\\|")
+    fence = "`" * (1 + max(map(len, re.findall("`+", plain)), default=0))
+    space = " " if plain[:1] == "`" or plain[-1:] == "`" else ""
+    return f"{fence}{space}{plain}{space}{fence}" if plain else ""
 
 
 def _undecided(result: Result) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from drivelint.phrases import one_line
 from drivelint.report.terminal import NARROW_WIDTH
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
     table.add_column("what it asks", ratio=1)
     for rule in rules:
         kind = [f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind] if wide else []
-        table.add_row(rule.id, *kind, rule.severity, rule.status, Text(rule.title))
+        table.add_row(rule.id, *kind, rule.severity, rule.status, Text(one_line(rule.title)))
     return table
 
 
@@ -76,7 +77,7 @@ def rule_details(rule: Rule) -> Group:
     ):
         if value:
             facts.add_row(name, Text(value))
-    parts: list[RenderableType] = [Text(f"{rule.id}: {rule.title}", style="bold"), facts]
+    parts: list[RenderableType] = [Text(f"{rule.id}: {one_line(rule.title)}", style="bold"), facts]
     if rule.params:
         rows = [(name, str(each.default), each.unit, each.why, each.source) for name, each in rule.params.items()]
         parts.append(_table(("parameter", "default", "unit", "why", "source"), rows))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
@@ -13,7 +14,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import plural
+from drivelint.phrases import inert_line, plural
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
 from drivelint.report.worst_first import is_contact, worst_first
@@ -274,6 +275,7 @@ def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
     lines.append(Text(f"open     {out}/report.html"))
     if found:
         worst = found[0]
-        drive = worst["drive_id"]
-        lines.append(Text(f"explain  drivelint explain {worst['rule_id']}@{drive} --in {out}"))
+        name = f"{worst['rule_id']}@{worst['drive_id']}"
+        name = name if inert_line(name) == name else worst["finding_id"]  # what is shown must be what a shell takes
+        lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
     return lines

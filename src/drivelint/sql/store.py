@@ -253,8 +253,9 @@ def recreate_with_enums(
     """
     old = _codes(con)
     for kind, ids in (("drive", drives), ("actor", actors)):
-        listed = ", ".join(map(quoted, sorted(set(ids))))
-        made = f"ENUM ({listed})" if listed else "VARCHAR"
+        names = sorted(set(ids))
+        can_be_enum = names and not any("\0" in name for name in names)  # with a NUL, they are no SQL
+        made = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
         con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
     recreate_empty(con, tables)
     for no in old:

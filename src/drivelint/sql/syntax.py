@@ -20,12 +20,27 @@ if TYPE_CHECKING:
 
 _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
+_PARAMETER: Final = re.compile(rb"\$(\w+)")
 
 
 @cache
 def parser() -> duckdb.DuckDBPyConnection:
     """Return a connection that only parses and prints statements."""
     return duckdb.connect()
+
+
+def with_values(sql: str, literals: Mapping[str, str]) -> str:
+    """Return SQL with literals in place of its parameters.
+
+    What only looks like a parameter stays, in a comment or a text: a value there could end the comment, and be run itself.
+    """
+    content, parts, done = sql.encode(), [], 0
+    for at, kind in duckdb.tokenize(sql):
+        found = _PARAMETER.match(content, at) if kind == duckdb.token_type.operator else None
+        if found and (name := found[1].decode()) in literals:
+            parts += [content[done:at], literals[name].encode()]
+            done = found.end()
+    return b"".join([*parts, content[done:]]).decode()
 
 
 def syntax_tree(sql: str) -> Node:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import base64
 import hashlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
+from drivelint.phrases import shown
 from drivelint.report.html.anchors import anchor
 from drivelint.result.schemas import OUTPUT_VERSION
 from drivelint.result.text import measure, number
@@ -29,6 +30,7 @@ def page_environment(scripts: Sequence[str], folder: Path | None = None, styles:
     `scripts`: files of the report's templates.
     """
     environment = Environment(
+        finalize=visible,
         loader=FileSystemLoader([*([folder] if folder else []), TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,
@@ -52,6 +54,11 @@ def page_environment(scripts: Sequence[str], folder: Path | None = None, styles:
     )
     environment.filters["measure"] = measure
     return environment
+
+
+def visible(value: Any) -> Any:
+    """Return what a template fills in so that everything in it is seen: no character turns the order of what is read."""
+    return shown(value) if type(value) is str else value  # Markup is ours
 
 
 def _joined(files: Iterable[Path]) -> str:

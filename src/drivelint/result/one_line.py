@@ -1,0 +1,44 @@
+"""A result for whoever reads lines: no word of a log or of a rule ends one, and so looks like a line of ours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.phrases import one_line
+
+if TYPE_CHECKING:
+    from drivelint.result.model import Result
+
+
+def on_one_line(result: Result) -> Result:
+    """Return a result in which each text of verdicts, findings, drives and rules is on one line."""
+    tables = {name: _texts(getattr(result, name)) for name in ("verdicts", "findings", "rules")}
+    return replace(result, drives=_texts(_nested(result.drives)), **tables)
+
+
+def _texts(rows: pa.Table) -> pa.Table:
+    for no, field in enumerate(rows.schema):
+        if pa.types.is_string(field.type) and pc.any(pc.match_substring(rows.column(no), "\n")).as_py():
+            texts = [text and one_line(text) for text in rows.column(no).to_pylist()]
+            rows = rows.set_column(no, field, pa.array(texts, field.type))
+    return rows
+
+
+def _nested(drives: pa.Table) -> pa.Table:
+    for no, field in enumerate(drives.schema):
+        if pa.types.is_nested(field.type):
+            drives = drives.set_column(no, field, pa.array(flat(drives.column(no).to_pylist()), field.type))
+    return drives
+
+
+def flat(value: Any) -> Any:
+    """Return a value with every text in it on one line."""
+    if isinstance(value, str):
+        return one_line(value)
+    if isinstance(value, list | tuple):
+        return type(value)(flat(each) for each in value)
+    return {key: flat(each) for key, each in value.items()} if isinstance(value, dict) else value
