@@ -25,7 +25,12 @@ def pack(
     *,
     out: Annotated[Path, option("--out", "PACK", "Folder for the evidence pack.")],
     sign: Annotated[
-        Path | None, option("--sign", "KEY", "Sign it with this Ed25519 key: PEM, without a password.")
+        Path | None,
+        option(
+            "--sign",
+            "KEY",
+            "Sign it with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
+        ),
     ] = None,
     with_inputs: Annotated[
         bool, option("--with-inputs", None, "Also copy the logs, the map and the mapping into it.")

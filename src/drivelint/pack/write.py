@@ -56,7 +56,7 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 
     Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
     """
-    key = None if request.key is None else signature.private_key(request.key)
+    key = None if request.key is None else signature.signing_key(request.key)
     _free(request)
     result = load_result(request.folder)
     asked = run_request.load(request.folder)
