@@ -120,13 +120,19 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
     return False
 
 
+def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
+    """Tell whether an envelope that a key signed is the one that `envelope` writes: what stands beside the payload is not signed."""
+    _, payload, signatures = _opened(content)
+    return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
+
+
 def _opened(content: bytes) -> tuple[str, bytes, list[bytes]]:
     try:
         told = json.loads(content)
         payload = base64.b64decode(told["payload"], validate=True)
         signatures = [base64.b64decode(each["sig"], validate=True) for each in told["signatures"]]
         return str(told["payloadType"]), payload, signatures
-    except (ValueError, KeyError, TypeError, binascii.Error) as error:
+    except (ValueError, KeyError, TypeError, RecursionError, binascii.Error) as error:
         raise EnvelopeError(str(error)) from error
 
 
