@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.pack import again, bag, consistency, signature
+from drivelint.pack import again, bag, consistency, signature, timestamp
 from drivelint.pack.bag import Problem
 from drivelint.pack.contents import EVIDENCE, RESULT, library_versions
 from drivelint.pack.inputs import judged, located
@@ -32,12 +32,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class VerifyRequest:
-    """What `verify` is asked: a pack, the key that it must be signed with, and where log and map are if they are not in it."""
+    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it."""
 
     folder: Path
     key: Path | None = None
     traces: tuple[Path, ...] = ()
     map: Path | None = None
+    timestamp_root: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,10 @@ def verify(request: VerifyRequest) -> Verification:
     Errors: `UsageError` where it is no pack, or for a key, log or map that was given and cannot be used.
     """
     key = _given_key(request)
-    wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE))
+    wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE, timestamp.FILE))
     more, signed = _of_signature(request.folder, key)
-    wrong += [problem for problem in more if problem not in wrong]
+    stamp = timestamp.of_pack(request.folder, request.timestamp_root)
+    wrong += [problem for problem in (*more, *stamp.problems) if problem not in wrong]
     notes: list[str] = []
     judging, outcome = "not judged again", ""
     if not wrong:
@@ -69,9 +71,10 @@ def verify(request: VerifyRequest) -> Verification:
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
+    signed = ", ".join(filter(None, (signed, stamp.said)))
     state = "consistent" if key is None else "untouched since it was signed"
     sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{outcome}"
-    return Verification(wrong, sentence, notes)
+    return Verification(wrong, sentence, [*stamp.notes, *notes])
 
 
 def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
@@ -86,7 +89,8 @@ def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Prob
     """Return what is wrong with the signature and the files beside it, which nobody signed, and who signed in words."""
     if not (folder / ENVELOPE).is_file():
         wanted = key is not None or (folder / PUBLIC_KEY).is_file()
-        return ([Problem("not signed", ENVELOPE)] if wanted else []), "not signed"
+        stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
+        return stamped + ([Problem("not signed", ENVELOPE)] if wanted else []), "not signed"
     if not (folder / PUBLIC_KEY).is_file():
         return [Problem("file removed", PUBLIC_KEY)], ""
     try:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint import __version__
 from drivelint.errors import UsageError
-from drivelint.pack import again, bag, contents, signature
+from drivelint.pack import again, bag, contents, signature, timestamp
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
 from drivelint.pack.inputs import located
 from drivelint.pack.statement import ENVELOPE, FILE, statement
@@ -39,7 +39,7 @@ class _Checked(NamedTuple):
 
 @dataclass(frozen=True)
 class PackRequest:
-    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it."""
+    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it, its time stamp."""
 
     folder: Path
     out: Path
@@ -48,6 +48,7 @@ class PackRequest:
     traces: tuple[Path, ...] = ()
     map: Path | None = None
     date: str | None = None
+    timestamp: Path | None = None
     overwrite: bool = False
 
 
@@ -56,6 +57,8 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 
     Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
     """
+    if request.timestamp is not None and request.key is None:
+        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
     key = None if request.key is None else signature.signing_key(request.key)
     _free(request)
     result = load_result(request.folder)
@@ -73,7 +76,10 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
             if key is None:
                 (work / FILE).write_bytes(said)
             else:
-                (work / ENVELOPE).write_bytes(signature.envelope(said, key))
+                sealed = signature.envelope(said, key)
+                (work / ENVELOPE).write_bytes(sealed)
+                if request.timestamp is not None:
+                    (work / timestamp.FILE).write_bytes(timestamp.read(request.timestamp, sealed))
                 (work / PUBLIC_KEY).write_bytes(signature.public_pem(key.public_key()))
             bag.finish(work)
             work.chmod(0o755)
