@@ -179,6 +179,34 @@ def places_that_are_no_places(pack: Path, _p: Packed) -> tuple[str, str]:
     return "result not readable", ""
 
 
+@into(BY_SIGNER)
+def reason_beside_the_sql(pack: Path, _p: Packed) -> tuple[str, str]:
+    change_evidence(pack, lambda told: told["findings"][0].update(without_sql_because="it is not needed"))
+    return "evidence.json does not fit the result", "sql"
+
+
+@into(BY_SIGNER)
+def parameter_of_the_check_edited(pack: Path, _p: Packed) -> tuple[str, str]:
+    edit(pack / "data/result/run.json", "within_m=0.4", "within_m=0.1")
+    change_evidence(pack, lambda _told: None)
+    return "run.json does not fit the result", "parameters"
+
+
+@into(BY_SIGNER)
+def parameter_of_the_check_that_is_none(pack: Path, _p: Packed) -> tuple[str, str]:
+    edit(pack / "data/result/run.json", "within_m=0.4", "width_m=0.4")
+    change_evidence(pack, lambda _told: None)
+    return "run.json does not fit the result", "width_m"
+
+
+@into(BY_SIGNER)
+def title_of_a_rule_edited(pack: Path, _p: Packed) -> tuple[str, str]:
+    """Its file has another one."""
+    change_table(pack / "data/result/rules.parquet", "title", lambda title: title.replace("No ", "Little "))
+    rewrite_reports(pack)
+    return "run.json does not fit the result", "rules"
+
+
 @pytest.fixture(scope="session")
 def unjudged(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the pack without logs: nothing is judged again, so it is verified in a moment."""

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from drivelint import __version__
+from drivelint import __version__, catalogue
+from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
 from drivelint.pack import again, finding_rows, finding_sql, signature
 from drivelint.pack.bag import DATA, Problem
@@ -18,6 +19,7 @@ from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
 from drivelint.phrases import plural
 from drivelint.report import summary
 from drivelint.report.outputs import REPORT_FORMATS
+from drivelint.result import collect
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
 
@@ -82,9 +84,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     told = {**evidence, "findings": [{key: row.get(key) for key in SAID_OF_FINDINGS} for row in evidence["findings"]]}
     due["rule versions"] = result.rules["rule_version"].to_pylist()
     told["rule versions"] = [rule["rule_version"] for rule in due["rules"]]
-    due["sql"] = [
-        f"{DATA}/findings/{row['finding_id']}/finding.sql" if row["sql"] else None for row in evidence["findings"]
-    ]
+    due["sql"] = [_place_of_sql(row) for row in evidence["findings"]]
     told["sql"] = [row["sql"] for row in evidence["findings"]]
     keys = [key for key, value in due.items() if told.get(key) != value]
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
@@ -93,6 +93,12 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
     return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
+
+
+def _place_of_sql(finding: dict[str, Any]) -> str | None:
+    """Return where the SQL of a finding must be; None: there is none, and the reason is said."""
+    said = finding["without_sql_because"]
+    return None if isinstance(said, str) and said else f"{DATA}/findings/{finding['finding_id']}/finding.sql"
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
@@ -146,9 +152,18 @@ def of_findings(folder: Path, result: Result, asked: RunRequest) -> tuple[list[P
     """
     try:
         rules = {rule.id: rule for rule in again.rules_of(result, asked)}
-        params = again.params_of(rules.values(), asked)
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
+    try:
+        given = catalogue.parse_params(list(rules.values()), asked.params)
+        table = collect.rule_table(list(rules.values()), given, asked.profiles or DEFAULT_PROFILES)
+    except DriveLintError as error:
+        return [Problem("run.json does not fit the result", str(error))], ""
+    if table.to_pylist() != result.rules.to_pylist():
+        return [
+            Problem("run.json does not fit the result", "rules.parquet has other parameters, profiles or rules")
+        ], ""
+    params = again.params_of(rules.values(), asked)
     wrong, n = [], 0
     for row in result.findings.to_pylist():
         place = folder / DATA / "findings" / row["finding_id"]
