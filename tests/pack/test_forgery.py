@@ -217,6 +217,19 @@ def info_removed(pack: Path, _p: Packed) -> tuple[str, str]:
 
 
 @into(SEEN)
+def declaration_removed(pack: Path, _p: Packed) -> tuple[str, str]:
+    (pack / "bagit.txt").unlink()
+    rehash(pack, payload=False)
+    return "file removed", "bagit.txt"
+
+
+@into(SEEN)
+def name_that_is_no_text_added(pack: Path, _p: Packed) -> tuple[str, str]:
+    (pack / "data/result" / os.fsdecode(b"\xff\x1b[2J.parquet")).write_bytes(b"")
+    return "file added", "data/result/\udcff"
+
+
+@into(SEEN)
 def size_in_the_info_wrong(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / INFO, "Payload-Oxum: ", "Payload-Oxum: 1")
     rehash(pack, payload=False)
@@ -345,6 +358,7 @@ def test_what_was_forged_is_named(name: str, packed: Packed, tmp_path: Path) -> 
     assert any(each.kind == kind and what in each.what for each in found), found
     done = script(pack, packed.public, tmp_path)
     assert done.stderr == ""
+    assert "\x1b" not in done.stdout
     assert done.returncode == (1 if name in SEEN else 0), done.stdout
 
 

@@ -98,7 +98,8 @@ def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
         for name in sorted(listed.keys() & names):
             if sha256_of(folder / name) != listed[name]:
                 found.append(Problem("manifest changed" if name == MANIFEST else "file changed", name))
-    found += _of_info(folder, payload) if INFO in files else [Problem("file removed", INFO)]
+    found += [Problem("file removed", name) for name in (DECLARATION, INFO) if name not in files]
+    found += _of_info(folder, payload) if INFO in files else []
     return sorted(set(found), key=lambda each: (each.what, each.kind))
 
 
