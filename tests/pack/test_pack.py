@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pyarrow.parquet as pq
 import pytest
@@ -21,35 +21,10 @@ from drivelint.errors import UsageError
 from drivelint.pack import PackRequest, VerifyRequest, signature, verify, write_pack
 from drivelint.pack.finding_sql import literal
 from tests.explain.checked import OVERTAKE, check
-from tests.pack.packed import make_key, make_pack, statement_of
+from tests.pack.packed import make_key, make_pack, numbers_without_drivelint, statement_of
 
 if TYPE_CHECKING:
     from tests.pack.conftest import Packed
-
-WITHOUT_DRIVELINT = """
-import sys
-sys.modules["drivelint"] = None
-import json, os
-import duckdb
-found = {}
-for name in sorted(os.listdir(sys.argv[1])):
-    os.chdir(os.path.join(sys.argv[1], name))
-    with duckdb.connect() as con:
-        rows = con.execute(open("finding.sql").read()).fetchall()
-        columns = [column[0] for column in con.description]
-    found[name] = [dict(zip(columns, row)) for row in rows]
-print(json.dumps(found))
-"""
-
-
-def numbers_without_drivelint(pack: Path) -> dict[str, list[dict[str, Any]]]:
-    done = subprocess.run(
-        [sys.executable, "-I", "-c", WITHOUT_DRIVELINT, pack / "data/findings"],
-        check=False, capture_output=True, text=True, timeout=300,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    told: dict[str, list[dict[str, Any]]] = json.loads(done.stdout)
-    return told
 
 
 def files(folder: Path) -> dict[str, bytes]:

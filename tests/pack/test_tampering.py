@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import base64
-import hashlib
 import json
 import shutil
-import subprocess
-import sys
 from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
@@ -18,7 +15,24 @@ import pytest
 from drivelint.guide import FOLDER
 from drivelint.pack import VerifyRequest, verify
 from tests.guide.blocks import blocks
-from tests.pack.packed import KEY, MANIFEST, STATEMENT, TAG_MANIFEST, rehash, reseal, restate
+from tests.pack.packed import (
+    KEY,
+    MANIFEST,
+    STATEMENT,
+    TAG_MANIFEST,
+    change_byte,
+    change_evidence,
+    copied,
+    edit,
+    inner,
+    log_of,
+    rehash,
+    reseal,
+    restate,
+    rewrite_reports,
+    script,
+    sql_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,31 +43,6 @@ if TYPE_CHECKING:
 VERDICTS, FINDINGS = "data/result/verdicts.parquet", "data/result/findings.parquet"
 
 
-def change_byte(path: Path) -> None:
-    content = bytearray(path.read_bytes())
-    content[len(content) // 2] ^= 1
-    path.write_bytes(content)
-
-
-def edit(path: Path, old: str, new: str) -> None:
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
-
-
-def log_of(pack: Path) -> Path:
-    (path,) = (pack / "data/inputs/traces").rglob("*.csv")
-    return path
-
-
-def inner(pack: Path, path: Path) -> str:
-    return path.relative_to(pack).as_posix()
-
-
-def sql_of(pack: Path) -> Path:
-    return min((pack / "data/findings").rglob("finding.sql"))
-
-
 def set_margins(pack: Path, margin: float) -> None:
     """Let all findings miss by little, in every place that says it."""
     table = pq.read_table(pack / FINDINGS)
@@ -61,11 +50,13 @@ def set_margins(pack: Path, margin: float) -> None:
     has = pc.is_valid(table["margin"])
     values = pc.if_else(has, pa.array([margin] * n), pa.nulls(n, pa.float64()))
     pq.write_table(table.set_column(i, table.schema.field(i), values), pack / FINDINGS)
-    evidence = json.loads((pack / "data/evidence.json").read_text("utf-8"))
-    for row in evidence["findings"]:
-        row["margin"] = None if row["margin"] is None else margin
-    evidence["outputs"][FINDINGS] = hashlib.sha256((pack / FINDINGS).read_bytes()).hexdigest()
-    (pack / "data/evidence.json").write_text(json.dumps(evidence), encoding="utf-8")
+
+    def said(told: dict[str, Any]) -> None:
+        for row in told["findings"]:
+            row["margin"] = None if row["margin"] is None else margin
+
+    rewrite_reports(pack)
+    change_evidence(pack, said)
 
 
 def passed(told: dict[str, Any]) -> None:
@@ -241,20 +232,6 @@ def envelope_emptied(pack: Path, _p: Packed) -> tuple[str, str]:
 def key_replaced(pack: Path, p: Packed) -> tuple[str, str]:
     shutil.copyfile(p.other_public, pack / KEY)
     return "file changed", KEY
-
-
-def copied(packed: Packed, tmp_path: Path) -> Path:
-    return tmp_path / shutil.copytree(packed.pack, tmp_path / "pack").name
-
-
-def script(pack: Path, key: Path, tmp_path: Path) -> subprocess.CompletedProcess[str]:
-    """Run the script of the guide with nothing of drivelint on its path."""
-    (block,) = (each for each in blocks(FOLDER / "evidence-pack.md") if each.mark == "file: verify_pack.py")
-    file = tmp_path / "verify_pack.py"
-    file.write_text(f"import sys\nsys.modules['drivelint'] = None\n{block.body}", encoding="utf-8")
-    return subprocess.run(
-        [sys.executable, "-I", file, pack, key], check=False, capture_output=True, text=True, timeout=60
-    )
 
 
 def test_the_script_is_short() -> None:

@@ -25,7 +25,12 @@ def pack(
     *,
     out: Annotated[Path, option("--out", "PACK", "Folder for the evidence pack.")],
     sign: Annotated[
-        Path | None, option("--sign", "KEY", "Sign it with this Ed25519 key: PEM, without a password.")
+        Path | None,
+        option(
+            "--sign",
+            "KEY",
+            "Sign it with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
+        ),
     ] = None,
     with_inputs: Annotated[
         bool, option("--with-inputs", None, "Also copy the logs, the map and the mapping into it.")
@@ -40,6 +45,14 @@ def pack(
             "Its Bagging-Date. Default: the day of SOURCE_DATE_EPOCH, if that is set; else none.",
         ),
     ] = None,
+    timestamp: Annotated[
+        Path | None,
+        option(
+            "--timestamp",
+            "FILE",
+            "Add the time stamp (RFC 3161 response, .tsr) that an authority made of statement.dsse.json in the same pack.",
+        ),
+    ] = None,
     overwrite: Annotated[bool, option("--overwrite", None, "Replace a pack that is there.")] = False,
 ) -> None:
     """Pack a result as evidence: hashed, signed, and to be checked by others.
@@ -50,7 +63,7 @@ def pack(
     """
     from drivelint.pack import PackRequest, write_pack
 
-    request = PackRequest(folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), overwrite)
+    request = PackRequest(folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite)
     told = run_interruptible(lambda: write_pack(request))
     findings = told["findings"]
     n = sum(1 for finding in findings if finding["sql"])
@@ -70,6 +83,14 @@ def verify(
     ] = None,
     traces: Traces = None,
     map_: Map = None,
+    timestamp_root: Annotated[
+        Path | None,
+        option(
+            "--timestamp-root",
+            "PEM",
+            "It must have a time stamp of an authority whose root certificate is one of these.",
+        ),
+    ] = None,
 ) -> None:
     """Verify an evidence pack: its files, its signature, what it states; and judge the logs again.
 
@@ -80,7 +101,7 @@ def verify(
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified
 
-    request = VerifyRequest(folder, key, tuple(traces or ()), map_)
+    request = VerifyRequest(folder, key, tuple(traces or ()), map_, timestamp_root)
     found = run_interruptible(lambda: verified(request))
     for note in found.notes:
         typer.echo(f"drivelint: {inert_line(note)}", err=True)

@@ -24,7 +24,7 @@ from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     import duckdb
 
@@ -73,6 +73,17 @@ def check_again(result: Result, asked: RunRequest, work: Path | None) -> Result:
     return check(CheckOptions(**given), Silent())
 
 
+def params_of(rules: Iterable[Rule], asked: RunRequest) -> dict[str, dict[str, object]]:
+    """Return rule -> the values of its parameters in a check, of these rules of it."""
+    mine = list(rules)
+    names = {rule.id for rule in mine}
+    given = catalogue.parse_params(mine, [p for p in asked.params if p.partition("=")[0].rpartition(".")[0] in names])
+    return {
+        rule.id: {name: given.get(rule.id, {}).get(name, param.default) for name, param in rule.params.items()}
+        for rule in mine
+    }
+
+
 def finding_evidence(result: Result, asked: RunRequest, memory: int | None = DEFAULT_MEMORY) -> Evidence:
     """Return what gives the numbers of each finding again. `asked` says where the logs are."""
     rules = {rule.id: rule for rule in rules_of(result, asked)}
@@ -90,14 +101,13 @@ def _of_drive(
 ) -> Evidence:
     """Return the evidence of the findings of one ego in one drive."""
     mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
-    names = {rule.id for rule in mine}
-    params = catalogue.parse_params(mine, [p for p in asked.params if p.partition("=")[0].rpartition(".")[0] in names])
+    params = params_of(mine, asked)
     found: Evidence = {}
 
     def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
         for rule in mine:
             rows = [row for row in findings if row["rule_id"] == rule.id]
-            found.update(_of_rule(con, rule, params.get(rule.id, {}), rows))
+            found.update(_of_rule(con, rule, params[rule.id], rows))
 
     with store.workspace(memory) as con:
         store.insert(con, "profile", profile_table(load_profiles(asked.rules_dirs), asked.profiles))
@@ -108,15 +118,14 @@ def _of_drive(
 
 
 def _of_rule(
-    con: duckdb.DuckDBPyConnection, rule: Rule, given: Mapping[str, object], findings: Sequence[Row]
+    con: duckdb.DuckDBPyConnection, rule: Rule, params: Mapping[str, object], findings: Sequence[Row]
 ) -> Evidence:
     """Return the evidence of the findings of one rule, while the database has what it reads."""
-    params = {name: given.get(name, param.default) for name, param in rule.params.items()}
     first = findings[0]
     try:
         references: dict[int, int] = {}
         if rule.kind != "invariant":
-            binding = Binding(rule, 0, given)
+            binding = Binding(rule, 0, params)
             evaluation = Evaluation(con, [binding], margins=True)
             evaluation.prepare()
             evaluation.judge_rule(binding)
@@ -134,6 +143,6 @@ def _of_rule(
 
 
 def same_rows(a: bytes, b: bytes) -> bool:
-    """Tell whether two Parquet files have the same rows, whatever wrote them."""
+    """Tell whether two Parquet files have the same rows and comments, whatever wrote them."""
     one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
-    return bool(one.schema.equals(other.schema) and one.equals(other))
+    return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))

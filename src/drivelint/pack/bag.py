@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
 DATA: Final = "data"
 DECLARATION: Final = "bagit.txt"
@@ -19,7 +19,10 @@ MANIFEST: Final = "manifest-sha256.txt"
 TAG_MANIFEST: Final = "tagmanifest-sha256.txt"
 _DECLARED: Final = b"BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"
 _LINE: Final = re.compile(r"([0-9a-f]{64})  ([^\s].*)")
-_UNFIT: Final = re.compile(r"[\r\n%\\]")
+_SAID: Final = re.compile(
+    r"(?:Bagging-Date: \d{4}-\d\d-\d\d\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
+)
+_UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 
 
 class Problem(NamedTuple):
@@ -63,18 +66,29 @@ def _write_manifest(folder: Path, name: str, files: Iterable[Path]) -> None:
     (folder / name).write_text("".join(lines), "utf-8", newline="\n")
 
 
-def problems(folder: Path) -> list[Problem]:
+def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
     """Return what is not as the manifests say, sorted by file: changed, removed and added files, and changed manifests.
 
-    Errors: `UsageError` where it is no bag.
+    `tags`: the tag files that it may have beside those of BagIt. No signature names them all, so any other is one that was added.
+    Links are not followed. Errors: `UsageError` where it is no bag.
     """
     if not (folder / DECLARATION).is_file() and not (folder / MANIFEST).is_file():
         raise UsageError(f"{folder}: no evidence pack: name the folder that drivelint pack --out wrote")
-    found = [Problem("link", _inner(folder, path)) for path in folder.rglob("*") if path.is_symlink()]
-    if (folder / DECLARATION).is_file() and (folder / DECLARATION).read_bytes() != _DECLARED:
+    found: list[Problem] = []
+    files: set[str] = set()
+    for path in folder.rglob("*"):
+        name = path.relative_to(folder).as_posix()
+        if path.is_symlink() or not (path.is_file() or path.is_dir()):
+            found.append(Problem("link" if path.is_symlink() else "not a file", name))
+        elif path.is_file():
+            files.add(name)
+    payload = {name for name in files if name.startswith(f"{DATA}/")}
+    tag_files = files - payload - {TAG_MANIFEST}
+    found += [Problem("file added", name) for name in tag_files - {DECLARATION, INFO, MANIFEST, *tags}]
+    if DECLARATION in files and (folder / DECLARATION).read_bytes() != _DECLARED:
         found.append(Problem("file changed", DECLARATION))
-    for manifest, names in ((TAG_MANIFEST, _tag_files(folder) - {TAG_MANIFEST}), (MANIFEST, _payload(folder))):
-        if not (folder / manifest).is_file():
+    for manifest, names in ((TAG_MANIFEST, tag_files), (MANIFEST, payload)):
+        if manifest not in files:
             found.append(Problem("file removed", manifest))
             continue
         listed, wrong = _read_manifest(folder / manifest, payload=manifest == MANIFEST)
@@ -84,34 +98,42 @@ def problems(folder: Path) -> list[Problem]:
         for name in sorted(listed.keys() & names):
             if sha256_of(folder / name) != listed[name]:
                 found.append(Problem("manifest changed" if name == MANIFEST else "file changed", name))
+    found += [Problem("file removed", name) for name in (DECLARATION, INFO) if name not in files]
+    found += _of_info(folder, payload) if INFO in files else []
     return sorted(set(found), key=lambda each: (each.what, each.kind))
+
+
+def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
+    """Return in what `bag-info.txt` is not what `begin` writes of such a payload."""
+    text = (folder / INFO).read_text("utf-8", "replace")
+    match = _SAID.fullmatch(text)
+    if match is None:
+        return [Problem("bag-info.txt not readable", INFO)]
+    sizes = [(folder / name).stat().st_size for name in payload]
+    due = f"{sum(sizes)}.{len(sizes)}"
+    return [] if match[1] == due else [Problem("Payload-Oxum wrong", f"{INFO}: {match[1]}, and it is {due}")]
 
 
 def _read_manifest(path: Path, *, payload: bool) -> tuple[dict[str, str], list[Problem]]:
     """Return file -> hash as a manifest says, and its lines that are none of a manifest."""
     listed: dict[str, str] = {}
     wrong = []
-    for no, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1):
+    # not splitlines: that cuts at other characters, too, which a name may have
+    lines = path.read_text("utf-8", "replace").removesuffix("\n").split("\n")
+    for no, line in enumerate(lines, 1):
         match = _LINE.fullmatch(line)
         name = match[2] if match else ""
         inner = PurePosixPath(name)
-        if match is None or name in listed:
+        if match is None:
             wrong.append(Problem("manifest not readable", f"{path.name} line {no}"))
-        elif inner.is_absolute() or ".." in inner.parts or (inner.parts[0] == DATA) is not payload:
+        elif name in listed:
+            wrong.append(Problem("manifest names a file twice", f"{path.name}: {name}"))
+        elif inner.is_absolute() or ".." in inner.parts or (inner.parts[:1] == (DATA,)) is not payload:
             wrong.append(Problem("manifest names a file outside", f"{path.name}: {name}"))
         else:
             listed[name] = match[1]
     return listed, wrong
 
 
-def _inner(folder: Path, path: Path) -> str:
-    return path.relative_to(folder).as_posix()
-
-
-def _payload(folder: Path) -> set[str]:
-    return {_inner(folder, path) for path in (folder / DATA).rglob("*") if path.is_file()}
-
-
 def _tag_files(folder: Path) -> set[str]:
-    found = {_inner(folder, path) for path in folder.rglob("*") if path.is_file()}
-    return {name for name in found if PurePosixPath(name).parts[0] != DATA}
+    return {path.name for path in folder.iterdir() if path.is_file()}

@@ -66,25 +66,37 @@ def evidence(
     return {SQL_FILE: finding_sql.file_text(rule, finding, sql, enough).encode(), **files}
 
 
+def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
+    """Tell whether a DuckDB that has nothing of drivelint gives the numbers of a finding from these rows."""
+    with duckdb.connect(config={"threads": "1"}) as con:
+        try:
+            con.execute(";".join(finding_sql.macros(sql)))
+            for table, rows in tables.items():
+                con.register(table, rows)
+            return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
+        except duckdb.Error:
+            return False
+
+
 def _enough(
     con: duckdb.DuckDBPyConnection, sql: str, finding: Row, tables: Mapping[str, pa.Table]
 ) -> dict[str, pa.Table] | None:
     """Return, of each table, the fewest of the tried rows with which the numbers stay the same; None: all rows give others."""
     choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
 
-    def gives(chosen: Mapping[str, pa.Table]) -> bool:
+    def enough(chosen: Mapping[str, pa.Table]) -> bool:
         for table, rows in chosen.items():
             con.register(table, rows)
         return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
     least = {table: each[0] for table, each in choices.items()}
-    if gives(least):
+    if enough(least):
         return least
     chosen = dict(tables)
-    if not gives(chosen):
+    if not enough(chosen):
         return None
     for table, each in choices.items():
-        chosen[table] = _first(each, lambda rows, table=table: gives({**chosen, table: rows}))  # type: ignore[misc]
+        chosen[table] = _first(each, lambda rows, table=table: enough({**chosen, table: rows}))  # type: ignore[misc]
     return chosen
 
 

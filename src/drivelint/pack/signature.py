@@ -6,23 +6,41 @@ import base64
 import binascii
 import hashlib
 import json
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
 from cryptography.hazmat.primitives import serialization
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey, Ed25519PublicKey
 
 from drivelint.errors import UsageError
+from drivelint.pack.agent import AgentKey
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 PAYLOAD_TYPE: Final = "application/vnd.in-toto+json"
 _OPENSSH: Final = b"-----BEGIN OPENSSH PRIVATE KEY-----"
+_LINE: Final = (b"ssh-", b"ecdsa-", b"sk-")
+_PUBLIC: Final = (*_LINE, b"-----BEGIN PUBLIC KEY-----")
 
 
 class EnvelopeError(Exception):
     """What stands in an envelope's place is none."""
+
+
+class SigningKey(Protocol):
+    """What signs: a private key from a file, or one that ssh-agent holds."""
+
+    def public_key(self) -> Ed25519PublicKey:
+        """Return the public key."""
+
+    def sign(self, data: bytes, /) -> bytes:
+        """Return the signature."""
+
+
+def signing_key(path: Path) -> SigningKey:
+    """Return the private key in a file; of a public key, the one that ssh-agent holds. Errors: `UsageError`."""
+    return AgentKey(public_key(path)) if _read(path).startswith(_PUBLIC) else private_key(path)
 
 
 def private_key(path: Path) -> Ed25519PrivateKey:
@@ -43,7 +61,7 @@ def private_key(path: Path) -> Ed25519PrivateKey:
 def public_key(path: Path) -> Ed25519PublicKey:
     """Return the public key in a file, PEM or a line of OpenSSH. Errors: `UsageError`."""
     content = _read(path)
-    load = serialization.load_ssh_public_key if content.startswith(b"ssh-") else serialization.load_pem_public_key
+    load = serialization.load_ssh_public_key if content.startswith(_LINE) else serialization.load_pem_public_key
     try:
         key = load(content)
     except (ValueError, UnsupportedAlgorithm) as error:
@@ -71,13 +89,16 @@ def key_id(key: Ed25519PublicKey) -> str:
     return hashlib.sha256(der).hexdigest()
 
 
-def envelope(payload: bytes, key: Ed25519PrivateKey) -> bytes:
+def envelope(payload: bytes, key: SigningKey) -> bytes:
     """Return the DSSE envelope of a signed statement: the same bytes each time, as Ed25519 has no random part."""
-    signature = key.sign(_signed_bytes(PAYLOAD_TYPE, payload))
+    return _rendered(payload, key.sign(_signed_bytes(PAYLOAD_TYPE, payload)), key.public_key())
+
+
+def _rendered(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
     content = {
         "payloadType": PAYLOAD_TYPE,
         "payload": base64.b64encode(payload).decode(),
-        "signatures": [{"keyid": key_id(key.public_key()), "sig": base64.b64encode(signature).decode()}],
+        "signatures": [{"keyid": key_id(key), "sig": base64.b64encode(signature).decode()}],
     }
     return (json.dumps(content, indent=2) + "\n").encode()
 
@@ -99,13 +120,19 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
     return False
 
 
+def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
+    """Tell whether an envelope that a key signed is the one that `envelope` writes: what stands beside the payload is not signed."""
+    _, payload, signatures = _opened(content)
+    return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
+
+
 def _opened(content: bytes) -> tuple[str, bytes, list[bytes]]:
     try:
         told = json.loads(content)
         payload = base64.b64decode(told["payload"], validate=True)
         signatures = [base64.b64decode(each["sig"], validate=True) for each in told["signatures"]]
         return str(told["payloadType"]), payload, signatures
-    except (ValueError, KeyError, TypeError, binascii.Error) as error:
+    except (ValueError, KeyError, TypeError, RecursionError, binascii.Error) as error:
         raise EnvelopeError(str(error)) from error
 
 

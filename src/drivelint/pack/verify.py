@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,35 +9,36 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow.compute as pc
 
+from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.pack import again, bag, signature
+from drivelint.pack import again, bag, consistency, signature, timestamp
 from drivelint.pack.bag import Problem
-from drivelint.pack.contents import EVIDENCE, RESULT, SAID_OF_FINDINGS, facts, summary_of
+from drivelint.pack.contents import EVIDENCE, RESULT, library_versions
 from drivelint.pack.inputs import judged, located
-from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
+from drivelint.pack.statement import ENVELOPE, FILE
 from drivelint.pack.write import PUBLIC_KEY
 from drivelint.phrases import plural
-from drivelint.report import summary
 from drivelint.result import request as run_request
 from drivelint.result.files import parquet_bytes
-from drivelint.result.load import load_result
 from drivelint.result.schemas import TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
+    from drivelint.pack.consistency import Stated
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
 
 @dataclass(frozen=True)
 class VerifyRequest:
-    """What `verify` is asked: a pack, the key that it must be signed with, and where log and map are if they are not in it."""
+    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it."""
 
     folder: Path
     key: Path | None = None
     traces: tuple[Path, ...] = ()
     map: Path | None = None
+    timestamp_root: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -55,115 +55,135 @@ def verify(request: VerifyRequest) -> Verification:
 
     Errors: `UsageError` where it is no pack, or for a key, log or map that was given and cannot be used.
     """
-    key = None if request.key is None else signature.public_key(request.key)
-    wrong = bag.problems(request.folder)
+    key = _given_key(request)
+    wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE, timestamp.FILE))
     more, signed = _of_signature(request.folder, key)
-    wrong += [problem for problem in more if problem not in wrong]
+    stamp = timestamp.of_pack(request.folder, request.timestamp_root)
+    wrong += [problem for problem in (*more, *stamp.problems) if problem not in wrong]
     notes: list[str] = []
-    judging = "not judged again"
+    judging, outcome = "not judged again", ""
     if not wrong:
-        stated, result, evidence = _of_statement(request.folder)
-        wrong += stated
-        if result is not None and not wrong:
-            asked = _inputs(request, result, evidence)
-            if asked is None:
-                notes.append("the logs are not in the pack: judged again only with --trace and --map")
-            else:
-                judging, differing = _of_result(request.folder, result, asked)
-                wrong += differing
+        wrong, stated = consistency.of_statement(request.folder)
+        if stated is not None and not wrong:
+            judging, wrong, notes = _of_contents(request, stated)
+            outcome = f"; it states {stated.outcome}"
     elif any(problem.kind != "not signed" for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
+    signed = ", ".join(filter(None, (signed, stamp.said)))
     state = "consistent" if key is None else "untouched since it was signed"
-    sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}"
-    return Verification(wrong, sentence, notes)
+    sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{outcome}"
+    return Verification(wrong, sentence, [*stamp.notes, *notes])
+
+
+def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
+    if request.key is None:
+        return None
+    if request.key.resolve().is_relative_to(request.folder.resolve()):
+        raise UsageError(f"--key {request.key}: comes with the pack, so it tells nothing: give one from elsewhere")
+    return signature.public_key(request.key)
 
 
 def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """Return what is wrong with the signature, and who signed in words."""
-    file, embedded = folder / ENVELOPE, folder / PUBLIC_KEY
-    if not file.is_file():
-        return ([Problem("not signed", ENVELOPE)] if key is not None or embedded.is_file() else []), "not signed"
+    """Return what is wrong with the signature and the files beside it, which nobody signed, and who signed in words."""
+    if not (folder / ENVELOPE).is_file():
+        wanted = key is not None or (folder / PUBLIC_KEY).is_file()
+        stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
+        return stamped + ([Problem("not signed", ENVELOPE)] if wanted else []), "not signed"
+    if not (folder / PUBLIC_KEY).is_file():
+        return [Problem("file removed", PUBLIC_KEY)], ""
     try:
-        own = signature.public_key(embedded) if embedded.is_file() else None
-        good = {signature.key_id(k): signature.is_signed_by(file.read_bytes(), k) for k in (key, own) if k is not None}
-    except (signature.EnvelopeError, UsageError) as error:
-        of_key = isinstance(error, UsageError)
-        return [Problem(f"{'key' if of_key else 'signature'} not readable", PUBLIC_KEY if of_key else ENVELOPE)], ""
-    wanted, has = (None if k is None else signature.key_id(k) for k in (key, own))
-    if (wanted or has) is None or not any(good.values()):
+        own = signature.public_key(folder / PUBLIC_KEY)
+        return _of_envelope(folder, own, key)
+    except UsageError:
+        return [Problem("key not readable", PUBLIC_KEY)], ""
+    except signature.EnvelopeError:
+        return [Problem("signature not readable", ENVELOPE)], ""
+
+
+def _of_envelope(folder: Path, own: Ed25519PublicKey, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
+    """`own`: the key in the pack; `key`: the one that was given."""
+    content, signer = (folder / ENVELOPE).read_bytes(), own if key is None else key
+    by_own, by_signer = (signature.is_signed_by(content, each) for each in (own, signer))
+    if not (by_own or by_signer):
         return [Problem("signature wrong", ENVELOPE)], ""
-    if wanted is None:
-        return [], f"signed by the key in the pack ({_short(has)}; only --key tells whose that is)"
-    if not good[wanted]:
-        return [Problem("another key", f"signed by {_short(has)}, not by {_short(wanted)}, which was given")], ""
-    return [], f"signed by the key that was given ({_short(wanted)})"
+    has, wanted = (signature.key_id(each)[:16] for each in (own, signer))
+    if not by_signer:
+        return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
+    wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY} is not the key that signed")]
+    if not signature.is_as_written(content, signer):
+        wrong.append(Problem("text beside what is signed", ENVELOPE))
+    if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(own):
+        wrong.append(Problem("text beside the key", PUBLIC_KEY))
+    if (folder / FILE).is_file():
+        wrong.append(Problem("file added", FILE))
+    if key is None:
+        return wrong, f"signed by the key in the pack ({wanted}; only --key tells whose that is)"
+    return wrong, f"signed by the key that was given ({wanted})"
 
 
-def _short(key_id: str | None) -> str:
-    return (key_id or "")[:16]
-
-
-def _of_statement(folder: Path) -> tuple[list[Problem], Result | None, dict[str, Any]]:
-    """Return what is wrong with the statement, and the result and the list of what is in the pack."""
-    name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
+def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Problem], list[str]]:
+    """Judge again what can be; return in words what came out, what is wrong, and what was not looked at or is the pack's own."""
+    result, evidence = stated.result, stated.evidence
+    notes = _notes(evidence, result)
     try:
-        evidence: dict[str, Any] = json.loads((folder / EVIDENCE).read_text("utf-8"))
-        result = load_result(folder / RESULT)
-        wrong = _of_evidence(folder, result, evidence)
-        due = statement(folder, result, summary_of(folder), evidence)
-    except (DriveLintError, OSError, ValueError, KeyError, TypeError) as error:
-        return [Problem("result not readable", str(error))], None, {}
-    if not (folder / name).is_file():
-        return [Problem("statement missing", FILE)], result, evidence
-    content = (folder / name).read_bytes()
-    said = signature.payload_of(content) if name == ENVELOPE else content
-    return differences(said, due) + wrong, result, evidence
+        asked = _asked(request.folder, evidence)
+        if evidence["inputs"] is None and not request.traces:
+            wrong, told = consistency.of_findings(request.folder, result, asked)
+            notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
+            return "not judged again", wrong, notes
+    except consistency.UNREADABLE as error:
+        return "", [Problem("evidence.json not readable", str(error))], notes
+    try:
+        asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
+    except UsageError as error:
+        if request.traces or request.map is not None:
+            raise
+        return "", [Problem("inputs do not fit the result", str(error))], notes
+    judging, wrong = _of_result(request.folder, stated, asked)
+    return judging, wrong, notes
 
 
-def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
-    """Return in what `evidence.json` does not say what the result and the rules in the pack say."""
-    due = facts(folder, result, run_request.load(folder / RESULT))
-    due["findings"] = result.findings.select(SAID_OF_FINDINGS).to_pylist()
-    told = {**evidence, "findings": [{key: row.get(key) for key in SAID_OF_FINDINGS} for row in evidence["findings"]]}
-    due["rule versions"] = result.rules["rule_version"].to_pylist()
-    told["rule versions"] = [rule["rule_version"] for rule in due["rules"]]
-    wrong = [
-        Problem("evidence.json does not fit the result", key) for key, value in due.items() if told.get(key) != value
-    ]
-    said, counted = summary_of(folder), json.loads(summary.render(result))
-    keys = sorted(key for key in counted if key != "tool" and said.get(key) != counted[key])
-    return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
+def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
+    """Return what nobody can hold against the logs, and what is not drivelint's own."""
+    notes = []
+    if (version := consistency.packed_by(evidence)) != __version__:
+        notes.append(f"packed by drivelint {version}, and this is {__version__}: its reports are not written again")
+    if (version := evidence["tool"]["version"]) != __version__:
+        notes.append(f"judged by drivelint {version}, and this is {__version__}")
+    if evidence["rules_dirs"]:
+        notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
+    if evidence["not_judged"]:
+        notes.append(f"not judged when it was checked, nor now: {', '.join(evidence['not_judged'])}")
+    if result.gate is not None:
+        notes.append("baseline and waivers are as the pack says: they are not held against anything again")
+    return notes
 
 
-def _inputs(request: VerifyRequest, result: Result, evidence: dict[str, Any]) -> RunRequest | None:
-    """Return the check with the paths at which its logs are: in the pack or given; None: neither.
-
-    Errors: `UsageError` for a path that leads out of the pack, and as those of `located`.
-    """
-    inside = evidence["inputs"]
-    if inside is None and not request.traces:
-        return None
+def _asked(folder: Path, evidence: dict[str, Any]) -> RunRequest:
+    """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
 
     def place(path: str) -> Path:
-        found = request.folder / path
-        if not found.resolve().is_relative_to(request.folder.resolve()):
-            raise UsageError(f"{EVIDENCE} leads out of the pack: {path}")
+        found = folder / path
+        if not found.resolve().is_relative_to(folder.resolve()):
+            raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
         return found
 
-    asked = run_request.load(request.folder / RESULT)
+    inside = evidence["inputs"]
+    asked = run_request.load(folder / RESULT)
     mapping = asked.mapping if evidence["mapping"] is None else str(place(evidence["mapping"]))
     asked = replace(asked, mapping=mapping, rules_dirs=tuple(place(path) for path in evidence["rules_dirs"]))
     if inside is not None:
         map_, map_dir = (place(inside[what]) if what in inside else None for what in ("map", "map_dir"))
         traces = {name: str(place(path)) for name, path in inside["traces"].items()}
         asked = replace(asked, traces=traces, map=map_, map_dir=map_dir)
-    return located(asked, result.drives.to_pylist(), request.traces, request.map)
+    return asked
 
 
-def _of_result(folder: Path, result: Result, asked: RunRequest) -> tuple[str, list[Problem]]:
+def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, list[Problem]]:
     """Judge the drives again; return in words what came out, and the files that came out otherwise."""
+    result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
     try:
         with TemporaryDirectory(prefix="drivelint-") as work:
@@ -181,6 +201,7 @@ def _of_result(folder: Path, result: Result, asked: RunRequest) -> tuple[str, li
         return "", [Problem("result not reproduced", str(error))]
     whole = result.drives.num_rows == fresh.drives.num_rows
     held = {f"{RESULT}/{name}.parquet": name for name in TABLE_OF_FILE}
+    other_libraries = stated.evidence["packed_with"] != library_versions()
     other_bytes, wrong = False, []
     for path, content in files.items():
         if not (folder / path).is_file():
@@ -191,7 +212,8 @@ def _of_result(folder: Path, result: Result, asked: RunRequest) -> tuple[str, li
             there = parquet_bytes(_judged_rows(result, held[path]), TABLE_OF_FILE[held[path]])
         if there != content:
             other_bytes = True
-            if not path.endswith(".parquet") or not again.same_rows(there, content):
+            # the same libraries write the same bytes: what differs then is somebody's work
+            if not (other_libraries and path.endswith(".parquet") and again.same_rows(there, content)):
                 wrong.append(Problem("result not reproduced", path))
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint import __version__
 from drivelint.errors import UsageError
-from drivelint.pack import again, bag, contents, signature
+from drivelint.pack import again, bag, contents, signature, timestamp
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
 from drivelint.pack.inputs import located
 from drivelint.pack.statement import ENVELOPE, FILE, statement
+from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import request as run_request
 from drivelint.result.files import OutputError
 from drivelint.result.load import load_result
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 PUBLIC_KEY: Final = "public-key.pem"
-_KEPT: Final = ("*.parquet", "*.json", "report.html", "junit.xml", "report.sarif", "report.xqar", "report.md")
 
 
 class _Checked(NamedTuple):
@@ -39,7 +39,7 @@ class _Checked(NamedTuple):
 
 @dataclass(frozen=True)
 class PackRequest:
-    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it."""
+    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it, its time stamp."""
 
     folder: Path
     out: Path
@@ -48,6 +48,7 @@ class PackRequest:
     traces: tuple[Path, ...] = ()
     map: Path | None = None
     date: str | None = None
+    timestamp: Path | None = None
     overwrite: bool = False
 
 
@@ -56,7 +57,9 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 
     Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
     """
-    key = None if request.key is None else signature.private_key(request.key)
+    if request.timestamp is not None and request.key is None:
+        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
+    key = None if request.key is None else signature.signing_key(request.key)
     _free(request)
     result = load_result(request.folder)
     asked = run_request.load(request.folder)
@@ -73,7 +76,10 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
             if key is None:
                 (work / FILE).write_bytes(said)
             else:
-                (work / ENVELOPE).write_bytes(signature.envelope(said, key))
+                sealed = signature.envelope(said, key)
+                (work / ENVELOPE).write_bytes(sealed)
+                if request.timestamp is not None:
+                    (work / timestamp.FILE).write_bytes(timestamp.read(request.timestamp, sealed))
                 (work / PUBLIC_KEY).write_bytes(signature.public_pem(key.public_key()))
             bag.finish(work)
             work.chmod(0o755)
@@ -99,16 +105,16 @@ def _free(request: PackRequest) -> None:
 
 def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, Any]:
     result, asked, rules, found = checked
-    copied = sorted(
-        {path for pattern in _KEPT for path in request.folder.glob(pattern)} - {request.folder / "files.json"}
-    )
+    copied = [request.folder / name for name in sorted(contents.OUTPUTS) if (request.folder / name).is_file()]
     (work / RESULT).mkdir(parents=True)
     for path in copied:
         shutil.copyfile(path, work / RESULT / path.name)
+    reports = [each for each in REPORT_FORMATS.values() if (work / RESULT / each[0]).is_file()]
+    for name, render in reports:  # anew: so they say what the tables say, and link nothing that stays out
+        (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
     for name, files in found.items():
         if isinstance(files, dict):
-            place = work / "data" / "findings" / name
-            place.mkdir(parents=True)
+            place = _made(work / "data" / "findings" / name, work)
             for file, content in files.items():
                 (place / file).write_bytes(content)
     for rule in rules:
@@ -122,7 +128,7 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
     inputs = _copied_inputs(work, asked) if request.with_inputs else None
     left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in copied]
     told = {
-        "evidence": 1,
+        "evidence": contents.FORM,
         **contents.facts(work, result, asked),
         "packed_with": contents.library_versions(),
         "mapping": mapping,
@@ -148,9 +154,16 @@ def _copied_inputs(work: Path, asked: RunRequest) -> dict[str, Any]:
     return told
 
 
-def _copy(source: Path, place: Path, work: Path) -> str:
+def _made(place: Path, work: Path) -> Path:
+    """Make a folder in the pack. Its name may be an id of a result that somebody else made."""
+    if not place.resolve().is_relative_to(work.resolve() / "data") or place.is_dir():
+        raise UsageError(f"{place.name}: no id of a finding or a drive: check the drives again")
     place.mkdir(parents=True)
-    target = place / source.name
+    return place
+
+
+def _copy(source: Path, place: Path, work: Path) -> str:
+    target = _made(place, work) / source.name
     if source.is_dir():
         shutil.copytree(source, target)
     else:

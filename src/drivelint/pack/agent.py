@@ -1,0 +1,109 @@
+"""Signs with an Ed25519 key that `ssh-agent` holds: the private key never leaves the agent.
+
+https://datatracker.ietf.org/doc/html/draft-ietf-sshm-ssh-agent
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import struct
+from typing import TYPE_CHECKING, Final
+
+from cryptography.exceptions import InvalidSignature
+from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
+
+from drivelint.errors import UsageError
+from drivelint.phrases import plural
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
+
+_IDENTITIES, _IDENTITIES_ANSWER, _SIGN, _SIGN_ANSWER = 11, 12, 13, 14
+_KIND: Final = b"ssh-ed25519"
+_LONGEST: Final = 1 << 18  # OpenSSH's own limit of a message
+_PATIENCE_S: Final = 300.0
+"""An agent may ask a person before it signs (ssh-add -c)."""
+
+
+class AgentKey:
+    """A key in the agent at `SSH_AUTH_SOCK`; it signs as `Ed25519PrivateKey` does."""
+
+    def __init__(self, public: Ed25519PublicKey) -> None:
+        """Errors: `UsageError` where there is no agent, or it does not hold the key."""
+        self._public = public
+        self._blob = _string(_KIND) + _string(public.public_bytes(Encoding.Raw, PublicFormat.Raw))
+        answer = _ask(bytes([_IDENTITIES]), _IDENTITIES_ANSWER)
+        try:
+            blobs = list(_strings(answer[4:]))[::2]  # each is followed by its comment
+        except ValueError as error:
+            raise UsageError("--sign: the list of keys that ssh-agent gave is cut") from error
+        if self._blob not in blobs:
+            raise UsageError(
+                f"--sign: ssh-agent has {plural(len(blobs), 'key')}, and not this one: add it with ssh-add"
+            )
+
+    def public_key(self) -> Ed25519PublicKey:
+        """Return the public key."""
+        return self._public
+
+    def sign(self, content: bytes) -> bytes:
+        """Return the signature, 64 bytes. Errors: `UsageError` where the agent refuses, or what it gives is no signature of the key."""
+        request = bytes([_SIGN]) + _string(self._blob) + _string(content) + struct.pack(">I", 0)
+        try:
+            (whole,) = _strings(_ask(request, _SIGN_ANSWER))
+            kind, signature = _strings(whole)
+            self._public.verify(signature, content)
+        except (ValueError, InvalidSignature) as error:
+            raise UsageError("--sign: what ssh-agent gave is no Ed25519 signature of this key") from error
+        if kind != _KIND:
+            raise UsageError(f"--sign: ssh-agent gave a signature of another kind ({kind.decode('ascii', 'replace')})")
+        return signature
+
+
+def _ask(request: bytes, wanted: int) -> bytes:
+    """Send a message and return what follows the type of the answer."""
+    path = os.environ.get("SSH_AUTH_SOCK")
+    if not path or not hasattr(socket, "AF_UNIX"):
+        raise UsageError("--sign: a public key signs by ssh-agent, and SSH_AUTH_SOCK names none: give the private key")
+    try:
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as agent:
+            agent.settimeout(_PATIENCE_S)
+            agent.connect(path)
+            agent.sendall(_string(request))
+            (length,) = struct.unpack(">I", _received(agent, 4))
+            if not 0 < length <= _LONGEST:
+                raise UsageError(f"--sign: {path} does not speak as ssh-agent does")
+            answer = _received(agent, length)
+    except OSError as error:
+        raise UsageError(f"--sign: ssh-agent at {path} cannot be asked: {error.strerror or error}") from error
+    if answer[0] != wanted:
+        raise UsageError("--sign: ssh-agent refused: it is locked, or nobody confirmed")
+    return answer[1:]
+
+
+def _received(agent: socket.socket, n: int) -> bytes:
+    content = b""
+    while len(content) < n:
+        part = agent.recv(n - len(content))
+        if not part:
+            raise OSError("it ended in the middle of an answer")
+        content += part
+    return content
+
+
+def _string(content: bytes) -> bytes:
+    """Return bytes as the protocol has them: after their length."""
+    return struct.pack(">I", len(content)) + content
+
+
+def _strings(content: bytes) -> Iterator[bytes]:
+    """Return the bytes that follow each other, without their lengths. Errors: `ValueError` where they end too early."""
+    while content:
+        n = int.from_bytes(content[:4], "big")
+        if len(content) < 4 + n:
+            raise ValueError("cut")
+        yield content[4 : 4 + n]
+        content = content[4 + n :]

@@ -1,0 +1,185 @@
+"""Whether what a pack says agrees: its statement, `evidence.json`, the tables, the reports, the findings, and which files it has."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from drivelint import __version__, catalogue
+from drivelint.engine.profiles import DEFAULT_PROFILES
+from drivelint.errors import DriveLintError
+from drivelint.pack import again, finding_rows, finding_sql, signature
+from drivelint.pack.bag import DATA, Problem
+from drivelint.pack.contents import EVIDENCE, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
+from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
+from drivelint.phrases import plural
+from drivelint.report import summary
+from drivelint.report.outputs import REPORT_FORMATS
+from drivelint.result import collect
+from drivelint.result import request as run_request
+from drivelint.result.load import load_result
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
+"""What reading files raises that are not as drivelint writes them. Whoever signs a pack may put anything into it."""
+_NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "findings", "left_out")
+_REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
+
+
+class Stated(NamedTuple):
+    """What a pack says, read: the result, `evidence.json`, the statement's result in a word."""
+
+    result: Result
+    evidence: dict[str, Any]
+    outcome: str
+
+
+def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
+    """Return what does not agree, and what is said; None: it cannot be read."""
+    name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
+    try:
+        evidence = _evidence(folder)
+        result = load_result(folder / RESULT)
+        wrong = _of_evidence(folder, result, evidence) + _of_files(folder, evidence)
+        wrong += _of_reports(folder, result, evidence)
+        due = statement(folder, result, summary_of(folder), evidence)
+        stated = Stated(result, evidence, json.loads(due)["predicate"]["result"])
+        if not (folder / name).is_file():
+            return [Problem("statement missing", FILE)], stated
+        content = (folder / name).read_bytes()
+        said = signature.payload_of(content) if name == ENVELOPE else content
+    except (DriveLintError, *UNREADABLE) as error:
+        return [Problem("result not readable", str(error))], None
+    return differences(said, due) + wrong, stated
+
+
+def _evidence(folder: Path) -> dict[str, Any]:
+    """Return `evidence.json`. Errors: `ValueError` where a name stands twice, or for one of another form."""
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            raise ValueError(f"{EVIDENCE} says something twice")
+        return found
+
+    told: dict[str, Any] = json.loads((folder / EVIDENCE).read_text("utf-8"), object_pairs_hook=once)
+    if told["evidence"] != FORM:
+        raise ValueError(f"{EVIDENCE} is of form {told['evidence']}, this drivelint reads {FORM}")
+    return told
+
+
+def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
+    """Return in what `evidence.json` does not say what the result and the rules in the pack say."""
+    due = facts(folder, result, run_request.load(folder / RESULT))
+    due["findings"] = result.findings.select(SAID_OF_FINDINGS).to_pylist()
+    told = {**evidence, "findings": [{key: row.get(key) for key in SAID_OF_FINDINGS} for row in evidence["findings"]]}
+    due["rule versions"] = result.rules["rule_version"].to_pylist()
+    told["rule versions"] = [rule["rule_version"] for rule in due["rules"]]
+    due["sql"] = [_place_of_sql(row) for row in evidence["findings"]]
+    told["sql"] = [row["sql"] for row in evidence["findings"]]
+    keys = [key for key, value in due.items() if told.get(key) != value]
+    keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
+    keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
+    wrong = [Problem("evidence.json does not fit the result", key) for key in keys]
+    said, counted = summary_of(folder), json.loads(summary.render(result))
+    keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
+    return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
+
+
+def _place_of_sql(finding: dict[str, Any]) -> str | None:
+    """Return where the SQL of a finding must be; None: there is none, and the reason is said."""
+    said = finding["without_sql_because"]
+    return None if isinstance(said, str) and said else f"{DATA}/findings/{finding['finding_id']}/finding.sql"
+
+
+def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
+    """Return of what that the check read `evidence.json` does not say where it is in the pack."""
+    wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
+    if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
+        wrong.append("rules_dirs")
+    inside = evidence["inputs"]
+    judged = {drive["drive_id"] for drive in evidence["drives"]}
+    has_map = run["map"] is not None or run["map_dir"] is not None
+    if inside is not None and (inside["traces"].keys() != judged or has_map != (len(inside) > 1)):
+        wrong.append("inputs")
+    return wrong
+
+
+def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
+    """Return the files of the payload that nothing in `evidence.json` names: they are not evidence of anything."""
+    named = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
+    inside = evidence["inputs"] or {"traces": {}}
+    places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
+    places += [inside.get("map"), inside.get("map_dir")]
+    kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
+    roots = [place for place in places if place is not None and place.startswith(kept)]
+    roots += [row["sql"].removesuffix("/finding.sql") for row in evidence["findings"] if row["sql"]]
+    files = {path.relative_to(folder).as_posix() for path in (folder / DATA).rglob("*") if path.is_file()}
+    known = {name for name in files if any(name == root or name.startswith(f"{root}/") for root in roots)}
+    return [Problem("file that nothing names", name) for name in sorted(files - named - known)]
+
+
+def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
+    """Return the reports that are not what this drivelint writes from the tables, where it is the one that packed them."""
+    if packed_by(evidence) != __version__:
+        return []
+    return [
+        Problem("report does not fit the tables", f"{RESULT}/{name}")
+        for name, render in REPORT_FORMATS.values()
+        if (folder / RESULT / name).is_file() and (folder / RESULT / name).read_bytes() != render(result)
+    ]
+
+
+def packed_by(evidence: dict[str, Any]) -> str:
+    """Return the version of drivelint that wrote a pack."""
+    return str(evidence["packed_with"]["drivelint"])
+
+
+def of_findings(folder: Path, result: Result, asked: RunRequest) -> tuple[list[Problem], str]:
+    """Run the SQL of each finding on the rows in the pack; return those that give other numbers, and in words what was looked at.
+
+    The SQL that runs is made here of the rule; the one in the pack must be the same text. Whether the rows follow from the log,
+    only the log tells.
+    """
+    try:
+        rules = {rule.id: rule for rule in again.rules_of(result, asked)}
+    except DriveLintError as error:
+        return [], f"the findings' SQL was not run: {error}"
+    try:
+        given = catalogue.parse_params(list(rules.values()), asked.params)
+        table = collect.rule_table(list(rules.values()), given, asked.profiles or DEFAULT_PROFILES)
+    except DriveLintError as error:
+        return [Problem("run.json does not fit the result", str(error))], ""
+    if table.to_pylist() != result.rules.to_pylist():
+        return [
+            Problem("run.json does not fit the result", "rules.parquet has other parameters, profiles or rules")
+        ], ""
+    params = again.params_of(rules.values(), asked)
+    wrong, n = [], 0
+    for row in result.findings.to_pylist():
+        place = folder / DATA / "findings" / row["finding_id"]
+        if not (place / finding_rows.SQL_FILE).is_file():
+            continue
+        n += 1
+        rule = rules[row["rule_id"]]
+        text = (place / finding_rows.SQL_FILE).read_text("utf-8", "replace")
+        reference = _REFERENCE.search(text)
+        sql = finding_sql.query(rule, params[rule.id], row, int(reference[1]) if reference else None)
+        tables = finding_sql.tables_of(rule)
+        try:
+            rows = {table: pq.read_table(place / f"{table}.parquet") for table in tables}
+            same = finding_sql.file_text(rule, row, sql, tables) == text and finding_rows.gives(sql, row, rows)
+        except UNREADABLE:
+            same = False
+        if not same:
+            wrong.append(Problem("finding does not give its numbers", place.relative_to(folder).as_posix()))
+    return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
