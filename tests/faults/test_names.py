@@ -1,0 +1,60 @@
+"""Names of files, topics and road users are data: exactly that file is read, and words of a log are text wherever they are shown."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Final
+
+import pytest
+from lxml import etree
+
+import drivelint
+from tests.faults import drives
+from tests.formats.foxglove import foxglove_log as fox
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+RULES = "ukhc.no-collision"
+HOSTILE = ["ego'; DROP TABLE verdict; --", '"><script>alert(1)</script>', "]]>&amp;{{7*7}}\u202e`| x |"]
+FORMATS: Final = ("html", "junit", "sarif", "xqar", "markdown")
+TOPIC = "/<b>'; DROP TABLE actor; --"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="files cannot have such names")
+@pytest.mark.parametrize("name", ["d[1]", "d*", "d?", "x=9", "new\nline", "..d", "$(x) `y`; z"])
+def test_exactly_that_file(name: str, tmp_path: Path) -> None:
+    """Beside each lies a file that a glob of its name would find, without anybody in it but the ego."""
+    drives.parquet(tmp_path / "d1", drives.drive(cars=1))
+    log = drives.parquet(tmp_path / f"{name}.parquet", drives.drive())
+    result = drivelint.check([log], rules=RULES, ego="0", annotate=False, robustness=False)
+    assert [row["file_name"] for row in result.drives.arrow().to_pylist()] == [log.name]
+    assert result.verdicts.arrow()["object_id"].to_pylist() == ["1", "2"]
+
+
+def test_words_of_a_log_are_text_everywhere(tmp_path: Path) -> None:
+    """Two of its cars drive into each other, so that every report has something to say of them."""
+    messages = [
+        fox.scene(
+            t_s,
+            *(fox.entity(HOSTILE[int(car.name)], t_s, car.x, 0.3 * car.y) for car in cars),
+            topic=TOPIC,
+        )
+        for t_s, cars in drives.drive()
+    ]
+    log = fox.write(tmp_path / "log.mcap", messages)
+    result = drivelint.check([log], rules=RULES, ego=HOSTILE[0], robustness=False, out=tmp_path / "out")
+    assert result.exit_code == 1
+    rows = result.verdicts.arrow().to_pylist()
+    assert {(row["ego_id"], row["object_id"]) for row in rows} == {(HOSTILE[0], name) for name in HOSTILE[1:]}
+    for format_ in FORMATS:
+        text = result.report(to=format_)
+        if format_ != "sarif":  # JSON has no markup
+            assert "<script>alert(1)" not in text
+        if format_ in {"junit", "xqar"}:
+            etree.fromstring(text.encode("utf-8"))
+        if format_ == "sarif":
+            json.loads(text)
+    (annotated,) = (tmp_path / "out" / "annotated").glob("*.mcap")
+    assert drivelint.read_trace(annotated, ego=HOSTILE[0], topic=TOPIC).drive_id
