@@ -30,6 +30,7 @@ _SALVAGE: Final = "tests/formats/mcap/test_salvage.py"
 _CHECKS: Final = "tests/drive/test_checks.py"
 _LIMITS: Final = "tests/evaluate/test_limits.py"
 _AUDIT: Final = "tests/audit/test_audit.py"
+_NAMES: Final = "tests/faults/test_names.py"
 _INTERRUPTED: Final = "tests/test_interrupted.py"
 
 FAULTS: Final = (
@@ -285,6 +286,7 @@ FAULTS: Final = (
         (4,),
         "changed",
         (
+            "tests/faults/test_changes.py::test_a_log_that_changes_between_hash_and_reading",
             "tests/annotate/test_annotator.py::test_a_log_that_changes_while_it_is_judged_is_not_judged",
             "tests/formats/mcap/test_copy.py::test_a_log_that_changed_meanwhile_is_refused",
             "tests/audit/test_bucket.py::test_a_log_that_changes_between_listing_and_reading_is_refused",
@@ -336,7 +338,8 @@ FAULTS: Final = (
         "exactly that file",
         (
             "tests/formats/test_files.py::test_an_existing_name_is_taken_literally",
-            "tests/faults/test_names.py::test_exactly_that_file",
+            f"{_NAMES}::test_exactly_that_file",
+            f"{_NAMES}::test_a_name_as_long_as_names_can_be_stops_nobody",
         ),
     ),
     Fault(
@@ -359,7 +362,7 @@ FAULTS: Final = (
         (
             "tests/report/test_html.py::test_markup_in_names_stays_text",
             "tests/test_streams.py::test_a_hostile_file_name_and_id_is_text_on_the_terminal",
-            "tests/faults/test_names.py::test_words_of_a_log_are_text_everywhere",
+            f"{_NAMES}::test_words_of_a_log_are_text_everywhere",
         ),
     ),
 )

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import os
+import sys
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 import pytest
 from lxml import etree
 
 import drivelint
+from drivelint import cli
 from tests.faults import drives
 from tests.formats.foxglove import foxglove_log as fox
 
@@ -58,3 +61,29 @@ def test_words_of_a_log_are_text_everywhere(tmp_path: Path) -> None:
             json.loads(text)
     (annotated,) = (tmp_path / "out" / "annotated").glob("*.mcap")
     assert drivelint.read_trace(annotated, ego=HOSTILE[0], topic=TOPIC).drive_id
+
+
+def test_a_name_as_long_as_names_can_be_stops_nobody(tmp_path: Path) -> None:
+    """Its annotated log would have a longer one."""
+    logs = [
+        drives.osi_mcap(tmp_path / (letter * n), drives.drive()) for letter, n in (("a", 5), ("n", 241), ("m", 250))
+    ]
+    result = drivelint.check(logs, rules=RULES, ego="0", robustness=False, out=tmp_path / "out")
+    assert result.exit_code == 0
+    assert len(result.verdicts.arrow()) == 6
+    assert {path.name[0] for path in (tmp_path / "out" / "annotated").glob("*.mcap")} == {"a", "n"}
+    assert [note for note in result.notes if "the name is too long for a file" in note]
+
+
+def test_a_fault_of_drivelint_is_no_broken_rule(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail() -> None:
+        raise OSError("a fault")
+
+    monkeypatch.setattr(sys, "argv", ["drivelint", "--version"])
+    monkeypatch.setattr(import_module("drivelint.cli.app"), "_settings", fail)
+    with pytest.raises(SystemExit) as left:
+        cli.main()
+    assert left.value.code == 4
+    assert capsys.readouterr().err.endswith("drivelint: error: internal error: OSError: a fault: please report it\n")
