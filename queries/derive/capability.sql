@@ -13,6 +13,8 @@ WITH ego_log AS (
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS has_signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS is_road_type_given,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'engaged') AS is_engaged_given,
+        -- A log has whoever was around the ego, if its format does not tell that they were not recorded.
+        NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'no_road_users') AS has_road_users,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id) AS has_others,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS has_classes
     FROM clock c
@@ -68,6 +70,7 @@ ego_input AS (
         {'signal': 'brake_light', 'is_of_map': false, 'available': s.has_brake_light, 'reason_available': why('has_brake_light'), 'reason_missing': why('no_brake_light')},
         {'signal': 'ego_size', 'is_of_map': false, 'available': s.has_ego_size, 'reason_available': why('has_ego_size'), 'reason_missing': why('no_ego_size')},
         {'signal': 'speeds', 'is_of_map': false, 'available': s.has_speeds, 'reason_available': why('has_speeds'), 'reason_missing': why('assumed_speeds')},
+        {'signal': 'road_users', 'is_of_map': false, 'available': s.has_road_users, 'reason_available': why('has_road_users'), 'reason_missing': why('no_road_users')},
         -- A vehicle of unknown kind may be a bicycle. A log without other actors needs no classes.
         {'signal': 'actor_classes', 'is_of_map': false, 'available': s.has_classes OR NOT s.has_others,
             'reason_available': CASE WHEN s.has_others THEN why('has_actor_classes') ELSE why('nobody_else') END, 'reason_missing': why('no_actor_classes')},

@@ -7,7 +7,8 @@ LEFT JOIN _law l ON l.rule_no = r.rule_no AND l.nation = n.nation
 GROUP BY ALL
 HAVING bool_and(n.nation IS NOT NULL AND l.nation IS NULL);
 
--- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing.
+-- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing, if it is
+-- not one that a log is taken to have.
 CREATE OR REPLACE TEMP TABLE _gated AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,
@@ -15,7 +16,7 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
             'reason': coalesce(c.reason, why('nothing_known', {'signal': n.signal}))}) AS first
     FROM _needs n CROSS JOIN _subject s
     LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
-    WHERE c.available IS DISTINCT FROM true
+    WHERE coalesce(c.available, n.is_assumed) IS DISTINCT FROM true
     GROUP BY ALL) g
 ANTI JOIN _foreign f ON f.rule_no = g.rule_no AND f.drive_id = g.drive_id AND f.ego_id = g.ego_id;
 

@@ -11,7 +11,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint import run
-from drivelint.audit import AuditRequest, JudgeSettings, audit, merge
+from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge
+from drivelint.audit import run as audit_run
 from drivelint.audit.ask import ask
 from drivelint.audit.driver import MOST_ATTEMPTS
 from drivelint.audit.executors import Outcome
@@ -319,6 +320,16 @@ def test_other_rules_are_refused_in_the_same_folder(
     )
     with pytest.raises(UsageError, match="other rules, parameters or profiles"):
         audit(request, Silent(), InThisProcess())
+
+
+def test_other_versions_are_refused_in_the_same_folder(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = {**identity.versions(), "duckdb": "0.0.1"}
+    for module in (identity, audit_run):
+        monkeypatch.setattr(module, "versions", lambda: other)
+    with pytest.raises(UsageError, match="made with other versions of duckdb: choose another --out"):
+        judged(drives, undisturbed[0])
 
 
 @pytest.mark.parametrize(

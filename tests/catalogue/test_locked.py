@@ -94,6 +94,7 @@ ATTACKS = {
     "a sample": (f"{GOOD} USING SAMPLE 3", 2, "a sample is another one every time"),
     "a sample of a table": (f"{GOOD} TABLESAMPLE 10%", 2, "a sample is another one every time"),
     "time travel": (f"{GOOD} AT (VERSION => 1)", 2, "AT (...) is not allowed"),
+    "some rows": (f"{GOOD}\nLIMIT 5", 2, "LIMIT without ORDER BY"),
     "the order of rows": (of("ego_state POSITIONAL JOIN pair"), 2, "POSITIONAL JOIN depends"),
     "a CTE that shadows": (f"WITH\nstep AS (SELECT 1)\n{GOOD}", 2, "rename the CTE 'step'"),
     "a CTE like the engine's": (f"WITH _grid AS (SELECT 1)\n{GOOD}", 1, "rename the CTE '_grid'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, BinaryIO
@@ -14,7 +15,7 @@ from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.engine.barrier import refused
-from drivelint.errors import ChangedLogError
+from drivelint.errors import ChangedLogError, DriveLintError
 from drivelint.result import collect
 from drivelint.result.files import OutputError
 from drivelint.result.model import Result
@@ -125,6 +126,8 @@ def _whole(path: Path) -> Iterator[BinaryIO]:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise DriveLintError(f"{path.name}: the name is too long for a file: give the log a shorter one") from error
         raise OutputError(
             f"{path}: cannot write the annotated log: {error.strerror or error}; free the disk, choose another --out, "
             "or use --no-annotate"

@@ -117,6 +117,9 @@ class _Found:
         kind = part.get("type")
         if part.get("sample"):
             self._refuse(part, "a sample is another one every time: a rule may not take one")
+        modifiers = {each["type"] for each in part.get("modifiers") or ()}
+        if modifiers & {"LIMIT_MODIFIER", "LIMIT_PERCENT_MODIFIER"} and "ORDER_MODIFIER" not in modifiers:
+            self._refuse(part, "LIMIT without ORDER BY takes other rows every time: order them")
         if part.get("ref_type") == "POSITIONAL":
             self._refuse(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
         if "class" in part:

@@ -65,6 +65,8 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+OTHERS: Final = "road_users"
+"""The signal that every rule needs that looks at others than the ego: whoever was around the ego was recorded."""
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

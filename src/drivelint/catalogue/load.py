@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
-from drivelint.catalogue.header import Header, line_of, parse_header
+from drivelint.catalogue.header import OTHERS, Header, line_of, parse_header
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons.reason_text import shared_texts
 from drivelint.resources import folder
 from drivelint.sql import store
+from drivelint.sql.derivations import with_sources
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,6 +68,11 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     def per_object(self) -> bool:
         """Whether its condition is about an object."""
         return "object_id" in self.columns["condition"]
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
+        return (*self.requires, *((OTHERS,) if "pair" in with_sources(self.reads) else ()))
 
     def has_column(self, column: str) -> bool:
         """Whether the condition returns this column."""

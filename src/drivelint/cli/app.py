@@ -339,6 +339,11 @@ def main() -> NoReturn:
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
         code = streams.READER_LEFT
+    except Exception as error:  # noqa: BLE001 - Python's own exit code for it is that of a broken rule
+        import traceback
+
+        streams.say(inert(traceback.format_exc().rstrip()))
+        _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
         streams.say("drivelint: error: interrupted")
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for

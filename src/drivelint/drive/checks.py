@@ -36,6 +36,8 @@ WRONG_UNITS_SHARE = 0.5
 """Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
 LEAST_MOVING_SAMPLES = 20
 """Fewer moving samples than this are too few to blame units or frame."""
+FASTEST_MPS = 150.0
+"""No road user is faster than this (540 km/h)."""
 LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 """Actors whose box is longer than wide."""
 
@@ -58,7 +60,10 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Q
     if len(states) > 1:
         jump = _jumps(states, step)
         text = "position jumps further than any speed explains in {n} of {of} states ({ids})"
-        findings += states.findings(jump, "teleport", "warning", text)
+        is_unit = jump.sum() > max(WRONG_UNITS_SHARE * step.continuous.sum(), LEAST_MOVING_SAMPLES)
+        why = ": the unit of position, speed or time is wrong" if is_unit else ""
+        findings += states.findings(jump, "teleport", "error" if is_unit else "warning", text + why)
+        findings += _too_fast(states)
         if not derived:
             findings += _velocity(states, step, jump)
         findings += _yaw(states, actors)
@@ -113,6 +118,20 @@ def _jumps(states: States, step: Steps) -> Mask:
     jump = np.zeros(len(states), np.bool_)
     jump[1:] = step.continuous & (np.hypot(*np.diff(states.place)) > reach)
     return jump
+
+
+def _too_fast(states: States) -> list[QualityFinding]:
+    """Report a log in which most of what moves is faster than any road user: its units are wrong."""
+    speed = np.hypot(*states.velocity)
+    rows = speed > FASTEST_MPS
+    n, n_moving = int(rows.sum()), int((speed > YAW_CHECK_LEAST_MPS).sum())
+    if n < LEAST_MOVING_SAMPLES or n <= WRONG_UNITS_SHARE * n_moving:
+        return []
+    text = (
+        f"speed is beyond {FASTEST_MPS:g} m/s in {{n}} of {n_moving} moving samples (the fastest {np.nanmax(speed):.0f} m/s): "
+        "the unit of position, speed or time is wrong"
+    )
+    return states.findings(rows, "too_fast", "error", text)
 
 
 def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:

@@ -22,6 +22,18 @@ HOLE_FACTOR: Final = 1.5
 """A step of more than so many usual ones is a hole, which late messages may fill."""
 
 
+def backward_steps(t_ns: Times, what: str = "") -> list[QualityFinding]:
+    """Return a finding where the times of messages, in the order of the file, go back; `what`: whose clock it is."""
+    back = np.diff(t_ns) < 0
+    if not back.any():
+        return []
+    n, first = int(back.sum()), int(t_ns[1:][back][0])
+    message = (
+        f"backward steps of the clock{what}: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
+    )
+    return [QualityFinding("clock_jump", "warning", message, n, first)]
+
+
 def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     """Make the states of all actors unknown where the clock covers the same time twice (states in the log's own order).
 

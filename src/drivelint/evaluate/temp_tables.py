@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT, OTHERS
 from drivelint.drive import conditions
 from drivelint.sql import store
 from drivelint.sql.derivations import with_sources
@@ -45,14 +45,16 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         rule, sources = binding.rule, with_sources(binding.rule.reads)
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
-        row |= {"of_others": "pair" in sources, "of_hidden": "hidden" in sources}
+        row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
         rows.append(row | {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags})
     return pa.Table.from_pylist(rows)
 
 
 def _needs(bindings: Sequence[Binding]) -> pa.Table:
     return pa.Table.from_pylist([
-        {"rule_no": b.no, "pos": pos, "signal": signal} for b in bindings for pos, signal in enumerate(b.rule.requires)
+        {"rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == OTHERS}
+        for b in bindings
+        for pos, signal in enumerate(b.rule.needed)
     ])  # fmt: skip
 
 

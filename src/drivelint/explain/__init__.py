@@ -68,8 +68,15 @@ def explain(request: ExplainRequest) -> Explanation:
     target = find_verdict(result, request.name, request.wanted)
     case = _case(asked, target, request.memory)
     row = target.verdict_row
+    of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     drive, source = open_drive(
-        request.folder, asked, row["drive_id"], row["ego_id"], trace=request.trace, map_=request.map
+        request.folder,
+        asked,
+        row["drive_id"],
+        row["ego_id"],
+        trace=request.trace,
+        map_=request.map,
+        map_sha256=of_drive["map_sha256"],
     )
     with ExitStack() as opened:
         sandbox = opened.enter_context(case.sandbox([drive]))
@@ -94,8 +101,7 @@ def explain(request: ExplainRequest) -> Explanation:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
             found = verdict_changes(case, sandbox, now)
     rule = case.rule
-    drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
-    about = {name: drive[name] for name in _DRIVE}
+    about = {name: of_drive[name] for name in _DRIVE}
     return Explanation(
         rule={
             "rule_id": rule.id,
@@ -119,7 +125,7 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=found,
         sensitivity=sensitivity,
         source=source,
-        notes=[*_notes(case, now), *_left_out(drive, row["reason_code"])],
+        notes=[*_notes(case, now), *_left_out(of_drive, row["reason_code"])],
     )
 
 

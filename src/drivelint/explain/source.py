@@ -28,12 +28,19 @@ DATABASE_FILE = "drivelint.duckdb"
 
 
 def open_drive(
-    folder: Path, asked: RunRequest, drive_id: str, ego_id: str, *, trace: Path | None, map_: Path | None
+    folder: Path,
+    asked: RunRequest,
+    drive_id: str,
+    ego_id: str,
+    *,
+    trace: Path | None,
+    map_: Path | None,
+    map_sha256: str | None = None,
 ) -> tuple[Drive, str]:
     """Return the drive that was judged, with one ego, and where it is from.
 
-    `trace`, `map_`: where log and map are now, if not where they were.
-    Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log is another one.
+    `trace`, `map_`: where log and map are now, if not where they were. `map_sha256`: of the map's content; None: it is not compared.
+    Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log or the map is another one.
     """
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
@@ -47,7 +54,13 @@ def open_drive(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
             "say where it is with --trace FILE"
         )
-    return _read(asked, path, map_, drive_id, ego_id), f"the log {path.name}, read again"
+    drive = _read(asked, path, map_, drive_id, ego_id)
+    if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
+        name = drive.environment.tables["environment"]["name"][0].as_py()
+        raise UsageError(
+            f"map {name} is not as it was when {drive_id} was judged: give that one with --map, or check again"
+        )
+    return drive, f"the log {path.name}, read again"
 
 
 def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:

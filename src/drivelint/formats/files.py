@@ -137,6 +137,23 @@ def is_utf8(path: str) -> bool:
     return not re.search("[\ud800-\udfff]", path)
 
 
+def file_states(path: Path) -> list[tuple[str, int, int]]:
+    """Return name, size and time of the last change of each file of a trace. Errors: `TraceError`."""
+    try:
+        return [(file.name, found.st_size, found.st_mtime_ns) for file in _files(path) for found in [file.stat()]]
+    except OSError as error:
+        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def _files(path: Path) -> list[Path]:
+    """Return the files of a trace: itself, or a folder's tables in name order or parts in order."""
+    if not path.is_dir():
+        return [path]
+    if is_canonical_folder(path):
+        return [path / name for name in CANONICAL_FILES if (path / name).is_file()]
+    return [path / METADATA_FILE, *(path / file.name for file in files_of_bag(path) if (path / file.name).is_file())]
+
+
 def identify(path: Path) -> Identity:
     """Hash a trace: a file's bytes, or a folder's tables in name order or parts in order, each with its name.
 
@@ -145,14 +162,8 @@ def identify(path: Path) -> Identity:
     try:
         if path.is_dir():
             folder = hashlib.sha256()
-            names = (
-                CANONICAL_FILES
-                if is_canonical_folder(path)
-                else [METADATA_FILE, *(file.name for file in files_of_bag(path))]
-            )
-            for name in names:
-                if (path / name).is_file():
-                    folder.update(f"{name}\0{_sha256(path / name)}\n".encode())
+            for file in _files(path):
+                folder.update(f"{file.name}\0{_sha256(file)}\n".encode())
             digest = folder.hexdigest()
         else:
             digest = _sha256(path)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import codecs
 from typing import TYPE_CHECKING, Final
 
-from drivelint.errors import TraceError, UsageError
+from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.commonroad import scenario
-from drivelint.formats.files import identify, is_drive_folder
+from drivelint.formats.files import file_states, identify, is_drive_folder
 from drivelint.formats.film import reader as film
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
@@ -44,9 +44,12 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     if options.sensor_range_m is not None and not options.sensor_range_m > 0.0:
         raise UsageError(f"--sensor-range {options.sensor_range_m}: the range must be more than 0 m")
     probe = _probe(path, options)
+    before = file_states(path)
     identity = identify(path)
     if reader := next((each for each in READERS if each.accepts(probe)), None):
         recording = reader.read(probe)
+        if file_states(path) != before:  # what was read is not what the hash is of
+            raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
         if options.mapping is not None and not reader.takes_mapping:
             recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
         from drivelint.drive.finish import finish_trace

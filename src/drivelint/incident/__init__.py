@@ -83,7 +83,13 @@ def open_case(request: IncidentRequest) -> sheet.Case:
     judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(
-        request.folder, asked, finding.row["drive_id"], ego, trace=_log(request, asked, finding), map_=request.map
+        request.folder,
+        asked,
+        finding.row["drive_id"],
+        ego,
+        trace=_log(request, asked, finding),
+        map_=request.map,
+        map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
     return sheet.Case(result, asked, finding, drive, again, _other_party(request, result, finding, judge), source)

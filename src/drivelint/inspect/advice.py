@@ -43,7 +43,7 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
         conditions |= {"speed_limits"} if rule.applies.restricts_speed_limit else set()
-        needed = set(rule.requires) & lacking.keys() | conditions & never.keys()
+        needed = set(rule.needed) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
             missing -= SIGNALS_NEEDING_MAP

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import shutil
+from hashlib import sha256
 from typing import TYPE_CHECKING, Final
 
 import pyarrow.parquet as pq
@@ -114,7 +115,10 @@ def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]
 def _temporary(final: Path) -> tuple[Path, Path]:
     """Return the name beside a file under which it is written, and its own."""
     final.parent.mkdir(exist_ok=True)
-    return final.with_name(f".{final.name}.{os.getpid()}.tmp"), final
+    short = sha256(final.name.encode("utf-8", "surrogateescape")).hexdigest()[
+        :16
+    ]  # its own may be as long as names can be
+    return final.with_name(f".{short}.{os.getpid()}.tmp"), final
 
 
 def _unwritable(out: Path, error: OSError) -> OutputError:

@@ -1,6 +1,7 @@
 """The folder that `check --out` writes, replaced as one by a later run. What drivelint did not write there is never touched.
 
-`files.json` lists what drivelint wrote. A run works in a folder of its own within, so that one that ends early changes nothing.
+`files.json` lists what drivelint wrote, and the sha256 of tables and summary. A run works in a folder of its own within, so that one that
+ends early changes nothing.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import json
 import os
 import shutil
 from contextlib import contextmanager, suppress
+from hashlib import sha256
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
@@ -16,11 +18,12 @@ from drivelint.phrases import listed
 from drivelint.result.files import prepare_folder, publish
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
 MANIFEST: Final = "files.json"
 _KEY: Final = "written_by_drivelint"
+_HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"
 
 
@@ -99,7 +102,9 @@ def replace(
     # should the machine fail halfway, the next run knows both the old and the new files
     publish(out, {MANIFEST: _manifest(before | names)}, {})
     gone: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
-    publish(out, {MANIFEST: _manifest(names), **contents}, {**gone, **moved}, mark)
+    hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
+    hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
+    publish(out, {MANIFEST: _manifest(names, hashes), **contents}, {**gone, **moved}, mark)
     for folder in {(out / name).parent for name in gone} - {out}:
         with suppress(OSError):  # somebody's file is there
             folder.rmdir()
@@ -107,7 +112,12 @@ def replace(
 
 def add(out: Path, name: str, content: bytes) -> None:
     """Write one more file into the folder of a result. Errors: `OutputError`."""
-    publish(out, {MANIFEST: _manifest({*_written(out), name}), name: content}, {})
+    publish(out, {MANIFEST: _manifest({*_written(out), name}, _hashes(out)), name: content}, {})
+
+
+def changed(out: Path) -> list[str]:
+    """Return the tables, and the summary, of a result that are not as they were written; none where nothing says how they were."""
+    return [name for name, said in _hashes(out).items() if sha256((out / name).read_bytes()).hexdigest() != said]
 
 
 def _present(out: Path, patterns: Sequence[str]) -> set[str]:
@@ -121,5 +131,13 @@ def _written(out: Path) -> set[str]:
         return set()  # whatever it is, it is not known to be drivelint's
 
 
-def _manifest(names: set[str]) -> bytes:
-    return (json.dumps({_KEY: sorted(names)}, indent=2, ensure_ascii=False) + "\n").encode()
+def _hashes(out: Path) -> dict[str, str]:
+    try:
+        return {str(name): str(said) for name, said in json.loads((out / MANIFEST).read_bytes())[_HASHES].items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return {}  # of an older version, or copied without it
+
+
+def _manifest(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
+    said = {_KEY: sorted(names), **({_HASHES: hashes} if hashes else {})}
+    return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()

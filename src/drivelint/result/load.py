@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate as gates
+from drivelint.result.folder import changed
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
 from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
@@ -32,7 +33,7 @@ def load_result(folder: Path) -> Result:
     tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
     gate = gates.load(folder)
     try:
-        return Result(
+        found = Result(
             **tables,
             fail_on=summary["fail_on"],
             strict=summary["strict"],
@@ -44,6 +45,11 @@ def load_result(folder: Path) -> Result:
         )
     except DriveLintError as error:
         raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
+    if wrong := changed(folder):
+        raise UsageError(
+            f"{folder / wrong[0]}: is not as drivelint check wrote it with the others: check the drives again"
+        )
+    return found
 
 
 def _summary(folder: Path) -> dict[str, Any]:

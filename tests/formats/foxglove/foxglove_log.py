@@ -74,7 +74,9 @@ def _protobuf(name: str, content: dict[str, Any]) -> bytes:
 
 
 def _google(value: Any) -> Any:
-    """Turn {sec, nsec} into the texts that protobuf's own JSON has for times."""
+    """Turn {sec, nsec} and NaN into the texts that protobuf's own JSON has for them."""
+    if isinstance(value, float) and math.isnan(value):
+        return "NaN"
     if isinstance(value, list):
         return [_google(each) for each in value]
     if not isinstance(value, dict):

@@ -122,7 +122,9 @@ def vectors(parent: pa.Array, name: str, axes: str = "xyz") -> Vectors:
     """Return a vector's coordinates as columns: 0 where a vector that is there leaves one out, NaN where there is none."""
     inner = struct_field(parent, name)
     there = inner.is_valid().to_numpy(zero_copy_only=False)
-    columns = [np.nan_to_num(numbers(inner, axis), nan=0.0, posinf=np.inf, neginf=-np.inf) for axis in axes]
+    columns = [
+        pc.fill_null(struct_field(inner, axis).cast(pa.float64()), 0.0).to_numpy(zero_copy_only=False) for axis in axes
+    ]  # a NaN that was written stays one
     return np.where(there[:, None], np.stack(columns, axis=1), np.nan)
 
 

@@ -29,6 +29,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
@@ -71,9 +72,10 @@ def read(path: Path, topic: str | None) -> Recording:
     transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
     parts: list[tuple[Path, Losses]] = []
+    unread = UnreadTopics()
     for file in bag.mcap_files(path):
         container = Container(file, salvage=True)
-        for name, packets in message_batches(container, _kind):
+        for name, packets in message_batches(container, partial(_kind, topic, unread)):
             channel = packets[0].channel
             schema = container.schemas[channel.schema_id]
             decoded, readable = decode_readable(container, packets, partial(decoded_rows, file, schema))
@@ -89,22 +91,29 @@ def read(path: Path, topic: str | None) -> Recording:
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
         parts.append((file, container.losses))
-    name = _chosen(path, scenes, topic)
-    recording = _recording(path, name, scenes[name], transforms, findings)
+    name = _chosen(path, scenes, topic, unread)
+    recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
     recording.lost = times_of_parts(parts)
     return recording
 
 
-def _kind(channel: Channel, schema: Schema) -> str | None:
-    return schema.name if channel.message_encoding in {"protobuf", "json"} and schema.name in FIELD_TREES else None
+def _kind(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
+    if schema.name not in FIELD_TREES:
+        return None
+    if channel.message_encoding in {"protobuf", "json"}:
+        return schema.name
+    if schema.name != SCENE or topic in {None, channel.topic}:
+        unread.add(channel, schema.name)
+    return None
 
 
-def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None) -> str:
+def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
     names = sorted(scenes)
     if topic is not None:
         if topic not in scenes:
             raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {listed(names) or 'none'}")
         return topic
+    unread.refuse(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
         raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}")

@@ -102,6 +102,8 @@ class Container:
         is left cannot be told from what is not. `TraceError` for what is no single MCAP file, or asks for too much memory.
         """
         with self.path.open("rb") as file:
+            if not self.path.stat().st_size:
+                raise self._damaged(0, "the file is empty")
             # not closed by hand: an error on its way up still holds views into the map; it ends with the last of them
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         yield from self._file(memoryview(data))
@@ -135,7 +137,7 @@ class Container:
                 self.losses.add(at, resume, str(error))
                 at = resume
         if self.losses and not self._messages:
-            raise self._damaged(self.losses.first.start, self.losses.first.what)
+            raise DamageError(self.losses.first.what)
         self._check_data_end(len(view), footer is not None)
         if footer is not None:
             self._check_footer(view, *footer)

@@ -15,10 +15,12 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from mcap.records import Channel
 
+from drivelint.drive.clock_restart import backward_steps
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, message_batches
+from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
 formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
 takes_mapping: Final = False
+_READ: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
 _LENGTH = 4
 _FIRST_TAGS = frozenset({0x0A, 0x12, 0x1A})
 """What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
@@ -69,7 +72,8 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
     lost: list[QualityFinding] = []
-    for kind, packets in message_batches(container, partial(_kind, truths, topic)):
+    unread = UnreadTopics()
+    for kind, packets in message_batches(container, partial(_kind, truths, topic, unread)):
         if kind in FIELD_TREES:
             _check_topics(container, truths, topic)
             schema = container.schemas[packets[0].channel.schema_id]
@@ -92,12 +96,14 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
+    if topic is None:
+        unread.refuse(path, FIELD_TREES, truths)
     _refuse_lost_end_of_converted(container)
     recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
     if maps:
         recording.embedded_map = own
-    recording.findings += [*container.findings, *lost[:1], *(several if maps else head.findings)]
+    recording.findings += [*container.findings, *unread.findings(), *lost[:1], *(several if maps else head.findings)]
     recording.lost = container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
@@ -113,17 +119,20 @@ def _refuse_lost_end_of_converted(container: Container) -> None:
         )
 
 
-def _kind(truths: list[str], topic: str | None, channel: Channel, schema: Schema) -> str | None:
+def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
     """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
-    if schema.name == metadata.EVENT_MESSAGE and channel.message_encoding == "json":
-        return schema.name
-    if schema.encoding != "protobuf" or channel.message_encoding != "protobuf":
+    if schema.name not in _READ:
+        return None
+    encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
+    if channel.message_encoding != encoding or (encoding == "protobuf" and schema.encoding != encoding):
+        if schema.name not in FIELD_TREES or topic in {None, channel.topic}:
+            unread.add(channel, schema.name)
         return None
     if schema.name in FIELD_TREES:
         if channel.topic not in truths:
             truths.append(channel.topic)
         return schema.name if channel.topic == (truths[0] if topic is None else topic) else None
-    return schema.name if schema.name == OPEN_DRIVE else None
+    return schema.name
 
 
 def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
@@ -198,6 +207,8 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
     while at < len(content):
         length = int.from_bytes(content[at : at + _LENGTH], "little")
         start = at + _LENGTH
+        if not length:
+            raise TraceError(f"{path}: a message of 0 bytes at byte {at}: copy or record it again")
         if start > len(content) or start + length > len(content):
             raise TraceError(
                 f"{path}: the message at byte {at} should have {length} bytes and the file ends "
@@ -215,18 +226,23 @@ def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[
 
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
     """Return the decoder of the kind of message in which objects with positions are found, and its name."""
-    for name in (GROUND_TRUTH, SENSOR_VIEW):
-        decoder = Decoder(path, 1, name, descriptor_set("read"))
-        try:
-            frames = decoder.frames(packets)
-        except TraceError:
-            continue
-        if len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any():
-            return decoder, name
+    for some in (packets, packets[:1]):  # where a later one is garbled, who reads it names it
+        for name in (GROUND_TRUTH, SENSOR_VIEW):
+            decoder = Decoder(path, 1, name, descriptor_set("read"))
+            if _places_objects(decoder, some):
+                return decoder, name
     raise TraceError(
         f"{path}: no moving objects in the first {len(packets)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
         "only these two kinds of OSI trace can be judged"
     )
+
+
+def _places_objects(decoder: Decoder, packets: list[Packet]) -> bool:
+    try:
+        frames = decoder.frames(packets)
+    except TraceError:
+        return False
+    return bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())
 
 
 def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns: NDArray[np.uint64]) -> Recording:
@@ -290,11 +306,7 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
         findings.append(
             QualityFinding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
         )
-    back = np.diff(stamps) < 0
-    if back.any():
-        n, first = int(back.sum()), int(stamps[1:][back][0])
-        message = f"backward steps of the clock: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
-        findings.append(QualityFinding("clock_jump", "warning", message, n, first))
+    findings += backward_steps(stamps)
     return stamps
 
 

@@ -15,6 +15,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
 from drivelint.formats.ros2.cdr import Decoder
@@ -51,6 +52,11 @@ _REPORTS = {
 """Reports of the ego -> the field that says it."""
 _FIELD_TREES = ros_ego.FIELD_TREES | ros_objects.FIELD_TREES
 _CARLA = "carla_msgs/"
+_NO_ROAD_USERS = QualityFinding(
+    "no_road_users",
+    "warning",
+    "no topic of this log has road users: rules that look at others than the ego are unknown",
+)
 
 
 Topics = dict[str, list[Any]]
@@ -60,11 +66,13 @@ Topics = dict[str, list[Any]]
 class _Log:
     """Everything that is read of a drive, topic by topic."""
 
-    def __init__(self, path: Path, forward_m: float) -> None:
+    def __init__(self, path: Path, asked: list[str], forward_m: float) -> None:
         self.path = path
+        self.asked = asked  # topics
         self.topics: dict[str, Topics] = {}  # by the type of their messages
         self.findings: list[QualityFinding] = []
         self.lost: list[LostTime] = []
+        self.unread = UnreadTopics()
         self.carla = False
         self._forward_m = forward_m
 
@@ -73,7 +81,7 @@ class _Log:
         for file in files:
             container = Container(file, salvage=True)
             decoders: dict[int, Decoder] = {}
-            for kind, packets in message_batches(container, partial(_kind, file, decoders)):
+            for kind, packets in message_batches(container, partial(self._kind, file, decoders)):
                 channel = packets[0].channel
                 table, readable = decode_readable(container, packets, decoders[channel.schema_id].table)
                 if table is None:
@@ -84,7 +92,26 @@ class _Log:
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
             parts.append((file, container.losses))
+        self.findings += self.unread.findings()
         self.lost = times_of_parts(parts)
+
+    def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
+        """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
+        kind = message_kind(schema.name)
+        if kind not in _FIELD_TREES:
+            return None
+        if channel.message_encoding != "cdr":
+            if kind not in OBJECT_ROWS or not self.asked or channel.topic in self.asked:
+                self.unread.add(channel, kind)
+            return None
+        if channel.schema_id not in decoders:
+            if schema.encoding != "ros2msg":
+                raise TraceError(
+                    f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or "
+                    "convert it with message definitions"
+                )
+            decoders[channel.schema_id] = Decoder(path, schema, _FIELD_TREES[kind])
+        return kind
 
     def _part(self, kind: str, table: Table, log_ns: Times) -> Any:
         if kind == ros_ego.ODOMETRY:
@@ -100,10 +127,10 @@ class _Log:
         for topic, parts in sorted(self.topics.get(kind, {}).items()):
             yield from ((topic, part) for part in parts)
 
-    def one(self, kinds: Iterable[str], what: str, asked: list[str]) -> Topics:
+    def one(self, kinds: Iterable[str], what: str) -> Topics:
         """Return the one topic with messages of some kinds, if any. Errors: `TraceError` where there are several, none asked for."""
         found = {topic: parts for kind in kinds for topic, parts in self.topics.get(kind, {}).items()}
-        chosen = [topic for topic in asked if topic in found] or sorted(found)
+        chosen = [topic for topic in self.asked if topic in found] or sorted(found)
         if len(chosen) > 1:
             raise TraceError(
                 f"{self.path}: {what} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
@@ -111,41 +138,28 @@ class _Log:
         return {topic: found[topic] for topic in chosen}
 
 
-def _kind(path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
-    """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-    kind = message_kind(schema.name)
-    if channel.message_encoding != "cdr" or kind not in _FIELD_TREES:
-        return None
-    if channel.schema_id not in decoders:
-        if schema.encoding != "ros2msg":
-            raise TraceError(
-                f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or convert "
-                "it with message definitions"
-            )
-        decoders[channel.schema_id] = Decoder(path, schema, _FIELD_TREES[kind])
-    return kind
-
-
 def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` for damage, for nothing that can be judged, for topics to choose from."""
     forward_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
-    log = _Log(path, forward_m)
-    log.read(bag.mcap_files(path))
     asked = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
+    log = _Log(path, asked, forward_m)
+    log.read(bag.mcap_files(path))
     known = {topic for topics in log.topics.values() for topic in topics}
     for topic in asked:
         if topic not in known:
             raise TraceError(
                 f"{path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
             )
-    objects = log.one(OBJECT_ROWS, "road users", asked)
-    odometry = log.one([ros_ego.ODOMETRY], "odometry", asked)
+    objects = log.one(OBJECT_ROWS, "road users")
+    odometry = log.one([ros_ego.ODOMETRY], "odometry")
+    log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
     parts = {topic: join_batches(batches) for topic, batches in (objects | odometry).items()}
     if not sum(map(len, parts.values())):
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
         )
     findings = log.findings
+    findings += () if objects else (_NO_ROAD_USERS,)
     own_times = choose_clock(parts, findings)
     frames = TransformTree()
     for topic, (table, log_ns) in log.parts(ros_ego.TRANSFORMS):
@@ -172,7 +186,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         for number in table.columns["id"].tolist()
     }
     recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
-    reports = _reports(log, asked, own_times=own_times)
+    reports = _reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
         if ego in all_states.ids and reports.keys() & {ros_ego.TURN_INDICATORS, ros_ego.HAZARD_LIGHTS}:
@@ -202,10 +216,10 @@ def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> R
     return rows.take(~nameless)
 
 
-def _reports(log: _Log, asked: list[str], *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
+def _reports(log: _Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
-        for parts in log.one([kind], kind.split("/")[1], asked).values():
+        for parts in log.one([kind], kind.split("/")[1]).values():
             t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in parts]
             values = [table.columns[column] for table, _ in parts]
             reports[kind] = (np.concatenate(t_ns), np.concatenate(values))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from drivelint.drive.clock_restart import backward_steps
 from drivelint.drive.order import steps, time_derivative
 from drivelint.drive.trace import LEAST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
 from drivelint.formats.coordinate_frames import Poses, clean_frame_name, rotated, unit_quaternions
@@ -225,8 +226,11 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
         latest, earliest = max(ranges), min(ranges, key=lambda item: item[1])
         if latest[0] > earliest[1]:
             why = f"the time stamps of {latest[2]} and {earliest[2]} have no moment in common: two clocks"
-    for rows in parts.values():
+    for what, rows in parts.items():
         rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
+        if len(rows):
+            messages = np.r_[0, np.flatnonzero(np.diff(rows.log_ns)) + 1]
+            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), f" of {what}")
     if why is not None:
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)

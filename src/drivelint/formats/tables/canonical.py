@@ -59,7 +59,7 @@ def read(probe: Probe) -> Recording:
     """
     path = probe.path
     states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
-    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
+    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=[*findings, parquet.UNPROTECTED])
     if not path.is_dir():
         return recording
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))

@@ -35,7 +35,9 @@ MAX_HEADING_RAD: Final = 4 * np.pi
 def accepts(probe: Probe) -> bool:
     """Accept Parquet, and whatever reads as text without markup."""
     head = probe.head
-    return head.startswith(b"PAR1") or not (b"\0" in head or head.lstrip()[:1] in {b"<", b"{"})
+    written = head.rstrip(b"\0")  # zeros are what is left of a file that was not written to its end
+    text = written if written.count(b"\n") > 1 else head
+    return head.startswith(b"PAR1") or not (b"\0" in text or text.lstrip()[:1] in {b"<", b"{"})
 
 
 def read(probe: Probe) -> Recording:
@@ -142,6 +144,7 @@ class _Body:
             blank &= ~self.sheet.filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
+        self.findings.append(self.sheet.UNPROTECTED)
         parts, texts = [], []
         for k in self.groups:
             ids = self._ids(k, n)
@@ -251,6 +254,11 @@ class _Body:
             self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
     def _report_lines(self, n: int) -> None:
+        if self.sheet.zeros_at is not None:
+            message = (
+                f"{self.path.name}: zero bytes from byte {self.sheet.zeros_at} on: what should stand there is lost"
+            )
+            self.findings.append(QualityFinding("malformed_row", "error", message))
         lines = self.sheet.bad_lines
         if not lines:
             return

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+import mmap
+from typing import TYPE_CHECKING, Final, TypeVar
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+    from io import BufferedReader
     from pathlib import Path
 
 T = TypeVar("T")
+UNPROTECTED: Final = QualityFinding.unprotected("the file may have no checksums")
+"""Parquet's pages may have them, and nothing says whether these do; those that are there are checked."""
+MOST_BYTES: Final = 512 << 20
+MOST_UNPACKED: Final = 500
+"""A file is refused that unpacks to more than that many bytes and to so many times its own size: no positions pack like that."""
+_MAGIC: Final = b"PAR1"
 
 
 def schema(path: Path) -> pa.Schema:
@@ -29,7 +38,12 @@ def n_rows(path: Path) -> int:
 def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
     """Read a file, or some columns of it. Errors: `TraceError` where the file is damaged."""
     names = None if columns is None else list(columns)
-    return _open(path, lambda file: file.read(columns=names).combine_chunks())
+
+    def read(file: pq.ParquetFile) -> pa.Table:
+        _refuse_bomb(path, file.metadata, len(names or file.schema_arrow.names))
+        return file.read(columns=names).combine_chunks()
+
+    return _open(path, read)
 
 
 def column(rows: pa.Table, name: str) -> pa.Array:
@@ -41,6 +55,34 @@ def column(rows: pa.Table, name: str) -> pa.Array:
 def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
     try:
         with path.open("rb") as file:
-            return take(pq.ParquetFile(file))
+            head = file.read(len(_MAGIC) * 8)
+            if not head.startswith(_MAGIC):
+                what = f"it begins {head!r}" if head else "it is empty (0 bytes)"
+                raise TraceError(f"{path}: not Parquet: {what}: copy it again")
+            opened = pq.ParquetFile(file, page_checksum_verification=True)
+            _refuse_second_file(path, file, opened.metadata)
+            return take(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
+
+
+def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
+    unpacked = metadata.num_rows * n_columns * 8
+    if unpacked > max(MOST_BYTES, MOST_UNPACKED * path.stat().st_size):
+        raise TraceError(
+            f"{path}: {metadata.num_rows} rows in a file of {path.stat().st_size} bytes would unpack to {unpacked >> 20} MiB: "
+            "write it again"
+        )
+
+
+def _refuse_second_file(path: Path, file: BufferedReader, metadata: pq.FileMetaData) -> None:
+    """Refuse two files in one: the footer is that of the last, and counts from the beginning of the first."""
+    end = 0
+    if metadata.num_row_groups:
+        last = metadata.row_group(metadata.num_row_groups - 1)
+        for column in (last.column(i) for i in range(last.num_columns)):
+            end = max(end, (column.dictionary_page_offset or column.data_page_offset) + column.total_compressed_size)
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        second = data.find(_MAGIC * 2, end)
+    if second >= 0:
+        raise TraceError(f"{path}: a second Parquet file begins at byte {second + len(_MAGIC)}: give each by itself")

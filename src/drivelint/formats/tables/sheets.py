@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import TIME_UNITS
@@ -31,10 +32,13 @@ _SHOWN = 5
 class CsvSheet:
     """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
 
+    UNPROTECTED: Final = QualityFinding.unprotected("the file has no checksums")
+
     def __init__(self, path: Path, layout: TextLayout) -> None:
         """Read the header. Errors: `TraceError` where there is none."""
         self._path, self._layout = path, layout
         self.bad_lines: list[int] = []  # their number of cells is wrong; they are not among the rows
+        self.zeros_at: int | None = None
         self.metadata: dict[bytes, bytes] = {}
         self._skipped: list[int] = []
         self._columns: dict[str, pl.Series] = {}
@@ -68,6 +72,8 @@ class CsvSheet:
         with self._path.open("rb") as file:
             while True:
                 block = file.read(TEXT_BLOCK)
+                if self.zeros_at is None and b"\0" in block:
+                    self.zeros_at = at + block.index(b"\0")
                 pending = len(decoder.getstate()[0])
                 try:
                     decoder.decode(block, final=not block)
@@ -153,10 +159,13 @@ class CsvSheet:
 class ParquetSheet:
     """A Parquet file, opened by its handle so that no part of its path is taken for data."""
 
+    UNPROTECTED: Final = parquet.UNPROTECTED
+
     def __init__(self, path: Path) -> None:
         """Read the schema. Errors: `TraceError` where the file is damaged."""
         self._path = path
         self.bad_lines: list[int] = []
+        self.zeros_at: int | None = None
         schema = parquet.schema(path)
         self.names = list(schema.names)
         self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})

@@ -1,0 +1,49 @@
+"""Topics that would be read if their messages were in another encoding: what they hold is not known, which is told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from drivelint.drive.trace import QualityFinding
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from pathlib import Path
+
+    from mcap.records import Channel
+
+
+@dataclass
+class UnreadTopics:
+    """Topics with messages that are passed over: topic -> kind, encoding and number of its messages."""
+
+    found: dict[str, tuple[str, str, int]] = field(default_factory=dict)
+
+    def add(self, channel: Channel, kind: str) -> None:
+        """Count a message of a kind that would be read."""
+        n = self.found.get(channel.topic, ("", "", 0))[2]
+        self.found[channel.topic] = kind, channel.message_encoding, n + 1
+
+    def findings(self) -> list[QualityFinding]:
+        """Return a finding for each topic."""
+        return [
+            QualityFinding("unread_topic", "error", f"{_told(topic, *what)}: what it says is unknown", what[2])
+            for topic, what in sorted(self.found.items())
+        ]
+
+    def refuse(self, path: Path, kinds: Collection[str], read: Collection[str]) -> None:
+        """Refuse a log with a topic of these kinds, of road users: who is on it is not known.
+
+        `read`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
+        """
+        for topic, what in sorted(self.found.items()):
+            if what[0] in kinds:
+                choice = f", or judge without it: --topic {min(read)}" if read else ""
+                raise TraceError(f"{path}: {_told(topic, *what)}: who is on it is unknown: convert it{choice}")
+
+
+def _told(topic: str, kind: str, encoding: str, n: int) -> str:
+    messages = "1 message" if n == 1 else f"{n} messages"
+    return f"topic {topic!r} ({messages} of {kind}) is in {encoding or 'no encoding'!r}, which is not read"
