@@ -41,6 +41,10 @@ def column(rows: pa.Table, name: str) -> pa.Array:
 def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
     try:
         with path.open("rb") as file:
-            return take(pq.ParquetFile(file))
+            opened = pq.ParquetFile(file, page_checksum_verification=True)
+            names = opened.schema_arrow.names
+            if twice := [name for name in names if names.count(name) > 1]:
+                raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
+            return take(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
