@@ -64,7 +64,9 @@ def read(probe: Probe) -> Recording:
         return recording
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
     if recording.actors is not None:
-        recording.ego_ids += [row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego")]
+        recording.ego_ids += [
+            row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego") and row["actor_id"]
+        ]
     recording.signals = _every_cell(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
     recording.events = _every_cell(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value")
     conditions = path / "drive_condition.parquet"
