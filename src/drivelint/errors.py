@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Final
 
 
 class ExitCode(IntEnum):
@@ -17,10 +18,19 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
+LONGEST_LINE: Final = 2000
+"""Characters of an error that are shown: a damaged file may hold a name of a megabyte."""
+
+
 class DriveLintError(Exception):
     """A mistake or a fault that has one clear line for the user; never shown with a traceback."""
 
     exit_code: ExitCode = ExitCode.USAGE
+
+    def __str__(self) -> str:
+        """Return the line; where a damaged file put a long text into it, without its middle."""
+        text = super().__str__()
+        return text if len(text) <= LONGEST_LINE else f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
 
     @property
     def is_of_the_run(self) -> bool:

@@ -40,7 +40,7 @@ def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SET
         content = tomllib.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
     values: dict[str, Any] = {}
     for key, said in content.items():

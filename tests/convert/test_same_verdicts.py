@@ -94,9 +94,15 @@ def test_rows_stay(tmp_path: Path, to: Target, log: Log) -> None:
     again = read_trace(log.convert(to, tmp_path / "out"), IngestOptions())
     for name in TABLES:
         assert again.tables[name].drop_columns("drive_id") == original.tables[name].drop_columns("drive_id"), name
-    assert ego_independent_quality(again).drop_columns("drive_id") == ego_independent_quality(original).drop_columns(
-        "drive_id"
-    )
+    said, had = (
+        [
+            row
+            for row in ego_independent_quality(trace).drop_columns("drive_id").to_pylist()
+            if row["check_id"] != "unprotected"
+        ]
+        for trace in (again, original)
+    )  # Parquet has no checksum of all its parts, whatever the log had
+    assert said == had
     assert again.map_offset == original.map_offset
 
 

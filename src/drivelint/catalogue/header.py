@@ -126,7 +126,7 @@ def parse_header(text: str, where: str) -> Header:
     """
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         line = re.search(r"at line (\d+)", str(error))
         raise RuleError(f"{where}:{line[1] if line else 1}: the header is not TOML: {error}") from error
     try:

@@ -204,7 +204,7 @@ def _title(folder_: Path) -> str:
         return ""
     try:
         return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
-    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
 
 

@@ -14,7 +14,7 @@ from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
-from drivelint.drive.lost_time import lost_time_findings
+from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
 from drivelint.drive.trace import (
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
+LONGEST_ID = 1000
+"""Characters of an actor's id; every finding about the actor repeats it."""
 TRACE_TABLES = (
     "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality",
 )  # fmt: skip
@@ -46,8 +48,7 @@ TRACE_TABLES = (
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
-    if not len(recording.states):
-        raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
+    _refuse_no_drive(path, recording.states)
     states, restarts = unknown_at_restarts(recording.states)
     states, repeated = without_duplicates(sorted_states(states))
     lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
@@ -132,6 +133,23 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
     return replace(trace, tables={**trace.tables, "quality": ordered})
+
+
+def _refuse_no_drive(path: Path, states: States) -> None:
+    """Refuse a log without states, or of which an id or a time shows that it holds something else than a drive."""
+    if not len(states):
+        raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
+    longest = max(states.ids, key=len)
+    if len(longest) > LONGEST_ID:
+        raise TraceError(
+            f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or another "
+            "column holds the ids"
+        )
+    first, last = int(states.t_ns.min()), int(states.t_ns.max())
+    if max(-first, last) > LATEST_NS:
+        raise TraceError(
+            f"{path}: states from {first / 1e9:.6g} s to {last / 1e9:.6g} s: the clock or its unit is wrong"
+        )
 
 
 def _refuse_wrong_units(path: Path, recording: Recording, findings: list[QualityFinding]) -> None:

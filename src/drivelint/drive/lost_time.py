@@ -18,6 +18,8 @@ LOST_TIME: Final = "lost_time"
 """The check of `quality` whose rows are the stretches; the table lost_time follows from them."""
 MOST_STRETCHES: Final = 200
 """More than this many are told, and judged, as one from the first to the last."""
+LATEST_NS: Final = 1 << 62
+"""The year 2116: a clock beyond it is broken, and bounds nothing."""
 _BESIDE: Final = 50
 """So many frames before and after a stretch tell how its clock and the log's differ there."""
 
@@ -49,6 +51,11 @@ def _words(since: int | None, until: int | None, start: int) -> str:
 def _in_clock_of_states(lost: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
     """Return a stretch in the states' clock: as wide as the frames beside it, which come more or less late, can make it."""
     since, until = lost.since_ns, lost.until_ns
+    times = [ns for ns in (since, until) if ns is not None]
+    if frames is not None and len(frames.t_ns):
+        times += [int(frames.log_ns.max()), int(frames.t_ns.max()), -int(frames.t_ns.min())]
+    if max(times, default=0) > LATEST_NS:
+        return None, None
     if frames is None or not len(frames.t_ns):
         return since, until
     order = np.argsort(frames.log_ns, kind="stable")

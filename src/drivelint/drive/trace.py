@@ -154,11 +154,6 @@ class QualityFinding:
     t_last_ns: int | None = None
 
     @classmethod
-    def unprotected(cls, what: str) -> QualityFinding:
-        """Return the finding that nothing tells damage to these parts of the file."""
-        return cls("unprotected", "info", f"{what}: flipped bits in it cannot be seen")
-
-    @classmethod
     def unusable_map(cls, message: str) -> QualityFinding:
         """Return the finding that the log's own map cannot be used."""
         return cls(OWN_MAP_UNUSABLE, "warning", message)

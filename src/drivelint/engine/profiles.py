@@ -45,7 +45,7 @@ def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
             continue
         try:
             profiles |= msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Profile])
-        except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError, RecursionError) as error:
             raise RuleError(f"{file}: {error}") from error
     return profiles
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 from typing import TYPE_CHECKING, Final
 
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.commonroad import scenario
 from drivelint.formats.files import file_states, identify, is_drive_folder
@@ -32,6 +33,10 @@ READERS: Final[tuple[Reader, ...]] = (
 """The first that accepts a file reads it."""
 FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}
 """Suffix -> how each file with it must begin, behind a byte order mark if there is one: another one is refused as damaged."""
+UNPROTECTED: Final = QualityFinding(
+    "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
+)
+"""What is said of every log that is no MCAP, whose reader says it where it holds."""
 FORMATS: Final = {name: told for reader in READERS for name, told in reader.formats.items()}
 """What `data_log.format` may be beside the name of a mapping -> the format's title, and how its ego is known."""
 
@@ -50,6 +55,8 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         recording = reader.read(probe)
         if file_states(path) != before:  # what was read is not what the hash is of
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
+        if reader is not mcap and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
+            recording.findings.append(UNPROTECTED)
         if options.mapping is not None and not reader.takes_mapping:
             recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
         from drivelint.drive.finish import finish_trace

@@ -58,7 +58,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
         raise UsageError(f"{file}: no such file of waivers") from error
     except OSError as error:
         raise UsageError(f"{file}: cannot be read: {error.strerror or error}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
     if only_waivers and (excess := sorted(set(content) - {"waiver"})):
         raise UsageError(f"{file}: unknown key {excess[0]!r}: it holds tables [[waiver]] only")

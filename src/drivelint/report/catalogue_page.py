@@ -73,7 +73,7 @@ def read_clauses(folder: Path) -> list[Clause]:
         return []
     try:
         return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
-    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError, RecursionError) as error:
         raise RuleError(f"{file}: {error}") from error
 
 

@@ -55,6 +55,7 @@ def described_parquet(rows: pa.Table, table: str, about: Mapping[str, str]) -> b
         compression_level=3,
         use_dictionary=True,
         write_statistics=True,
+        write_page_checksum=True,
         row_group_size=ROW_GROUP,
         store_schema=True,
     )

@@ -55,7 +55,7 @@ def load_result(folder: Path) -> Result:
 def _summary(folder: Path) -> dict[str, Any]:
     try:
         found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise UsageError(
             f"{folder}: no result of drivelint check: summary.json {_why(error)}: name the folder that check --out wrote"
         ) from error
@@ -71,8 +71,8 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        return without_geometry(pq.read_table(path))
-    except (OSError, pa.ArrowException) as error:
+        return without_geometry(pq.read_table(path, page_checksum_verification=True))
+    except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
 
 

@@ -118,7 +118,7 @@ def is_video_mapping(name: str) -> bool:
         return True
     try:
         raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return False  # whoever reads it as another mapping says what is wrong with it
     return "frames" in raw or raw.get("extends") in shipped_mappings()
 

@@ -33,6 +33,8 @@ PULL_OUT_START_OVER_LINE_M: Final = 0.06
 """How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
 PULL_OUT_END_REMAINING_M: Final = 0.11
 """How much the last frame of pulling out is short of passing: just more than counts as settled (0.1 m)."""
+MOST_FRAMES: Final = 10_000_000
+"""46 hours of 60 frames a second: a number beyond it is no frame's."""
 ROAD_EXTENSION_M: Final = 400.0
 """How much longer the road is than the ego's way, at both ends."""
 
@@ -101,7 +103,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
         raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with his distance")
     sheet.load(columns)
     number, bad = sheet.number(film.frames.column)
-    bad |= ~np.isfinite(number) | (number != np.floor(number))
+    bad |= ~(np.abs(number) < MOST_FRAMES) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
     if not len(frames):

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import struct
+import mmap
 from typing import TYPE_CHECKING, Final
 
 import yaml
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.summary import read_summary
 from drivelint.formats.ros2.types import message_kind
 
 if TYPE_CHECKING:
@@ -61,7 +60,7 @@ def mcap_files(path: Path) -> list[Path]:
     try:
         information = yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
         storage, names = information.get("storage_identifier"), information["relative_file_paths"]
-    except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError, RecursionError) as error:
         raise TraceError(
             f"{path}: its {METADATA_FILE} cannot be read ({type(error).__name__}: {error}): reindex the bag"
         ) from error
@@ -77,7 +76,15 @@ def mcap_files(path: Path) -> list[Path]:
         file = next((each for each in (path / name, path / name.rsplit("/", 1)[-1]) if each.is_file()), None)
         if file is None:
             raise TraceError(f"{path}: {name}, a part of this bag, is missing: copy the whole folder")
+        if not file.stat().st_size:
+            raise TraceError(
+                f"{path}: {name}, a part of this bag, is empty (0 bytes): copy it again, or reindex the bag"
+            )
         found.append(file)
+    if unlisted := sorted(each.name for each in path.glob("*.mcap") if each not in found):
+        raise TraceError(
+            f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or take the file out of its folder"
+        )
     return found
 
 
@@ -100,12 +107,12 @@ def message_family(path: Path) -> str:
 
 def _indexed(file: Path) -> set[str]:
     """Return the schemas that the index lists; none where it is not there or damaged."""
-    try:
-        with file.open("rb") as stream:
-            summary = make_reader(stream).get_summary()
-    except (McapError, struct.error, OSError, ValueError, OverflowError):
-        return set()  # damage is told by whoever reads the data
-    return set() if summary is None else {schema.name for schema in summary.schemas.values()}
+    with (
+        file.open("rb") as stream,
+        mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
+        memoryview(data) as view,
+    ):
+        return {schema.name for schema in read_summary(view, unprotected=True).schemas.values()}
 
 
 def _recorded(file: Path) -> set[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, TypeVar
 
+from drivelint.drive.lost_time import LATEST_NS
 from drivelint.formats.mcap.reader import MessageError
 
 if TYPE_CHECKING:
@@ -24,11 +25,18 @@ def decode_readable(
 
     Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
     """
+
+    def decode_timed(some: list[Packet]) -> T:
+        if max(packet.log_time_ns for packet in some) > LATEST_NS:
+            late = next(packet for packet in some if packet.log_time_ns > LATEST_NS)
+            raise late.error(container.path, "its log time is no time of this or the next century")
+        return decode(some)
+
     try:
-        return decode(packets), packets
+        return decode_timed(packets), packets
     except MessageError as error:
         first = error
-    malformed = dict(_malformed(packets, decode))
+    malformed = dict(_malformed(packets, decode_timed))
     if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(packets)):
         raise first
     for k, why in malformed.items():

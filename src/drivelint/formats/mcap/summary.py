@@ -28,14 +28,18 @@ class Summary:
     metadata: list[int] = field(default_factory=list)
 
 
-def read_summary(view: memoryview) -> Summary:
-    """Return what the index says; nothing where there is none with a right CRC."""
+def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:
+    """Return what the index says; nothing where there is none with a right CRC, or (`unprotected`) with none."""
     end = len(view) - len(MAGIC)
     at = end - _FOOTER_BYTES - _RECORD.size
     if at < len(MAGIC) or bytes(view[end:]) != MAGIC or _RECORD.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES):
         return Summary()
     footer = Footer.read(_stream(view[at + _RECORD.size : end]))
-    if not footer.summary_crc or not 0 < footer.summary_start < at or not summary_is_whole(footer, view, at, end):
+    if (
+        not (footer.summary_crc or unprotected)
+        or not 0 < footer.summary_start < at
+        or not summary_is_whole(footer, view, at, end)
+    ):
         return Summary()
     try:
         return _records(view, footer.summary_start, at)

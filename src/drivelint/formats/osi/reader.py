@@ -96,9 +96,10 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
-    if topic is None:
-        unread.refuse(path, FIELD_TREES, truths)
+    unread.refuse(path, FIELD_TREES if topic is None else (), truths)
     _refuse_lost_end_of_converted(container)
+    if not batches:
+        raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.what})")
     recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
     if maps:
@@ -195,8 +196,7 @@ def read(probe: Probe) -> Recording:
         raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
     recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
     recording.frame_times = None
-    unprotected = "the file has no checksums: damage inside a message may go unseen"
-    recording.findings += [*head.findings, QualityFinding("unprotected", "info", unprotected)]
+    recording.findings += head.findings
     return recording
 
 

@@ -8,10 +8,11 @@ read by itself. Rules of alignment: CDR of the OMG (XCDR1), positions counted be
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from drivelint.errors import TraceError
 from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES, parse, short_type_name
 
 if TYPE_CHECKING:
@@ -21,13 +22,14 @@ if TYPE_CHECKING:
     from mcap.records import Schema
     from numpy.typing import NDArray
 
-    from drivelint.errors import TraceError
     from drivelint.formats.mcap.reader import Packet
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
 
     Offsets = NDArray[np.int64]
     Rows = NDArray[np.intp]
+
+T = TypeVar("T")
 
 HEADER_BYTES = 4
 BYTE_ORDERS: Final = {0: ">", 1: "<"}
@@ -52,6 +54,23 @@ class Table:
     columns: dict[str, NDArray[Any]] = field(default_factory=dict)
     parent: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
     children: dict[str, Table] = field(default_factory=dict)
+    where: str = ""
+    """The file and the definition, as errors name them."""
+
+    def column(self, path: str) -> NDArray[Any]:
+        """Return a column that must be there. Errors: `TraceError` where the definition does not have it."""
+        return self._has(self.columns, path)
+
+    def items(self, path: str) -> Table:
+        """Return a sequence that must be there. Errors: `TraceError` where the definition does not have it."""
+        return self._has(self.children, path)
+
+    def _has(self, members: dict[str, T], path: str) -> T:
+        if path not in members:
+            raise TraceError(
+                f"{self.where} has no {path} of the kind that is read: record the log with its own definitions"
+            )
+        return members[path]
 
 
 @dataclass(frozen=True)
@@ -185,10 +204,10 @@ class _Batch:
         sizes = np.array([len(packet.data) - HEADER_BYTES for packet in packets], np.int64)
         if len(sizes) and sizes.min() < 0:
             raise self._misfit(int(np.argmin(sizes)), "is shorter than its header")
-        orders = {packet.data[:2] for packet in packets}
-        if len(orders) > 1 or any(head[0] != 0 or head[1] not in BYTE_ORDERS for head in orders):
-            first = packets[0].data[:2]
-            odd = next(i for i, p in enumerate(packets) if p.data[:2] != first or p.data[1] not in BYTE_ORDERS)
+        heads = [packet.data[:2] for packet in packets]
+        wrong = {head for head in set(heads) if head != heads[0] or head[0] != 0 or head[1] not in BYTE_ORDERS}
+        if wrong:
+            odd = next(i for i, head in enumerate(heads) if head in wrong)
             header = packets[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
         padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
@@ -211,7 +230,7 @@ class _Batch:
 
     def _run(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, Table]:
         """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in."""
-        table = Table(len(cursor))
+        table = Table(len(cursor), where=f"{self._path}: the definition of {self._name}")
         end = self._end[message]
         for step in program:
             if isinstance(step, _Block):
@@ -301,4 +320,5 @@ def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]
         {path: np.concatenate([part.columns[path] for part in parts])[order] for path in parts[0].columns},
         parent[order],
         {path: _stacked([part.children[path] for part in parts], below, moved) for path in parts[0].children},
+        parts[0].where,
     )

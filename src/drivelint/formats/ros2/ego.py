@@ -59,8 +59,8 @@ def odometry(table: Table, log_ns: Times, forward_m: float) -> RecordedPoses:
     Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
     """
     n = table.n
-    frames = table.columns["header.frame_id"]
-    child = table.columns["child_frame_id"]
+    frames = table.column("header.frame_id")
+    child = table.column("child_frame_id")
     turn = unit_quaternions(vectors(table, "pose.pose.orientation", "xyzw"))
     velocity = vectors(table, "twist.twist.linear")
     yaw_rate = vectors(table, "twist.twist.angular")[:, 2]
@@ -83,13 +83,13 @@ def odometry(table: Table, log_ns: Times, forward_m: float) -> RecordedPoses:
 
 def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static: bool, own_times: bool) -> None:
     """Add the transforms of TFMessages, in the order of the log."""
-    items = table.children["transforms"]
+    items = table.items("transforms")
     if not items.n:
         return
     t_ns = stamps(items, "header.stamp")[0] if own_times else log_ns[items.parent]
     places = vectors(items, "transform.translation")
     turns = unit_quaternions(vectors(items, "transform.rotation", "xyzw"))
-    pairs = np.stack([items.columns["child_frame_id"].astype("S255"), items.columns["header.frame_id"].astype("S255")])
+    pairs = np.stack([items.column("child_frame_id").astype("S255"), items.column("header.frame_id").astype("S255")])
     unique, which = np.unique(pairs, axis=1, return_inverse=True)
     which = which.reshape(-1)
     for i, (child, parent) in enumerate(unique.T.tolist()):

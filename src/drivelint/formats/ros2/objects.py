@@ -90,21 +90,21 @@ def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: 
 
 
 def _derived(top: Table) -> RecordedPoses:
-    items = top.children["objects"]
-    rows = _rows(top, items, items.columns["id"], "header.frame_id", "pose")
+    items = top.items("objects")
+    rows = _rows(top, items, items.column("id"), "header.frame_id", "pose")
     rows.velocity, rows.acceleration = vectors(items, "twist.linear"), vectors(items, "accel.linear")
-    form, numbers = items.columns["shape.type"], items.columns["shape.dimensions"]
+    form, numbers = items.column("shape.type"), items.column("shape.dimensions")
     rows.size = np.where((form == _BOX)[:, None], numbers, np.nan)
     round_ = np.stack([2.0 * numbers[:, 1], 2.0 * numbers[:, 1], numbers[:, 0]], axis=1)  # height, radius
     rows.size = np.where((form == _CYLINDER)[:, None], round_, rows.size)
     rows.size = np.where((form == _SPHERE)[:, None], 2.0 * numbers[:, :1], rows.size)
-    rows.classes = _looked_up(_DERIVED, items.columns["classification"])
+    rows.classes = _looked_up(_DERIVED, items.column("classification"))
     return rows
 
 
 def _autoware(top: Table) -> RecordedPoses:
-    items = top.children["objects"]
-    ids = np.ascontiguousarray(items.columns["object_id.uuid"]).view("V16").reshape(-1)
+    items = top.items("objects")
+    ids = np.ascontiguousarray(items.column("object_id.uuid")).view("V16").reshape(-1)
     pose, twist, accel = (f"kinematics.{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
     rows = _rows(top, items, ids, None, f"{pose}.pose")
     rows.along[:] = True
@@ -119,11 +119,11 @@ def _autoware(top: Table) -> RecordedPoses:
 
 
 def _detections(top: Table) -> RecordedPoses:
-    items = top.children["detections"]
+    items = top.items("detections")
     ids = items.columns.get("id", items.columns.get("tracking_id", np.zeros(items.n, "S1")))
     rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
     rows.size = vectors(items, "bbox.size")
-    results = items.children["results"]
+    results = items.items("results")
     key = next((c for c in ("hypothesis.class_id", "id") if c in results.columns), None)
     score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
@@ -134,10 +134,10 @@ def _detections(top: Table) -> RecordedPoses:
 
 def _likeliest(items: Table, path: str, label: str, score: str, none: Any) -> NDArray[Any]:
     """Return, per item, the label with the highest score of those listed in it, the first of equals; `none` for none."""
-    listed = items.children[path]
-    labels = listed.columns[label]
+    listed = items.items(path)
+    labels = listed.column(label)
     result = np.full(items.n, none, labels.dtype)
-    order = np.lexsort((np.arange(listed.n), -listed.columns[score], listed.parent))
+    order = np.lexsort((np.arange(listed.n), -listed.column(score), listed.parent))
     parents, first = np.unique(listed.parent[order], return_index=True)
     result[parents] = labels[order[first]]
     return result

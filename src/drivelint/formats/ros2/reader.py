@@ -183,7 +183,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     infos = {
         topic: str(number)
         for topic, (table, _) in log.parts(ros_ego.EGO_INFO)
-        for number in table.columns["id"].tolist()
+        for number in table.column("id").tolist()
     }
     recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
     reports = _reports(log, own_times=own_times)
@@ -196,7 +196,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         recording.events = ros_ego.engagement(reports, ego)
     maps: dict[bytes, str] = {}
     for topic, (table, _) in log.parts(ros_ego.WORLD_INFO):
-        for text in filter(bytes.strip, table.columns["opendrive"].tolist()):
+        for text in filter(bytes.strip, table.column("opendrive").tolist()):
             maps.setdefault(text, topic)
     recording.lost = log.lost
     recording.embedded_map, trouble = single_map(maps)
@@ -221,6 +221,6 @@ def _reports(log: _Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[An
     for kind, column in _REPORTS.items():
         for parts in log.one([kind], kind.split("/")[1]).values():
             t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in parts]
-            values = [table.columns[column] for table, _ in parts]
+            values = [table.column(column) for table, _ in parts]
             reports[kind] = (np.concatenate(t_ns), np.concatenate(values))
     return reports

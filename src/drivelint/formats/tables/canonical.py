@@ -59,12 +59,14 @@ def read(probe: Probe) -> Recording:
     """
     path = probe.path
     states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
-    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=[*findings, parquet.UNPROTECTED])
+    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
     if not path.is_dir():
         return recording
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
     if recording.actors is not None:
-        recording.ego_ids += [row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego")]
+        recording.ego_ids += [
+            row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego") and row["actor_id"]
+        ]
     recording.signals = _every_cell(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
     recording.events = _every_cell(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value")
     conditions = path / "drive_condition.parquet"

@@ -144,7 +144,6 @@ class _Body:
             blank &= ~self.sheet.filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
-        self.findings.append(self.sheet.UNPROTECTED)
         parts, texts = [], []
         for k in self.groups:
             ids = self._ids(k, n)

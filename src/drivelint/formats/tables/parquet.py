@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 T = TypeVar("T")
-UNPROTECTED: Final = QualityFinding.unprotected("the file may have no checksums")
-"""Parquet's pages may have them, and nothing says whether these do; those that are there are checked."""
 MOST_BYTES: Final = 512 << 20
 MOST_UNPACKED: Final = 500
 """A file is refused that unpacks to more than that many bytes and to so many times its own size: no positions pack like that."""
@@ -61,6 +58,9 @@ def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
                 raise TraceError(f"{path}: not Parquet: {what}: copy it again")
             opened = pq.ParquetFile(file, page_checksum_verification=True)
             _refuse_second_file(path, file, opened.metadata)
+            names = opened.schema_arrow.names
+            if twice := [name for name in names if names.count(name) > 1]:
+                raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
             return take(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapping import TIME_UNITS
@@ -31,8 +30,6 @@ _SHOWN = 5
 
 class CsvSheet:
     """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
-
-    UNPROTECTED: Final = QualityFinding.unprotected("the file has no checksums")
 
     def __init__(self, path: Path, layout: TextLayout) -> None:
         """Read the header. Errors: `TraceError` where there is none."""
@@ -158,8 +155,6 @@ class CsvSheet:
 
 class ParquetSheet:
     """A Parquet file, opened by its handle so that no part of its path is taken for data."""
-
-    UNPROTECTED: Final = parquet.UNPROTECTED
 
     def __init__(self, path: Path) -> None:
         """Read the schema. Errors: `TraceError` where the file is damaged."""

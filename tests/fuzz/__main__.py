@@ -1,0 +1,91 @@
+"""`python -m tests.fuzz N [--seed S] [--only KIND]`, from the repository's root: N damaged files, and what became of them.
+
+The numbers are shared out among the kinds. `--only KIND --at NUMBER --save FOLDER` repeats one case and keeps its files. The exit code is 1
+where a case shows a bug.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from tests.fuzz.driver import TIME_LIMIT_S, Driver
+from tests.fuzz.outcome import BAD, GOOD
+from tests.fuzz.worker import KINDS, Job
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from tests.fuzz.outcome import Outcome
+
+PER_JOB = 100
+
+
+def jobs(n: int, kinds: Sequence[str], seed: int, *, judged: bool = True, first: int = 0) -> Iterator[Job]:
+    """Share `n` cases out among the kinds, in jobs whose readable files are judged together."""
+    for i, kind in enumerate(kinds):
+        last = first + (n * (i + 1)) // len(kinds) - (n * i) // len(kinds)
+        for start in range(first, last, PER_JOB):
+            yield Job(kind, seed, start, min(PER_JOB, last - start), judged)
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """Return how many cases of each kind came to which end."""
+    counts = Counter((each.kind, each.outcome) for each in outcomes)
+    shown = [name for name in (*GOOD, *BAD) if any(outcome == name for _, outcome in counts)]
+    kinds = [kind for kind in KINDS if any(kind == each for each, _ in counts)]
+    rows = [["kind", "cases", *shown]]
+    rows += [
+        [
+            kind,
+            str(len({each.number for each in outcomes if each.kind == kind})),
+            *(str(counts[kind, name]) for name in shown),
+        ]
+        for kind in kinds
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the cases and print the table and the bugs."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.fuzz", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("n", nargs="?", type=int, default=1000, help="how many files")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--only", action="append", choices=KINDS, metavar="KIND", help=f"of {', '.join(KINDS)}; repeatable"
+    )
+    parser.add_argument("--first", type=int, default=0, help="the first number of each kind")
+    parser.add_argument("--at", type=int, help="only this number of the one kind")
+    parser.add_argument("--save", metavar="FOLDER", help="with --at: where its files are written")
+    parser.add_argument("--read-only", action="store_true", help="read, and judge nothing")
+    parser.add_argument("--time-limit", type=float, default=TIME_LIMIT_S, metavar="S", help="for each file")
+    options = parser.parse_args(arguments)
+    kinds = options.only or KINDS
+    if options.at is None:
+        work = list(jobs(options.n, kinds, options.seed, judged=not options.read_only, first=options.first))
+    elif len(kinds) == 1:
+        work = [Job(kinds[0], options.seed, options.at, 1, not options.read_only, options.save)]
+    else:
+        parser.error("--at needs one --only")
+    outcomes: list[Outcome] = []
+    began = time.monotonic()
+    with Driver(options.time_limit) as driver:
+        for i, job in enumerate(work, 1):
+            for outcome in driver.run(job):
+                outcomes.append(outcome)
+                if outcome.outcome in BAD or options.at is not None:
+                    print(*outcome, sep=" | ", flush=True)
+            print(f"{i}/{len(work)} jobs, {time.monotonic() - began:.0f} s", end="\r", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    print(table(outcomes))
+    return int(any(each.outcome in BAD for each in outcomes))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
