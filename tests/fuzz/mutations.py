@@ -22,8 +22,10 @@ _NUMBER: Final = re.compile(rb"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 _TOKEN: Final = re.compile(rb"[A-Za-z_][\w.-]*|[-+]?\d[\d.eE+-]*|[^\s\w]")
 _WORD: Final = re.compile(rb"[A-Za-z_][\w.-]*")
 _VALUE: Final = re.compile(rb"""=\s*["']([^"'<>]*)["']""")
-_ATTRIBUTE: Final = re.compile(rb"""\s[\w:.-]+\s*=\s*["'][^"'<>]*["']""")
-_ELEMENT: Final = re.compile(rb"<(\w+)[^<>]*/>|<(\w+)[^<>]*>[^<>]*</\2>")
+_ATTRIBUTE: Final = re.compile(rb"""\s[\w:.-]{1,40}\s*=\s*["'][^"'<>]*["']""")
+_ELEMENT: Final = re.compile(
+    rb"<\w{1,40}\b[^<>]{0,999}/>|<(\w{1,40})\b[^<>]{0,999}>[^<>]{0,999}</\1>"
+)  # bounds: a text may be long
 DEEP: Final = 20_000
 LONG: Final = 300_000
 
