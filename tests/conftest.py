@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import zlib
 from collections import defaultdict
 from typing import TYPE_CHECKING, Final
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 # how long an example takes says how busy the machine is, and nothing of the law
 settings.register_profile("drivelint", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("drivelint")
+
+# pytest-xdist sets the width of its terminal, which would be that of every command that a test runs
+os.environ.pop("COLUMNS", None)
 
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 

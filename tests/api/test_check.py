@@ -178,8 +178,7 @@ def test_an_explanation_is_that_of_the_command_line(
     ]
     told = checked.explain(name)
     folder = checked.write(tmp_path / "out")
-    # a test runner may set the width of its own terminal
-    env = {key: value for key, value in os.environ.items() if key != "COLUMNS"} | {"PYTHONPATH": str(ROOT / "src")}
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     line = [sys.executable, "-m", "drivelint", "explain", name, "--in", str(folder)]
     done = subprocess.run(line, check=True, capture_output=True, text=True, timeout=120, env=env)
     assert told.text.strip() == done.stdout.strip()

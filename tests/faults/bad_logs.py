@@ -174,7 +174,7 @@ _DEGREES: Final = each_car(lambda _, car: car._replace(yaw=34.0))
 _CENTIMETRES: Final = each_car(lambda _, car: car._replace(x=100.0 * car.x, y=100.0 * car.y))
 
 BAD_LOGS: Final = (
-    BadLog(1, "bag", 4, "b.mcap: the file is empty", lambda _: b""),
+    BadLog(1, "bag", 4, "b.mcap, a part of this bag, is empty", lambda _: b""),
     BadLog(1, "canonical", 4, "it is empty (0 bytes)", lambda _: b""),
     BadLog(1, "csv", 4, "the file is empty (0 bytes)", lambda _: b""),
     BadLog(2, "bag", 4, "begins with b'<html>404", _html),
@@ -192,8 +192,8 @@ BAD_LOGS: Final = (
     BadLog(5, "csv", 3, "zero bytes from byte", _half_zero),
     BadLog(6, "foxglove", 4, "a chunk with a wrong CRC (its content changed) at byte 42: the log", last_chunk_changed),
     BadLog(6, "bag", 3, "wrong CRC", last_chunk_changed),
-    BadLog(7, "csv", 0, "flipped bits in it cannot be seen"),
-    BadLog(7, "parquet", 0, "flipped bits in it cannot be seen"),
+    BadLog(7, "csv", 0, "damage inside it may go unseen"),
+    BadLog(7, "parquet", 0, "damage inside it may go unseen"),
     BadLog(8, "bag", 3, "the index counts 23 messages, the file has 20", more_counted),
     BadLog(9, "bag", 0, "the index has a wrong CRC", index_changed),
     BadLog(10, "osi-mcap", 0, "the index has a wrong CRC", footer_beyond),

@@ -66,8 +66,8 @@ def folder(demo: Path, tmp_path: Path) -> Path:
 
 
 def run(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    env = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
-    env |= {"PATH": f"{folder / 'tools'}{os.pathsep}{env['PATH']}", "PYTHONPATH": str(ROOT / "src")}
+    path = f"{folder / 'tools'}{os.pathsep}{os.environ['PATH']}"
+    env = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT / "src")}
     return subprocess.run(
         ["bash", "-c", line], cwd=folder, env=env, check=False, capture_output=True, text=True, timeout=300
     )

@@ -17,8 +17,8 @@ PARTS: Final = (
 EVIL: Final = "".join(PARTS)
 EGO: Final = f"=1+1{EVIL}"
 OTHER: Final = f"@o{EVIL}"
-LONG: Final = f"-{'L' * 9_000}"
-"""As long as an id may be that a rule returns."""
+LONG: Final = f"-{'L' * 999}"
+"""As long as an actor's id may be."""
 TOO_LONG: Final = "L" * 100_000
 FILE: Final = (
     "=1+1\x1b[31m\n::error::x ##[error] <img src=x onerror=alert(1)> '\""
