@@ -116,10 +116,9 @@ def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]
 def _temporary(final: Path) -> tuple[Path, Path]:
     """Return the name beside a file under which it is written, and its own."""
     final.parent.mkdir(exist_ok=True)
-    short = sha256(final.name.encode("utf-8", "surrogateescape")).hexdigest()[
-        :16
-    ]  # its own may be as long as names can be
-    return final.with_name(f".{short}.{os.getpid()}.tmp"), final
+    # its own name may be as long as names can be
+    digest = sha256(final.name.encode("utf-8", "surrogateescape")).hexdigest()
+    return final.with_name(f".{digest[:16]}.{os.getpid()}.tmp"), final
 
 
 def _unwritable(out: Path, error: OSError) -> OutputError:
