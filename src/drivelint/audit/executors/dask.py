@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
@@ -25,6 +26,8 @@ class DaskCluster:
     """
 
     def __init__(self, address: str) -> None:
+        # what becomes of the scheduler is told by the errors below, in one line
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         try:
             self._client = distributed.Client(address, timeout=30)
             workers = self._client.scheduler_info(n_workers=-1)["workers"]
