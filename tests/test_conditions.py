@@ -65,7 +65,7 @@ def checked(tmp_path: Path, *env: str) -> Result:
         write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": sql}, tables=tables)
     settings = CheckOptions(
         (str(OVERTAKE / "safe.csv"),), map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"),
-        rules=("pack",), rules_dirs=(tmp_path,), env=env,
+        rules=("pack",), rules_dirs=(tmp_path,), env=env, robustness=False,
     )  # fmt: skip
     return check(settings, Silent())
 

@@ -66,7 +66,8 @@ def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
     assert judged(drives, tmp_path / "out").digest == digest
 
 
-def test_workers_with_threads_are_refused(tmp_path: Path) -> None:
+def test_workers_with_threads_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("drivelint.audit.executors.dask.ANSWER_S", 2.0)
     with pytest.raises(ClusterError, match="no Dask scheduler answers"):
         _on("tcp://127.0.0.1:9")
     with pytest.raises(UsageError, match="give the address of a Dask scheduler"):

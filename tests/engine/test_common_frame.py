@@ -62,7 +62,9 @@ def test_states_are_those_of_the_maps_frame(tmp_path: Path, reference: str, offs
 
 
 def verdicts(folder: Path, road: Path) -> list[dict[str, Any]]:
-    options = CheckOptions((str(LOG),), map=road, mapping=MAPPING, rules=("ukhc",), profiles=("nominal",), out=folder)
+    options = CheckOptions(
+        (str(LOG),), map=road, mapping=MAPPING, rules=("ukhc",), profiles=("nominal",), out=folder, robustness=False
+    )
     return list(check(options, Silent()).verdicts.to_pylist())
 
 

@@ -238,6 +238,7 @@ def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
         out=tmp_path,
         margins=True,
         annotate=False,
+        robustness=False,
     )
     result = run.check(settings, Silent())
     write(result, tmp_path)
@@ -285,7 +286,7 @@ def test_every_frame_with_the_vehicle_in_it_is_judged_by_its_distance(tmp_path: 
 def test_stages_begin_at_their_frames(tmp_path: Path) -> None:
     settings = run.CheckOptions(
         traces=(str(shared(CLIP)),), mapping="video-detections", rules=("ukhc.r126.ds-vbp*",), out=tmp_path, keep_db=True,
-        annotate=False,
+        annotate=False, robustness=False,
     )  # fmt: skip
     run.check(settings, Silent())
     sql = """SELECT stage, min(round((t_ns / 1e9 - 90) * 30))::INT, max(round((t_ns / 1e9 - 90) * 30))::INT, min(sd_av_m)

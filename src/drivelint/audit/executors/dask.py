@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from drivelint.audit.model import Task
 
 distributed: Any = import_module("distributed")  # not typed
+ANSWER_S = 30.0
+"""Seconds in which a scheduler must answer."""
 _LOOK_S: Final = 5.0
 """Seconds after which a wait looks whether the scheduler is still there."""
 _GONE: Final = frozenset({"cancelled", "lost"})
@@ -29,7 +31,7 @@ class DaskCluster:
         # what becomes of the scheduler is told by the errors below, in one line
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         try:
-            self._client = distributed.Client(address, timeout=30)
+            self._client = distributed.Client(address, timeout=ANSWER_S)
             workers = self._client.scheduler_info(n_workers=-1)["workers"]
         except (OSError, TimeoutError, ValueError) as error:
             raise ClusterError(f"--cluster {address}: no Dask scheduler answers: {error}") from error
