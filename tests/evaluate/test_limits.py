@@ -113,8 +113,12 @@ def assert_contained(tmp_path: Path, names: tuple[str, ...]) -> subprocess.Compl
 @pytest.mark.skipif(os.name != "posix", reason="a process cannot be replaced here")
 def test_the_command_starts_again_without_a_rule_that_heeds_no_interrupt(tmp_path: Path) -> None:
     found = assert_contained(tmp_path, ("nested_lambda",))
-    why = "rule bomb.nested_lambda takes longer than --rule-timeout and cannot be stopped: starting again without it"
-    assert found.stderr.splitlines().count(f"drivelint: {why}") == 1
+    # which of its limits it meets first depends on what else the machine does
+    beyond = ("takes longer than --rule-timeout", "takes more memory than there is")
+    said = {
+        f"drivelint: rule bomb.nested_lambda {what} and cannot be stopped: starting again without it" for what in beyond
+    }
+    assert sum(line in said for line in found.stderr.splitlines()) == 1
 
 
 @pytest.mark.slow
