@@ -192,7 +192,7 @@ braking_for_ego AS MATERIALIZED (
     SELECT
         t.drive_id, t.ego_id, t.object_id, t.t_from_ns, b.t_to_ns, b.speed_mps, b.reach_m, min(t.t_ego_first_ns) AS t_ego_in_ns, max(t.t_ego_last_ns) AS t_ego_out_ns,
         (greatest(min(t.t_ego_first_ns), min(t.t_object_ns)) - least(max(t.t_ego_last_ns), max(t.t_object_ns))) / 1e9 AS pet_s, min({'t_object_ns': t.t_object_ns, 'angle_rad': t.angle_rad}).angle_rad AS angle_rad,
-        -- Who stands after an impact has not stopped by braking.
+        -- A stop after the impact is no stop by braking.
         min(w.t_ns) FILTER (coalesce(w.t_ns < i.t_ns, true)) AS t_stop_ns
     FROM taken_ground t
     JOIN braking b USING (drive_id, object_id, t_from_ns)

@@ -36,7 +36,7 @@ FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}
 UNPROTECTED: Final = QualityFinding(
     "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
 )
-"""What is said of every log that is no MCAP, whose reader says it where it holds."""
+"""The finding of every log that is not MCAP. The MCAP reader adds its own, for chunks without a CRC."""
 FORMATS: Final = {name: told for reader in READERS for name, told in reader.formats.items()}
 """What `data_log.format` may be beside the name of a mapping -> the format's title, and how its ego is known."""
 

@@ -28,7 +28,7 @@ _HASHES: Final = {
 
 
 class Looked(NamedTuple):
-    """What is wrong with a time stamp, what it says in words, and what was not looked at."""
+    """The result of checking a time stamp: its problems, its time and authority in words, and notes on what was not checked."""
 
     problems: list[Problem]
     said: str = ""

@@ -110,7 +110,8 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
     for path in copied:
         shutil.copyfile(path, work / RESULT / path.name)
     reports = [each for each in REPORT_FORMATS.values() if (work / RESULT / each[0]).is_file()]
-    for name, render in reports:  # anew: so they say what the tables say, and link nothing that stays out
+    # A report of the folder may differ from the tables, or link files that the pack leaves out.
+    for name, render in reports:
         (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
     for name, files in found.items():
         if isinstance(files, dict):

@@ -28,7 +28,7 @@ class DaskCluster:
     """
 
     def __init__(self, address: str) -> None:
-        # what becomes of the scheduler is told by the errors below, in one line
+        # Dask logs a lost scheduler with a traceback; `ClusterError` says it in one line
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         try:
             self._client = distributed.Client(address, timeout=ANSWER_S)
