@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import subprocess
 from collections import Counter
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -55,3 +56,15 @@ def test_no_report_knows_a_rule_by_its_id() -> None:
                 if isinstance(node, ast.Constant)
             ]
             assert not ids & {value for value in constants if isinstance(value, str)}, file.name
+
+
+def test_nothing_else_stands_at_the_top() -> None:
+    """Files of the work tree that git does not know, such as an environment, do not count."""
+    root = SOURCE.parents[1]
+    told = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True, check=False)
+    if told.returncode:
+        pytest.skip("this is no git checkout")
+    entries = {name.partition("/")[0] for name in told.stdout.splitlines()}
+    folders = {"src", "schemas", "queries", "tests", "fixtures"}
+    files = {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"}
+    assert {name for name in entries if not name.startswith(".")} == folders | files
