@@ -1,7 +1,7 @@
 """`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables.
 
-`python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of driver
-and workers grows with the drives. `workers DRIVES`: what a second worker brings.
+`python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of the
+driver and of one worker grows with the drives. `workers DRIVES`: what a second worker brings.
 """
 
 from __future__ import annotations
@@ -42,11 +42,12 @@ def kills(n_drives: int, n_kills: int) -> None:
 
 
 def memory(n_drives: int) -> None:
-    """Print the memory of driver and workers as the audit goes on."""
+    """Print the memory of the driver and of its one worker as the audit goes on."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         drives = fleet.write(Path(home) / "fleet", n_drives)
         out = Path(home) / "out"
-        running = subprocess.Popen([sys.executable, "-m", "drivelint", *drives.command(out)], stdout=subprocess.DEVNULL)
+        words = drives.command(out, "--workers", "1")
+        running = subprocess.Popen([sys.executable, "-m", "drivelint", *words], stdout=subprocess.DEVNULL)
         told = 0
         while running.poll() is None:
             time.sleep(1.0)
@@ -57,7 +58,7 @@ def memory(n_drives: int) -> None:
                 told = n
                 sizes = [_rss(pid) for pid in (running.pid, *children(running.pid))]
                 print(
-                    f"{n:>7} drives: driver {sizes[0]:.0f} MB, workers {', '.join(f'{size:.0f}' for size in sizes[1:])} MB",
+                    f"{n:>7} drives: driver {sizes[0]:.0f} MB, worker {', '.join(f'{size:.0f}' for size in sizes[1:])} MB",
                     flush=True,
                 )
 
