@@ -43,6 +43,8 @@ _MESSAGE_INDEX = struct.Struct("<HI")
 _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Records whose length is always the same."""
 _KNOWN = frozenset(Opcode)
+_PRIVATE = 0x80
+"""Opcodes from here on belong to applications: what they hold is no part of the log."""
 _MAGIC = re.compile(re.escape(MAGIC))
 
 
@@ -138,12 +140,12 @@ class Container:
                 at = resume
         if self.losses and not self._messages:
             raise DamageError(self.losses.first.what)
-        self._check_data_end(len(view), footer is not None)
         if footer is not None:
             self._check_footer(view, *footer)
-        if index is None and footer is not None:
-            index = read_summary(view)
-        self._check_index(index or Summary())
+        if index is None:
+            index = read_summary(view) if footer is not None else Summary()
+        self._check_data_end(len(view), has_footer=footer is not None, has_index=bool(index.chunks))
+        self._check_index(index)
         self._report()
 
     def _record(self, view: memoryview, at: int) -> tuple[int, int, int]:
@@ -171,7 +173,13 @@ class Container:
                 raise self._damaged(end, "no closing magic bytes after the footer")
         if wrong:
             raise self._damaged(at, f"a {_name(opcode)} record that is none")
+        if self._in_data and opcode not in _KNOWN and self._may_be_lost_data(view, opcode, end):
+            raise self._damaged(at, f"a {_name(opcode)} record", end)
         return opcode, start, end
+
+    def _may_be_lost_data(self, view: memoryview, opcode: int, end: int) -> bool:
+        """Whether a record of an unknown kind may be a changed one of the log's: a chunk's index follows only a chunk."""
+        return opcode < _PRIVATE or (end < len(view) and view[end] == Opcode.MESSAGE_INDEX)
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
@@ -278,16 +286,21 @@ class Container:
         chunked = bool(self._messages - self._loose) or not self._loose
         return next_record(view, at + 1, channels=None if chunked else self.channels)
 
-    def _check_data_end(self, size: int, has_footer: bool) -> None:
-        """Report a file without a footer: without an end of the data, too, something may be lost."""
-        if has_footer:
-            return
-        if self._in_data and (not self.losses or self.losses.last.end < size):
+    def _check_data_end(self, size: int, *, has_footer: bool, has_index: bool) -> None:
+        """Report a file without an end of its data, of which something may be lost unless the index names every chunk."""
+        if self._in_data and has_footer:
+            if has_index:
+                return
+            error = self._damaged(size, "no end of the data before the footer, in a file that ends")
+            if not self.salvage:
+                raise error
+            self.losses.add(size, size, str(error))
+        elif self._in_data and (not self.losses or self.losses.last.end < size):
             error = self._damaged(size, "the file ends without a footer")
             if not self.salvage:
                 raise error
             self.losses.add(size, size, str(error))
-        elif not self._in_data:
+        elif not has_footer and not self._in_data:
             if not self.salvage:
                 raise self._damaged(size, "the file ends without a footer")
             message = f"the file ends without a footer at byte {size}, behind the end of its data: nothing is lost"
