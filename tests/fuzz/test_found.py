@@ -29,6 +29,9 @@ from tests.formats.mcap.damage import FOOTER, places, replaced
 from tests.formats.osi import osi_log
 from tests.formats.ros2 import ros_drive, ros_log
 from tests.fuzz import sources
+from tests.fuzz.driver import Driver
+from tests.fuzz.outcome import GOOD
+from tests.fuzz.worker import Job
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -157,6 +160,23 @@ def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
     file.write_bytes(data)
     with pytest.raises(TraceError, match="not readable as Parquet"):
         read(folder)
+
+
+@pytest.mark.parametrize("number", [450, 5365])
+def test_damaged_statistics_of_a_column_do_not_end_the_process(number: int) -> None:
+    """The library's metadata of a column ended the process where the sizes in it were wrong."""
+    with Driver() as driver:
+        (found,) = driver.run(Job("parquet", 100, number, 1, judged=False))
+    assert found.outcome in GOOD
+
+
+def test_bytes_that_look_like_the_seam_of_two_files_are_data(tmp_path: Path) -> None:
+    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    states = pq.read_table(folder / "actor_state.parquet", partitioning=None)
+    seam = pa.array(["\x10\0\0\0PAR1PAR1"] * states.num_rows)
+    pq.write_table(states.append_column("note", seam), folder / "actor_state.parquet", compression="none")
+    assert b"PAR1PAR1" in (folder / "actor_state.parquet").read_bytes()
+    assert read(folder)
 
 
 def test_a_changed_page_of_a_result_is_refused(tmp_path: Path) -> None:

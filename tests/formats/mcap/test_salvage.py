@@ -104,6 +104,41 @@ def test_without_a_footer_nothing_is_lost(whole: Path) -> None:
         assert "lost_time" not in findings(trace)
 
 
+@pytest.mark.parametrize("opcode", [38, 134])
+def test_a_chunk_of_another_kind_is_lost_also_where_the_index_is(whole: Path, opcode: int) -> None:
+    """Readers skip records of unknown kinds: a chunk whose opcode had changed was not missed."""
+    data = whole.read_bytes()
+    (begin, _), ((_, end),) = places(data, CHUNK)[4], places(data, FOOTER)
+    data = replaced(data, end - 4, bytes([data[end - 4] ^ 1]))
+    trace = read(put(whole, replaced(data, begin, bytes([opcode]))))
+    assert "index_damaged" in findings(trace)
+    (found,) = findings(trace)["lost_time"]
+    assert f"(opcode {opcode}) record at byte {begin}" in found["message"]
+    missing = missing_times(trace, whole)
+    assert missing
+    assert all(lost(trace, t) for t in missing)
+
+
+def test_a_record_of_an_application_is_no_loss(whole: Path) -> None:
+    data = whole.read_bytes()
+    at = places(data, CHUNK)[4][0]
+    foreign = struct.pack("<BQ", 134, 5) + b"hello"
+    trace = read(put(whole, data[:at] + foreign + data[at:]))
+    assert rows(trace) == rows(read(whole))
+    assert "lost_time" not in findings(trace)
+
+
+def test_an_end_that_stands_over_the_middle_is_seen(whole: Path) -> None:
+    """The footer was taken for the end of all data, though no record had said that they end."""
+    data = whole.read_bytes()
+    at, footer = places(data, CHUNK)[4][0], places(data, FOOTER)[0][0]
+    (found,) = findings(trace := read(put(whole, data[:at] + data[footer:])))["lost_time"]
+    assert "no end of the data before the footer" in found["message"]
+    missing = missing_times(trace, whole)
+    assert missing
+    assert all(lost(trace, t) for t in missing)
+
+
 def test_zero_filled_tail(whole: Path) -> None:
     data = whole.read_bytes()
     begin = places(data, CHUNK)[4][0]

@@ -57,7 +57,7 @@ def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
                 what = f"it begins {head!r}" if head else "it is empty (0 bytes)"
                 raise TraceError(f"{path}: not Parquet: {what}: copy it again")
             opened = pq.ParquetFile(file, page_checksum_verification=True)
-            _refuse_second_file(path, file, opened.metadata)
+            _refuse_second_file(path, file)
             names = opened.schema_arrow.names
             if twice := [name for name in names if names.count(name) > 1]:
                 raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
@@ -75,14 +75,23 @@ def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
         )
 
 
-def _refuse_second_file(path: Path, file: BufferedReader, metadata: pq.FileMetaData) -> None:
-    """Refuse two files in one: the footer is that of the last, and counts from the beginning of the first."""
-    end = 0
-    if metadata.num_row_groups:
-        last = metadata.row_group(metadata.num_row_groups - 1)
-        for column in (last.column(i) for i in range(last.num_columns)):
-            end = max(end, (column.dictionary_page_offset or column.data_page_offset) + column.total_compressed_size)
+def _refuse_second_file(path: Path, file: BufferedReader) -> None:
+    """Refuse two files in one: the footer is that of the last, and counts from the beginning of the first.
+
+    The end of a file's data is not asked of its metadata: on damaged statistics of a column, the library ends the process.
+    """
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        second = data.find(_MAGIC * 2, end)
-    if second >= 0:
-        raise TraceError(f"{path}: a second Parquet file begins at byte {second + len(_MAGIC)}: give each by itself")
+        at = data.find(_MAGIC * 2)
+        while at >= 0:
+            end = at + len(_MAGIC)
+            if _is_whole(data[:end]):
+                raise TraceError(f"{path}: a second Parquet file begins at byte {end}: give each by itself")
+            at = data.find(_MAGIC * 2, at + 1)
+
+
+def _is_whole(content: bytes) -> bool:
+    try:
+        pq.read_metadata(pa.BufferReader(content))
+    except (pa.ArrowException, OSError):
+        return False
+    return True
