@@ -162,11 +162,17 @@ def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
         read(folder)
 
 
-@pytest.mark.parametrize("number", [450, 5365])
-def test_damaged_statistics_of_a_column_do_not_end_the_process(number: int) -> None:
-    """The library's metadata of a column ended the process where the sizes in it were wrong."""
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [
+        ("parquet", 450),  # the library's metadata of a column ended the process where the sizes in it were wrong
+        ("parquet", 5365),
+        ("messages", 16),  # an id in JSON that is not UTF-8
+    ],
+)
+def test_what_ended_in_a_crash_is_refused_or_flagged(kind: str, number: int) -> None:
     with Driver() as driver:
-        (found,) = driver.run(Job("parquet", 100, number, 1, judged=False))
+        (found,) = driver.run(Job(kind, 100, number, 1, judged=False))
     assert found.outcome in GOOD
 
 

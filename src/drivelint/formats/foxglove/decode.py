@@ -74,7 +74,9 @@ def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
     lines = [message.replace(b"\n", b" ").replace(b"\r", b" ") for message in messages]
     parse = json.ParseOptions(explicit_schema=schema, unexpected_field_behavior="ignore")
     block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
-    table = json.read_json(pa.BufferReader(b"\n".join(lines)), block, parse).combine_chunks()
+    text = b"\n".join(lines)
+    text.decode()  # the library takes texts as they are, and fails where they are read
+    table = json.read_json(pa.BufferReader(text), block, parse).combine_chunks()
     if table.num_rows != len(messages):
         raise ValueError(f"{len(messages)} messages hold {table.num_rows} JSON objects")
     columns = [table.column(name).chunk(0) for name in schema.names]
