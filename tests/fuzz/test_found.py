@@ -168,6 +168,8 @@ def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
         ("parquet", 450),  # the library's metadata of a column ended the process where the sizes in it were wrong
         ("parquet", 5365),
         ("messages", 16),  # an id in JSON that is not UTF-8
+        ("cells", 1076),  # a list in the column drive_id
+        ("cells", 1537),
     ],
 )
 def test_what_ended_in_a_crash_is_refused_or_flagged(kind: str, number: int) -> None:

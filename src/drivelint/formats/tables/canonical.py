@@ -133,7 +133,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
     missing = [name for name in names if name not in table.schema.names]
     if missing:
         raise TraceError(f"{path}: no column {', '.join(missing)}: a canonical table needs {', '.join(names)}")
-    drives = pc.unique(table.column("drive_id")) if "drive_id" in table.schema.names else []
+    drives = pc.unique(_column(path, table, "drive_id", pa.string())) if "drive_id" in table.schema.names else []
     if len(drives) > 1:
         raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
 
