@@ -16,6 +16,7 @@ import pyarrow.compute as pc
 from mcap.records import Channel
 
 from drivelint.drive.clock_restart import backward_steps
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
@@ -96,7 +97,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     if maps:
         recording.embedded_map = own
     recording.findings += [*container.findings, *unread.findings(), *lost[:1], *(several if maps else head.findings)]
-    recording.lost = container.losses.times(path)
+    recording.lost += container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
@@ -197,7 +198,7 @@ def read(probe: Probe) -> Recording:
         raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
     recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
     recording.frame_times = None
-    recording.lost = trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
+    recording.lost += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
     recording.findings += head.findings
     return recording
 
@@ -243,16 +244,23 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
         for batch, offset in zip(batches, offsets, strict=False)
     )
-    nameless = sum(batch.nameless for batch in batches)
-    if nameless:
-        message = f"moving objects without an id: {nameless}: they are not judged"
-        findings.append(QualityFinding("dropped_row", "error", message, nameless))
+    nameless = np.concatenate([batch.nameless + offset for batch, offset in zip(batches, offsets, strict=False)])
+    if len(nameless):
+        message = f"moving objects without an id: {len(nameless)}: they are not judged"
+        findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
+    lost = times_of_lost_rows(
+        log_ns.astype(np.int64) if name == "osi-mcap" else t_ns,
+        np.ones(len(t_ns), np.bool_),
+        np.isin(np.arange(len(t_ns)), nameless),
+        "messages with moving objects without an id",
+    )
     return Recording(
         name,
         states,
         signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
+        lost=lost,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         embedded_map=head.lanes,
