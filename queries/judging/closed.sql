@@ -8,8 +8,15 @@ WITH _outcome_or_clean_group AS (
         t_worst_ns AS t_decides_ns,
         'pass' AS verdict, code, reason, observed, required, margin, n AS n_expected, n AS n_judged
     FROM _group WHERE clean
+), _outcome_in_time AS (
+    -- A pass is none where the log has lost something: of whom, nobody knows. A step that fails stands.
+    SELECT o.* REPLACE (CASE WHEN l.is_lost THEN 'unknown' ELSE o.verdict END AS verdict, CASE WHEN l.is_lost THEN 'log_hole' ELSE o.code END AS code,
+        CASE WHEN l.is_lost THEN NULL ELSE o.reason END AS reason, CASE WHEN l.is_lost THEN NULL ELSE o.margin END AS margin)
+    FROM _outcome_or_clean_group o
+    LEFT JOIN (FROM _segment WHERE is_lost) l ON o.verdict = 'pass' AND l.drive_id = o.drive_id AND l.ego_id = o.ego_id
+        AND o.t_worst_ns BETWEEN l.t_first_ns AND l.t_last_ns
 ), _rule_row AS (
-    SELECT r.* FROM _outcome_or_clean_group r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
+    SELECT r.* FROM _outcome_in_time r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
         AND e.ego_id = r.ego_id
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'error' AS verdict, min(code) AS code, min(reason) AS reason
@@ -27,6 +34,8 @@ WITH _outcome_or_clean_group AS (
         SELECT rule_no, NULL AS signal FROM _rule WHERE kind <> 'invariant'
         UNION
         SELECT rule_no, signal FROM _needs
+        UNION
+        SELECT rule_no, 'lost' FROM _rule WHERE of_others
     ) r ON r.signal IS NOT DISTINCT FROM b.signal
 ), _blind_outcome AS (
     -- One unknown outcome per rule and subject for the blind stretches that no unknown or error row of the rule covers already. None if the
@@ -49,7 +58,10 @@ WITH _outcome_or_clean_group AS (
         FROM _rule_row WHERE verdict IN ('error', 'unknown')
     ) u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
         AND u.from_ns <= b.b_ns + b.max_gap_ns AND u.to_ns >= b.a_ns - b.max_gap_ns
+    -- a rule with reference points is about more than a moment
+    LEFT JOIN _rule q ON q.rule_no = b.rule_no
     WHERE w.never IS DISTINCT FROM true AND k.elsewhere IS DISTINCT FROM true
+        AND (b.signal IS DISTINCT FROM 'lost' OR q.kind = 'invariant' OR b.b_ns - b.a_ns >= 1_000_000_000)
     GROUP BY b.rule_no, b.drive_id, b.ego_id
 ), _outcome_or_blind AS (
     SELECT * FROM _rule_row UNION ALL BY NAME SELECT * FROM _blind_outcome

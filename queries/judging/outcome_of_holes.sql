@@ -1,5 +1,6 @@
 -- One unknown row per hole between two steps at which an invariant applies, if the rule applied at the last step before the hole or at the
--- first step after it.
+-- first step after it. Between steps that are both there, of which one lies within a lost stretch, there is no hole: the segment of that step
+-- is unknown, if it does not fail.
 INSERT INTO _outcome BY NAME
 WITH _step_with_previous AS (
     SELECT drive_id, ego_id, object_id, profile, t_ns, seg, lag(t_ns) OVER w AS t_prev_ns, lag(seg) OVER w AS seg_prev
@@ -12,7 +13,7 @@ WITH _step_with_previous AS (
     FROM _step_with_previous j JOIN _subject s USING (drive_id, ego_id)
     JOIN _segment p ON p.drive_id = j.drive_id AND p.ego_id = j.ego_id AND p.seg = j.seg_prev
     JOIN _segment q ON q.drive_id = j.drive_id AND q.ego_id = j.ego_id AND q.seg = j.seg
-    WHERE j.seg_prev <> j.seg
+    WHERE j.seg_prev <> j.seg AND NOT ((p.is_lost OR q.is_lost) AND j.t_ns - j.t_prev_ns <= s.max_gap_ns)
 ), _holes AS (
     SELECT e.*, p.t_last_ns AS t_start_ns, q.t_first_ns AS t_end_ns FROM _step_pair_over_hole e
     JOIN _segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.seg = CASE WHEN from_edge THEN seg_prev

@@ -3,9 +3,11 @@ CREATE OR REPLACE TEMP TABLE _subject AS
     SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m,
         coalesce(l.t_start_ns, 0) AS start_ns
     FROM clock c LEFT JOIN data_log l ON c.drive_id = l.drive_id;
+-- `is_lost`: the steps lie within a stretch of which the log has lost something, so that who is not there at them may have been.
 CREATE OR REPLACE TEMP TABLE _segment AS
-    SELECT drive_id, ego_id, seg, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, min(k) AS k_first
-        FROM step GROUP BY ALL;
+    SELECT s.drive_id, s.ego_id, s.seg, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns, min(s.k) AS k_first,
+        coalesce(bool_or(l.t_to_ns > s.t_ns), false) AS is_lost
+    FROM step s ASOF LEFT JOIN lost_time l ON l.drive_id = s.drive_id AND l.t_from_ns < s.t_ns GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
     sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
     of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN);

@@ -27,6 +27,7 @@ class Fault(NamedTuple):
 
 _DAMAGED: Final = "tests/test_damaged_logs.py::test_faults"
 _SALVAGE: Final = "tests/formats/mcap/test_salvage.py"
+_OSI_FILE: Final = "tests/formats/osi/test_salvage.py"
 _CHECKS: Final = "tests/drive/test_checks.py"
 _LIMITS: Final = "tests/evaluate/test_limits.py"
 _AUDIT: Final = "tests/audit/test_audit.py"
@@ -36,10 +37,27 @@ _INTERRUPTED: Final = "tests/test_interrupted.py"
 FAULTS: Final = (
     Fault(1, "empty file", ALL, (4,), "the file is empty", (_DAMAGED, HERE)),
     Fault(2, "error page in HTML under the name of a log", ALL, (4,), "begins b'<html>", (_DAMAGED, HERE)),
-    Fault(3, "file cut off", ALL, (3, 4), "of MCAP and CSV what is left is judged: cannot be read", (_DAMAGED, HERE)),
+    Fault(
+        3,
+        "file cut off",
+        ALL,
+        (3, 4),
+        "of MCAP, OSI files and CSV what is left is judged: cannot be read",
+        (_DAMAGED, f"{_OSI_FILE}::test_wherever_a_file_is_cut_it_is_lossy_or_a_whole_one", HERE),
+    ),
     Fault(4, "footer missing", MCAP, (0,), "nothing is lost", (_DAMAGED, HERE)),
     Fault(
-        5, "end filled with zeros", ALL, (3, 4), "zero bytes", (_DAMAGED, f"{_SALVAGE}::test_zero_filled_tail", HERE)
+        5,
+        "end filled with zeros",
+        ALL,
+        (3, 4),
+        "zero bytes, or a message of 0 bytes",
+        (
+            _DAMAGED,
+            f"{_SALVAGE}::test_zero_filled_tail",
+            f"{_OSI_FILE}::test_what_follows_the_last_message",
+            HERE,
+        ),
     ),
     Fault(
         6,
@@ -91,14 +109,18 @@ FAULTS: Final = (
         "a second ... file begins; tables and OSI files: the clock runs again",
         (_DAMAGED, HERE),
     ),
-    Fault(12, "bytes behind the end", ALL, (0, 3, 4), "bytes follow", (_DAMAGED, HERE)),
+    Fault(12, "bytes behind the end", ALL, (0, 3, 4), "bytes follow, or cannot be read", (_DAMAGED, HERE)),
     Fault(
         13,
         "record of 2^60 bytes",
         "MCAP, OSI file",
-        (4,),
-        "1152921504606846976 bytes",
-        (_DAMAGED, "tests/formats/osi/test_file.py::test_a_length_past_the_end_allocates_nothing"),
+        (3, 4),
+        "1152921504606846976 bytes, or of an OSI file 4294967295",
+        (
+            _DAMAGED,
+            f"{_OSI_FILE}::test_what_follows_the_last_message",
+            f"{_OSI_FILE}::test_a_message_beyond_the_cap_is_not_read",
+        ),
     ),
     Fault(
         14,
@@ -131,7 +153,12 @@ FAULTS: Final = (
         ALL,
         (3, 4),
         "lost_time, malformed_row or dropped_row",
-        (f"{_SALVAGE}::test_one_malformed_message", "tests/formats/foxglove/test_scene.py::test_damaged_message", HERE),
+        (
+            f"{_SALVAGE}::test_one_malformed_message",
+            f"{_OSI_FILE}::test_one_malformed_message_is_lost_alone",
+            "tests/formats/foxglove/test_scene.py::test_damaged_message",
+            HERE,
+        ),
     ),
     Fault(
         18,

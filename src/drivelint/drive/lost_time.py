@@ -11,7 +11,7 @@ from drivelint.drive.trace import LostTime, QualityFinding
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from drivelint.arrays import Times
+    from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import FrameTimes
 
 LOST_TIME: Final = "lost_time"
@@ -22,6 +22,39 @@ LATEST_NS: Final = 1 << 62
 """The year 2116: a clock beyond it is broken, and bounds nothing."""
 _BESIDE: Final = 50
 """So many frames before and after a stretch tell how its clock and the log's differ there."""
+
+
+def times_of_lost_rows(t_ns: Times, timed: Mask, lost: Mask, what: str) -> list[LostTime]:
+    """Return when rows were recorded that cannot be used: `lost`, by row in the order of the file. `what` they are, without their number.
+
+    That is the time of the row, where it has one (`timed`), else any between the rows before and after it; without rows in the order of
+    their times, any of the whole drive. Stretches without a whole time between them are one.
+    """
+    rows, known = np.flatnonzero(lost), np.flatnonzero(timed)
+    if not len(rows):
+        return []
+    times = t_ns[known]
+    unknown = ~timed[rows]
+    if not len(known) or (unknown.any() and (np.diff(times) < 0).any()):
+        return [LostTime(None, None, f"{what}: {len(rows)}")]
+    place = np.searchsorted(known, rows)
+    begin, end = np.iinfo(np.int64).min, np.iinfo(np.int64).max
+    since = np.where(unknown, np.r_[begin, times][place], t_ns[rows])
+    until = np.where(unknown, np.r_[times, end][place], t_ns[rows])
+    order = np.argsort(since, kind="stable")
+    since, until = since[order], np.maximum.accumulate(until[order])
+    moments = np.unique(times)
+    apart = np.searchsorted(moments, since[1:]) > np.searchsorted(moments, until[:-1], side="right")
+    firsts = np.r_[0, np.flatnonzero(apart) + 1]
+    counts = np.diff(np.r_[firsts, len(rows)])
+    return [
+        LostTime(
+            None if since[k] == begin else int(since[k]) - 1,
+            None if until[k + n - 1] == end else int(until[k + n - 1]) + 1,
+            f"{what}: {n}",
+        )
+        for k, n in zip(firsts.tolist(), counts.tolist(), strict=True)
+    ]
 
 
 def lost_time_findings(lost: Sequence[LostTime], frames: FrameTimes | None, t_ns: Times) -> list[QualityFinding]:
@@ -44,8 +77,12 @@ def _words(since: int | None, until: int | None, start: int) -> str:
     """Return a stretch in seconds of the log."""
     if since is not None and until is not None and until - since <= 2:
         return f"at {(since + 1 - start) / 1e9:.3f} s"
-    begin = "from the beginning" if since is None else f"from {(since - start) / 1e9:.3f} s"
-    return begin + (" to the end" if until is None else f" to {(until - start) / 1e9:.3f} s")
+    begin = "from the beginning" if since is None else f"from {_seconds(since - start)}"
+    return begin + (" to the end" if until is None else f" to {_seconds(until - start)}")
+
+
+def _seconds(ns: int) -> str:
+    return f"{round(ns / 1e9, 3) + 0.0:.3f} s"  # + 0.0: without the sign of -0.0
 
 
 def _in_clock_of_states(lost: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:

@@ -12,6 +12,7 @@ from drivelint.formats.files import file_states, identify, is_drive_folder
 from drivelint.formats.film import reader as film
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
+from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table
@@ -98,7 +99,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     if (told := wrapping(head)) is not None:
         raise TraceError(f"{path}: {told}")
     suffix = path.suffix.lower()
-    if suffix == ".osi" and not osi_file.is_osi_trace(head, path.stat().st_size):
+    if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):
         raise TraceError(
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"

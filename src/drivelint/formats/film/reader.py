@@ -116,10 +116,10 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
         odd &= ~bad
         if odd.any():
             where = sheet.describe_rows(np.flatnonzero(odd))
-            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: not detected there"
+            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: there without a place"
             findings.append(QualityFinding("malformed_cell", "warning", message, int(odd.sum())))
         distance = np.full(len(whole), np.nan)
-        distance[at] = values[rows[first]]
+        distance[at] = np.where(odd, np.inf, values)[rows[first]]
         ahead.append(distance)
     lost = sheet.bad_lines
     if lost or bad.any():
@@ -145,10 +145,10 @@ def _states(
     front = ego_x + film.ego.length / 2
     tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
     for actor, distance in zip(film.actor, ahead, strict=True):
-        seen = np.flatnonzero(np.isfinite(distance))
+        seen = np.flatnonzero(~np.isnan(distance))  # infinite: somebody is there, nobody knows where
         there = slice(seen[0], seen[-1] + 1) if len(seen) else slice(0, 0)
         along = actor.lane == "own"
-        x = (front + distance + actor.length / 2)[there]
+        x = (front + np.where(np.isfinite(distance), distance, np.nan) + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
         yaw, mps = (0.0, actor.speed.mps) if along else (np.pi, -actor.speed.mps)
         tracks.append((t_ns[there], x, y, yaw, mps))

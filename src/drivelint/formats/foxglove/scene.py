@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import QualityFinding, Recording
+from drivelint.drive.trace import LostTime, QualityFinding, Recording
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_frame_name, fixed_frame, unit_quaternions
 from drivelint.formats.foxglove.decode import (
@@ -93,7 +93,7 @@ def read(path: Path, topic: str | None) -> Recording:
         parts.append((file, container.losses))
     name = _chosen(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
-    recording.lost = times_of_parts(parts)
+    recording.lost += times_of_parts(parts)
     return recording
 
 
@@ -181,10 +181,12 @@ def _recording(
 ) -> Recording:
     rows = join_batches(scene.rows)
     named = rows.ids != b""
+    lost: list[LostTime] = []
     if not named.all():
         n = int((~named).sum())
         message = f"{topic}: entities without an id: {n}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, n))
+        lost = _lost(rows.take(~named), topic)
         rows = rows.take(named)
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
@@ -199,10 +201,21 @@ def _recording(
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    recording = Recording("foxglove-mcap", states, findings=findings)
+    recording = Recording("foxglove-mcap", states, findings=findings, lost=lost)
     recording.notes = [f"positions are in the frame {fixed!r}"]
     recording.frame_times, recording.utc_start_ns = message_times([rows])
     return recording
+
+
+def _lost(nameless: RecordedPoses, topic: str) -> list[LostTime]:
+    """Return when entities without an id were there: from their message on for their lifetime, if they have one."""
+    times = zip(nameless.log_ns.tolist(), np.asarray(nameless.lifetime_ns).tolist(), strict=True)
+    spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}
+    endless = min((since for since, until in spans if until is None), default=None)
+    ended = sorted((since, until) for since, until in spans if until is not None)
+    what = f"{topic}: an entity without an id"
+    found = [LostTime(since, until, what) for since, until in ended if endless is None or since < endless]
+    return found if endless is None else [*found, LostTime(endless, None, what)]
 
 
 def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:

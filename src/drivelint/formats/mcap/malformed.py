@@ -32,17 +32,28 @@ def decode_readable(
             raise late.error(container.path, "its log time is no time of this or the next century")
         return decode(some)
 
-    try:
-        return decode_timed(packets), packets
-    except MessageError as error:
-        first = error
-    malformed = dict(_malformed(packets, decode_timed))
-    if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(packets)):
-        raise first
+    decoded, malformed = decode_others(packets, decode_timed)
     for k, why in malformed.items():
         container.losses.add_message(packets[k].offset, str(why), packets[k].log_time_ns)
+    return decoded, [packet for k, packet in enumerate(packets) if k not in malformed]
+
+
+def decode_others(
+    packets: list[Packet], decode: Callable[[list[Packet]], T]
+) -> tuple[T | None, dict[int, MessageError]]:
+    """Decode a batch without its malformed messages; return what was decoded (None: nothing), and their places and errors.
+
+    Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
+    """
+    try:
+        return decode(packets), {}
+    except MessageError as error:
+        first = error
+    malformed = dict(_malformed(packets, decode))
+    if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(packets)):
+        raise first
     readable = [packet for k, packet in enumerate(packets) if k not in malformed]
-    return (decode(readable) if readable else None), readable
+    return (decode(readable) if readable else None), malformed
 
 
 def _malformed(packets: list[Packet], decode: Callable[[list[Packet]], object]) -> list[tuple[int, MessageError]]:

@@ -81,9 +81,9 @@ _NEVER_ZERO = frozenset({"position", "dimension"})
 class FrameBatch:
     """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
 
-    Per object: its frame, id (`known`: it has one), columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), codes. `left_out`: the
-    coordinates that a vector does not have and that a writer which leaves zeros out may mean as 0, by column. `says_zero`: some
-    coordinate is written as 0, so that this is no such writer.
+    Per object with an id: its frame, id, columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), codes. `nameless`: the frame of
+    each object without one. `left_out`: the coordinates that a vector does not have and that a writer which leaves zeros out may mean
+    as 0, by column. `says_zero`: some coordinate is written as 0, so that this is no such writer.
     """
 
     t_ns: NDArray[np.int64]
@@ -91,7 +91,7 @@ class FrameBatch:
     hosts: list[int | None]
     frame: Indices
     ids: NDArray[np.uint64]
-    nameless: int
+    nameless: Indices
     numbers: dict[str, Floats]
     codes: dict[str, Codes]
     not_finite: Mask
@@ -142,15 +142,17 @@ class Decoder:
         ids = struct_field(objects, "id")
         number = integers(ids, "value", pa.uint64())
         codes = state_codes(self._words, objects)
+        nameless = frame[:0]
         if ids.null_count:
             known = ids.is_valid().to_numpy(zero_copy_only=False)
+            nameless = frame[~known]
             frame, number, not_finite = frame[known], number[known], not_finite[known]
             numbers = {name: column[known] for name, column in numbers.items()}
             left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
         return FrameBatch(
             np.where(timed, t_ns, outer_ns), timed | outer_timed, pc.coalesce(_hosts(truth), _hosts(message)).to_pylist(),
-            frame, number, ids.null_count, numbers, codes, not_finite, left_out, says_zero,
+            frame, number, nameless, numbers, codes, not_finite, left_out, says_zero,
             bulbs_of(self._words, truth, self.lights),
         )  # fmt: skip
 

@@ -16,12 +16,14 @@ import pyarrow.compute as pc
 from mcap.records import Channel
 
 from drivelint.drive.clock_restart import backward_steps
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import BATCH_BYTES, Container, Packet, message_batches
+from drivelint.formats.mcap.losses import Losses
+from drivelint.formats.mcap.malformed import decode_others, decode_readable
+from drivelint.formats.mcap.reader import Container, Packet, message_batches
 from drivelint.formats.mcap.unread import UnreadTopics
-from drivelint.formats.osi import metadata
+from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
@@ -29,7 +31,6 @@ from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from mcap.records import Schema
@@ -42,20 +43,11 @@ if TYPE_CHECKING:
 formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
 takes_mapping: Final = False
 _READ: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
-_LENGTH = 4
-_FIRST_TAGS = frozenset({0x0A, 0x12, 0x1A})
-"""What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
-
-
-def is_osi_trace(head: bytes, size: int) -> bool:
-    """Say whether a file of `size` bytes that begins with `head` can be an OSI trace: a length that fits, then a message."""
-    length = int.from_bytes(head[:_LENGTH], "little")
-    return 2 <= length <= size - _LENGTH and len(head) > _LENGTH and head[_LENGTH] in _FIRST_TAGS
 
 
 def accepts(probe: Probe) -> bool:
     """Accept by the first length and the message behind it."""
-    return not probe.path.is_dir() and is_osi_trace(probe.head, probe.path.stat().st_size)
+    return not probe.path.is_dir() and trace_file.is_osi_trace(probe.head, probe.path.stat().st_size)
 
 
 def read_mcap(path: Path, topic: str | None) -> Recording:
@@ -105,7 +97,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     if maps:
         recording.embedded_map = own
     recording.findings += [*container.findings, *unread.findings(), *lost[:1], *(several if maps else head.findings)]
-    recording.lost = container.losses.times(path)
+    recording.lost += container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
@@ -175,53 +167,40 @@ def _nothing(container: Container) -> str:
 def read(probe: Probe) -> Recording:
     """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: which of the two, the first messages tell.
 
-    Errors: `TraceError` with the byte for a file that breaks off within a message (what is lost cannot be told), a message
-    that is neither kind, or messages without time stamps.
+    Errors: `TraceError` with the byte where no message can be read, for messages that are neither kind, or without time stamps.
     """
     path = probe.path
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
     batches: list[FrameBatch] = []
     decoder: Decoder | None = None
-    head = FirstMessage()
+    head, losses = FirstMessage(), Losses()
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        for packets in _batches(path, channel, content):
+        for packets in trace_file.message_batches(channel, content, losses):
             if decoder is None:
                 decoder, name = _decoder(path, packets)
                 head = read_first_message(packets[0].data, name)
                 decoder.lights = head.lights
-            batches.append(decoder.frames(packets))
+            frames, malformed = decode_others(packets, decoder.frames)
+            times = iter(() if frames is None else frames.t_ns.tolist())
+            for k, packet in enumerate(packets):
+                if k in malformed:
+                    end = packet.offset + trace_file.LENGTH + len(packet.data)
+                    losses.add(packet.offset, end, "a message that cannot be decoded")
+                else:
+                    losses.message(next(times))
+            if frames is not None:
+                batches.append(frames)
+    if not batches:
+        raise TraceError(f"{path}: {losses.first.what if losses else 'no message'}: copy or record it again")
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
     if untimed:
         raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
     recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
     recording.frame_times = None
+    recording.lost += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
     recording.findings += head.findings
     return recording
-
-
-def _batches(path: Path, channel: Channel, content: mmap.mmap) -> Iterator[list[Packet]]:
-    """Cut the file into messages, some tens of megabytes at a time. Errors: `TraceError` for a length past the end."""
-    waiting: list[Packet] = []
-    at = size = 0
-    while at < len(content):
-        length = int.from_bytes(content[at : at + _LENGTH], "little")
-        start = at + _LENGTH
-        if not length:
-            raise TraceError(f"{path}: a message of 0 bytes at byte {at}: copy or record it again")
-        if start > len(content) or start + length > len(content):
-            raise TraceError(
-                f"{path}: the message at byte {at} should have {length} bytes and the file ends "
-                f"{start + length - len(content)} bytes before that: copy or record it again"
-            )
-        waiting.append(Packet(channel, 0, content[start : start + length], at))
-        at = start + length
-        size += length
-        if size >= BATCH_BYTES:
-            yield waiting
-            waiting, size = [], 0
-    if waiting:
-        yield waiting
 
 
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
@@ -239,10 +218,10 @@ def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
 
 def _places_objects(decoder: Decoder, packets: list[Packet]) -> bool:
     try:
-        frames = decoder.frames(packets)
+        frames, _ = decode_others(packets, decoder.frames)
     except TraceError:
         return False
-    return bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())
+    return frames is not None and bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())
 
 
 def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns: NDArray[np.uint64]) -> Recording:
@@ -265,16 +244,23 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
         for batch, offset in zip(batches, offsets, strict=False)
     )
-    nameless = sum(batch.nameless for batch in batches)
-    if nameless:
-        message = f"moving objects without an id: {nameless}: they are not judged"
-        findings.append(QualityFinding("dropped_row", "error", message, nameless))
+    nameless = np.concatenate([batch.nameless + offset for batch, offset in zip(batches, offsets, strict=False)])
+    if len(nameless):
+        message = f"moving objects without an id: {len(nameless)}: they are not judged"
+        findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
+    lost = times_of_lost_rows(
+        log_ns.astype(np.int64) if name == "osi-mcap" else t_ns,
+        np.ones(len(t_ns), np.bool_),
+        np.isin(np.arange(len(t_ns)), nameless),
+        "messages with moving objects without an id",
+    )
     return Recording(
         name,
         states,
         signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
+        lost=lost,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         embedded_map=head.lanes,

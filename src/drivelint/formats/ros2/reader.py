@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
@@ -166,7 +167,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     for topic in objects:
-        parts[topic] = _named(parts[topic], topic, findings)
+        parts[topic] = _named(parts[topic], topic, log)
     used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
@@ -206,13 +207,17 @@ def read(path: Path, options: IngestOptions) -> Recording:
     return recording
 
 
-def _named(rows: RecordedPoses, topic: str, findings: list[QualityFinding]) -> RecordedPoses:
+def _named(rows: RecordedPoses, topic: str, log: _Log) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
         return rows
     n = int(nameless.sum())
-    message = f"{topic}: objects without an id: {n}: they are not judged"
-    findings.append(QualityFinding("dropped_row", "error", message, n, int(rows.t_ns[nameless].min())))
+    what = f"{topic}: objects without an id"
+    finding = QualityFinding(
+        "dropped_row", "error", f"{what}: {n}: they are not judged", n, int(rows.t_ns[nameless].min())
+    )
+    log.findings.append(finding)
+    log.lost += times_of_lost_rows(rows.log_ns, np.ones(len(rows), np.bool_), nameless, what)
     return rows.take(~nameless)
 
 

@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import safe_xml
@@ -24,7 +25,8 @@ from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from drivelint.arrays import Codes, Floats
+    from drivelint.arrays import Codes, Floats, Mask
+    from drivelint.drive.trace import LostTime
     from drivelint.formats.probe import Probe
 
 
@@ -93,6 +95,7 @@ def read(probe: Probe) -> Recording:
     # a step at which nobody is there is a row with its time alone
     filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
+    lost = _lost(_floats(table, "time"), nameless & filled, f"{path.name}: rows without an id")
     table = table.filter(pa.array(~nameless)) if nameless.any() else table
     if not table.num_rows:
         raise TraceError(f"{path}: no vehicle in this log")
@@ -106,7 +109,13 @@ def read(probe: Probe) -> Recording:
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
+        recording.lost += lost
     return recording
+
+
+def _lost(time_s: Floats, lost: Mask, what: str) -> list[LostTime]:
+    timed = np.abs(time_s) < _LONGEST_S
+    return times_of_lost_rows(np.round(np.where(timed, time_s, 0.0) * 1e9).astype(np.int64), timed, lost, what)
 
 
 def _is_log(file: Path) -> bool:

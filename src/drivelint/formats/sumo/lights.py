@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.arrays import spelled
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
@@ -24,10 +25,12 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Recording
 
 _BESIDE: Final = "*tls*.xml"
 _HEAD_BYTES: Final = 65536
+_LONGEST_S: Final = 1e9
 _LETTERS: Final = {
     "r": "red", "u": "red_amber", "y": "amber", "Y": "amber", "g": "green", "G": "green", "o": "flashing", "O": "off",
 }  # fmt: skip
@@ -72,27 +75,35 @@ def _read(file: Path, recording: Recording) -> None:
     except TraceError as error:
         recording.findings.append(QualityFinding("lights_unread", "warning", str(error)))
         return
-    recording.signals, dropped = _rows(root.iter("tlsState"))
+    recording.signals, times_s, unread = _rows(root.iter("tlsState"))
     recording.notes.append(f"the states of traffic lights are those of {file.name} beside it")
-    if dropped:
-        message = f"light states of {file.name} without a time, light or state: {dropped}: they are left out"
-        recording.findings.append(QualityFinding("malformed_row", "warning", message, dropped))
+    if unread.any():
+        what = f"light states of {file.name} without a time, light or state"
+        n = int(unread.sum())
+        recording.findings.append(QualityFinding("malformed_row", "warning", f"{what}: {n}: they are left out", n))
+        timed = np.abs(times_s) < _LONGEST_S
+        t_ns = np.round(np.where(timed, times_s, 0.0) * 1e9).astype(np.int64)
+        recording.lost += times_of_lost_rows(t_ns, timed, unread, what)
 
 
-def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
-    """Return the rows of all connections, and how many states cannot be understood."""
+def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
+    """Return the rows of all connections, and of each state its time in seconds and whether it cannot be understood."""
     found: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
-    dropped = 0
+    every: list[float] = []
+    dropped: list[bool] = []
     for element in states:
         light, letters, at = element.get("id"), element.get("state"), safe_xml.number(element.get("time"))
-        if not light or not letters or not letters.isascii() or not abs(at) < 1e9:
-            dropped += 1
+        every.append(at)
+        dropped.append(False)
+        if not light or not letters or not letters.isascii() or not abs(at) < _LONGEST_S:
+            dropped[-1] = True
             continue
         times, shown = found.setdefault((light, len(letters)), ([], []))
         times.append(at)
         shown.append(letters)
+    unread = np.array(every, np.float64), np.array(dropped, np.bool_)
     if not found:
-        return None, dropped
+        return None, *unread
     words = np.full(256, -1, np.int8)
     for letter, word in _LETTERS.items():
         words[ord(letter)] = SIGNAL_STATES.index(word)
@@ -100,7 +111,7 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, int]:
         _table(light, n, np.array(times), words[np.frombuffer("".join(shown).encode(), np.uint8)])
         for (light, n), (times, shown) in sorted(found.items())
     ]
-    return pa.concat_tables(parts), dropped
+    return pa.concat_tables(parts), *unread
 
 
 def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:

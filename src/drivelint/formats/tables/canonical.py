@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import coded, spelled
+from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
     BRAKE_LIGHTS,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.arrays import Codes
+    from drivelint.drive.trace import LostTime
     from drivelint.formats.probe import Probe
 
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
@@ -58,8 +60,8 @@ def read(probe: Probe) -> Recording:
     Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
     """
     path = probe.path
-    states, egos, findings = _states(path / "actor_state.parquet" if path.is_dir() else path)
-    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings)
+    states, egos, findings, lost = _states(path / "actor_state.parquet" if path.is_dir() else path)
+    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings, lost=lost)
     if not path.is_dir():
         return recording
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
@@ -138,7 +140,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
         raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
 
 
-def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
+def _states(path: Path) -> tuple[States, list[str], list[QualityFinding], list[LostTime]]:
     table = parquet.table(path)
     _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
@@ -164,9 +166,11 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding]]:
     t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
     states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
     if not lost.any():
-        return states, egos, []
-    message = f"{path.name}: rows without actor or time: {int(lost.sum())}: they are not judged"
-    return states.take(~lost), egos, [QualityFinding("dropped_row", "error", message, int(lost.sum()))]
+        return states, egos, [], []
+    what = f"{path.name}: rows without actor or time"
+    finding = QualityFinding("dropped_row", "error", f"{what}: {int(lost.sum())}: they are not judged", int(lost.sum()))
+    timed = times.is_valid().to_numpy(zero_copy_only=False)
+    return states.take(~lost), egos, [finding], times_of_lost_rows(t_ns, timed, lost, what)
 
 
 def _codes(path: Path, column: pa.Array, name: str) -> Codes:

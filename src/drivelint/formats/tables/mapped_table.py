@@ -11,7 +11,16 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import coded
-from drivelint.drive.trace import ACTOR_CLASSES, LOSS_CHECKS, MOTOR_VEHICLES, QualityFinding, Recording, States
+from drivelint.drive.lost_time import times_of_lost_rows
+from drivelint.drive.trace import (
+    ACTOR_CLASSES,
+    LOSS_CHECKS,
+    MOTOR_VEHICLES,
+    LostTime,
+    QualityFinding,
+    Recording,
+    States,
+)
 from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
@@ -145,11 +154,14 @@ class _Body:
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
         parts, texts = [], []
+        lost = bad_time & ~blank
         for k in self.groups:
             ids = self._ids(k, n)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
-            if k == "":
-                self._report_rows(absent & ~blank & ~bad_time, "the actor id is missing", "dropped_row")
+            # in a wide table, an actor that is absent has neither a name nor a place
+            nameless = absent & ~bad_time & ~blank & (True if k == "" else self._placed(k, n))
+            self._report_rows(nameless, "the actor id is missing", "dropped_row")
+            lost |= nameless
             keep = ~(absent | bad_time)
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._rows(k, n, t_ns, keep))
@@ -162,9 +174,27 @@ class _Body:
             states=states,
             ego_ids=self._egos(states),
             findings=self.findings,
+            lost=self._lost(t_ns, ~bad_time, lost),
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,
         )
+
+    def _placed(self, k: str, n: int) -> Mask:
+        placed = np.ones(n, np.bool_)
+        for name in ("x", "y"):
+            column = mappings.fields(self.mapping)[name].column
+            if column is not None:
+                placed &= self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
+        return placed
+
+    def _lost(self, t_ns: Times, timed: Mask, lost: Mask) -> list[LostTime]:
+        """Return when the lost rows were recorded, and the lines that are no rows: what the cells of these mean is not known."""
+        what = f"{self.path.name}: rows that cannot be read"
+        if self.sheet.has_zeros_within:
+            return [LostTime(None, None, f"{what}, for zero bytes stand there")]
+        places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
+        t_ns, timed, lost = np.insert(t_ns, places, 0), np.insert(timed, places, False), np.insert(lost, places, True)
+        return times_of_lost_rows(t_ns, timed, lost, what)
 
     def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)

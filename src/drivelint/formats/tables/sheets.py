@@ -109,6 +109,20 @@ class CsvSheet:
         self._columns = {name: _trimmed(table.column(key), self._layout.null_values) for key, name in wanted.items()}
         return int(table.num_rows)
 
+    def rows_before_bad_lines(self) -> list[int]:
+        """Return how many rows stand before each line that is not among them."""
+        skipped = np.array(self._skipped, np.int64)
+        return [line - self._layout.skip_rows - 2 - int(np.searchsorted(skipped, line)) for line in self.bad_lines]
+
+    @property
+    def has_zeros_within(self) -> bool:
+        """Whether anything but zeros follows the first zero byte."""
+        if self.zeros_at is None:
+            return False
+        with self._path.open("rb") as file:
+            file.seek(self.zeros_at)
+            return bool(file.read().strip(b"\0\r\n"))
+
     def _refuse(self, row: Any) -> str:
         """Note a line with the wrong number of cells (pyarrow's callback); blank lines are no loss."""
         if row.text.strip(f" \t\r\n{self._layout.separator}"):
@@ -161,6 +175,7 @@ class ParquetSheet:
         self._path = path
         self.bad_lines: list[int] = []
         self.zeros_at: int | None = None
+        self.has_zeros_within = False
         schema = parquet.schema(path)
         self.names = list(schema.names)
         self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})
@@ -169,6 +184,10 @@ class ParquetSheet:
         """Read these columns."""
         self._table = parquet.table(self._path, names)
         return int(self._table.num_rows)
+
+    def rows_before_bad_lines(self) -> list[int]:
+        """Return none: a table of Parquet has no lines."""
+        return []
 
     def _column(self, name: str) -> pa.Array:
         return parquet.column(self._table, name)

@@ -1,0 +1,106 @@
+"""Cuts an OSI trace file into its messages, each of which stands behind its length; of a damaged file, those before the damage.
+
+Nothing marks the beginning of a message but the length of the one before. Where a length cannot be right, all that follows is lost:
+whatever looks like another message there may be the inside of one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.formats.mcap.losses import LostBytes
+from drivelint.formats.mcap.reader import BATCH_BYTES, Packet
+
+if TYPE_CHECKING:
+    import mmap
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from mcap.records import Channel
+
+    from drivelint.arrays import Times
+    from drivelint.drive.trace import LostTime
+    from drivelint.formats.mcap.losses import Losses
+
+LENGTH: Final = 4
+"""The bytes of a length."""
+MOST_MESSAGE_BYTES: Final = 512 << 20
+"""No message with a map in it comes near to that."""
+_FIRST_TAGS: Final = frozenset({0x0A, 0x12, 0x1A})
+"""What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
+
+
+def is_osi_trace(head: bytes, size: int) -> bool:
+    """Say whether a file of `size` bytes that begins with `head` can be an OSI trace: a length that fits, then a message."""
+    length = int.from_bytes(head[:LENGTH], "little")
+    return 2 <= length <= min(size - LENGTH, MOST_MESSAGE_BYTES) and len(head) > LENGTH and head[LENGTH] in _FIRST_TAGS
+
+
+def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
+    """Yield the messages up to the damage, some tens of megabytes at a time; then, to `losses`, add what is lost behind them.
+
+    The caller tells `losses` the times of the messages that it has read before it asks for more.
+    """
+    waiting: list[Packet] = []
+    at = size = 0
+    while at < len(content) and (why := _doubt(content, at)) is None:
+        start = at + LENGTH
+        end = start + int.from_bytes(content[at:start], "little")
+        waiting.append(Packet(channel, 0, content[start:end], at))
+        size += end - at
+        at = end
+        if size >= BATCH_BYTES:
+            yield waiting
+            waiting, size = [], 0
+    if waiting:
+        yield waiting
+    if at < len(content):
+        while losses.found and losses.found[-1].end == at:  # nothing vouches for the length of what cannot be decoded
+            at = losses.found.pop().start
+        since = losses.last_ns
+        if since is not None and len(content) > at + LENGTH and content[at + LENGTH] not in _FIRST_TAGS:
+            since -= 1  # no message begins here: the last one may be longer than its length said, and so may say less than was recorded
+        losses.found.append(LostBytes(at, len(content), str(why), since))
+
+
+def _doubt(content: mmap.mmap, at: int) -> str | None:
+    """Return why the length at byte `at` cannot be right; None where it can."""
+    start = at + LENGTH
+    length = int.from_bytes(content[at:start], "little")
+    if start > len(content):
+        return f"the file ends within the length of the message at byte {at}"
+    if not length:
+        return f"a message of 0 bytes at byte {at}"
+    if length > MOST_MESSAGE_BYTES or start + length > len(content):
+        short = start + length - len(content)
+        return f"the message at byte {at} should have {length} bytes" + (
+            f" and the file ends {short} bytes before that" if short > 0 else ", which is too many"
+        )
+    end = start + length
+    if _begins(content, at) or end == len(content) or _begins(content, end):
+        return None
+    return f"no message begins at byte {at}, nor at byte {end} behind the {length} bytes that it should have"
+
+
+def _begins(content: mmap.mmap, at: int) -> bool:
+    return is_osi_trace(content[at : at + LENGTH + 1], len(content) - at)
+
+
+def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
+    """Return what was lost in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
+
+    Where their clock goes back, messages come late: a lost one may have come as late. A clock that stands still bounds nothing.
+    """
+    steps = np.diff(t_ns)
+    late = -min(int(steps.min(initial=0)), 0)
+    if len(steps) and not steps.any():
+        return [each._replace(since_ns=None, until_ns=None) for each in losses.times(path)]
+    return [
+        each._replace(
+            since_ns=None if each.since_ns is None else each.since_ns - late,
+            until_ns=None if each.until_ns is None else each.until_ns + late,
+        )
+        for each in losses.times(path)
+    ]
