@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import msgspec
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
@@ -17,7 +16,7 @@ from drivelint.fleet_report.opened import opened
 from drivelint.pack.audits.statement import statement
 from drivelint.pack.signature import envelope, private_key
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import InThisProcess, judged
 from tests.pack.packed import STATEMENT, change_evidence, make_key, make_pack, rehash
 
 if TYPE_CHECKING:
@@ -26,12 +25,12 @@ if TYPE_CHECKING:
 
 N_DRIVES, SEED = 6, 12
 CONTACT, LOSSY_CONTACT = "drive-00001.parquet", "drive-00004.parquet"
-LOSSY, REFUSED = "drive-00002.parquet", "drive-00003.parquet"
+LOSSY, REFUSED, QUARANTINED = "drive-00002.parquet", "drive-00003.parquet", "drive-00005.parquet"
 AUDIT = "data/audit"
 
 
 class PackedAudit(NamedTuple):
-    """An audit with two contacts, one of them in a lossy drive, a lossy drive without, and a log that cannot be read."""
+    """An audit with two contacts, one in a lossy drive; a lossy drive without, a log that cannot be read, one that kills workers."""
 
     drives: fleet.Fleet
     audit: Path
@@ -51,7 +50,7 @@ def write_audit(folder: Path) -> PackedAudit:
         times = rows["t_ns"].to_pylist()
         pq.write_table(rows.set_column(3, "t_ns", pa.array([*times[:-1], None], pa.int64())), logs / name)
     (logs / REFUSED).write_bytes(b"<html>not found</html>")
-    judged(drives, folder / "audit")
+    judged(drives, folder / "audit", InThisProcess(poison=QUARANTINED))
     key, public = make_key(folder, "ours")
     pack = make_pack(folder / "audit", folder / "pack", key, with_inputs=True)
     return PackedAudit(drives, folder / "audit", pack, key, public, make_key(folder, "theirs")[0])
@@ -76,7 +75,7 @@ def change_json(path: Path, change: Callable[[dict[str, Any]], None]) -> None:
 
 
 def follow_rows(pack: Path) -> None:
-    """Let the receipts say what the changed tables say."""
+    """Let the receipts of judged drives say what the changed tables say."""
     file = table_of(pack, "receipts")
     receipts = pq.read_table(file)
     stable = pq.read_table(pack / AUDIT / "rules.parquet")["rule_id"].combine_chunks()
@@ -84,10 +83,9 @@ def follow_rows(pack: Path) -> None:
     told = []
     for row in receipts.to_pylist():
         mine = {table: rows.filter(pc.equal(rows["key"], row["key"])) for table, rows in tables.items()}
-        said = msgspec.to_builtins(said_of_rows(mine, stable))
-        told.append(
-            {**row, **{key: [*value.items()] if isinstance(value, dict) else value for key, value in said.items()}}
-        )
+        said = said_of_rows(mine, stable) if row["status"] == "judged" else {}
+        plain = {key: [*value.items()] if isinstance(value, dict) else value for key, value in said.items()}
+        told.append({**row, **plain})
     pq.write_table(pa.Table.from_pylist(told, schema=receipts.schema), file)
 
 

@@ -19,7 +19,17 @@ from drivelint.audit.store import LocalFolder
 from drivelint.errors import UsageError
 from drivelint.pack import VerifyRequest, verify
 from tests.pack import audited
-from tests.pack.audited import AUDIT, CONTACT, LOSSY, LOSSY_CONTACT, N_DRIVES, REFUSED, PackedAudit, table_of
+from tests.pack.audited import (
+    AUDIT,
+    CONTACT,
+    LOSSY,
+    LOSSY_CONTACT,
+    N_DRIVES,
+    QUARANTINED,
+    REFUSED,
+    PackedAudit,
+    table_of,
+)
 from tests.pack.packed import (
     STATEMENT,
     change_byte,
@@ -75,26 +85,28 @@ def test_the_statement_names_every_drive_and_what_became_of_it(packed: PackedAud
     assert drives.keys() == logs.keys()
     for name, drive in drives.items():
         digest = hashlib.sha256(logs[name].read_bytes()).hexdigest()
-        expected = (None, None, "refused") if name == REFUSED else (digest, road, "judged")
+        status = {REFUSED: "refused", QUARANTINED: "quarantined"}.get(name, "judged")
+        expected = (digest, road, status) if status == "judged" else (None, None, status)
         assert (drive["log_sha256"], drive["map_sha256"], drive["status"]) == expected
         assert drive["lossy"] == (name in {LOSSY, LOSSY_CONTACT})
         assert (drive["n_fail"] > 0) == (name in packed.drives.planted)
     assert "not parquet" in drives[REFUSED]["reason"]
+    assert "the worker died" in drives[QUARANTINED]["reason"]
     subjects = {each["name"]: each["digest"]["sha256"] for each in statement_of(packed.pack)["subject"]}
-    assert subjects == {name: drive["log_sha256"] for name, drive in drives.items() if name != REFUSED}
+    assert subjects == {name: drive["log_sha256"] for name, drive in drives.items() if drive["status"] == "judged"}
     audit = next(each for each in predicate["configuration"] if each["name"] == "audit")["annotations"]
     assert audit["versions"]["duckdb"] == duckdb.__version__
 
 
-def test_what_is_lossy_or_refused_has_passed_nothing(packed: PackedAudit) -> None:
+def test_what_was_not_judged_whole_has_passed_nothing(packed: PackedAudit) -> None:
     predicate = statement_of(packed.pack)["predicate"]
     names = {drive["log"]: f"{drive['drive_id']} {drive['key']}" for drive in predicate["drivelint_drives"]}
     assert predicate["failedTests"] == sorted(names[name] for name in (CONTACT, LOSSY_CONTACT))
-    assert predicate["drivelint_undecidedTests"] == sorted(names[name] for name in (LOSSY, REFUSED))
-    assert len(predicate["passedTests"]) == N_DRIVES - 4
+    assert predicate["drivelint_undecidedTests"] == sorted(names[name] for name in (LOSSY, REFUSED, QUARANTINED))
+    assert len(predicate["passedTests"]) == N_DRIVES - 5
     assert (predicate["result"], predicate["drivelint_exit"]) == ("FAILED", {"code": 1, "fail_on": "critical"})
-    (refused,) = evidence_of(packed.pack)["not_judged"]
-    assert (refused["status"], refused["log"].endswith(REFUSED)) == ("refused", True)
+    told = [(row["log"].rpartition("/")[2], row["status"]) for row in evidence_of(packed.pack)["not_judged"]]
+    assert told == [(REFUSED, "refused"), (QUARANTINED, "quarantined")]
 
 
 def test_any_duckdb_gives_the_margin_of_each_finding(packed: PackedAudit) -> None:

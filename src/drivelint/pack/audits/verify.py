@@ -50,6 +50,7 @@ _NOT_FACTS: Final = frozenset({
 class _Pack:
     """The pack of an audit that was opened, and what was done with its findings so far.
 
+    `known`: the rules that judged; None: this drivelint has others.
     `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
     """
 
@@ -59,6 +60,7 @@ class _Pack:
     evidence: dict[str, Any]
     rules: pa.Table
     rules_dirs: tuple[Path, ...]
+    known: dict[str, Rule] | None
     n_judged: int = 0
     n_alone: int = 0
     n_run: int = 0
@@ -76,7 +78,7 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
             evidence = consistency.evidence_of(request.folder)
             rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
             dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])
-            pack = _Pack(request.folder, con, audit, evidence, rules, dirs)
+            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _known(rules, dirs))
             findings = tables.worst_findings(con, len(evidence["findings"]))
             wrong = [*_of_tables(pack), *_of_evidence(pack, findings)]
             due = statement(pack.folder, evidence)
@@ -87,8 +89,11 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
         if wrong:
             return wrong, "not judged again", "", []
         given = tables.logs_of(con, findings, request.traces)
-        for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            wrong += _of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+        try:
+            for drive in tables.packed_drives(con, audit, rules, findings, dirs):
+                wrong += _of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+        except msgspec.MsgspecError as error:
+            wrong.append(Problem("receipts not readable", str(error)))
         return wrong, _judging(pack), outcome, _notes(pack)
 
 
@@ -100,9 +105,9 @@ def _of_tables(pack: _Pack) -> Iterator[Problem]:
     for key in tables.unlike_summary(pack.con, pack.audit, said):
         yield Problem("summary.json does not fit the tables", key)
     yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
-    if (rules := _rules(pack)) is not None:
+    if pack.known is not None:
         asked = tables.asked_of(pack.audit, None, pack.rules_dirs)
-        if why := consistency.unlike_rules(list(rules.values()), pack.rules, asked):
+        if why := consistency.unlike_rules(list(pack.known.values()), pack.rules, asked):
             yield Problem("audit.json does not fit the result", why)
     settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
     if told["versions"] == versions() and told["run_id"] != run_id(settings):
@@ -164,7 +169,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     pack.n_judged += 1
     try:
         fresh = again.check_again(drive.result, asked, None, evidence=False)
-        evidence = again.finding_evidence(drive.result, asked)
+        evidence = again.finding_evidence(drive.result, asked, known=[*(pack.known or {}).values()])
     except DriveLintError as error:
         return [Problem("result not reproduced", str(error))]
     wrong = [] if _same_rows(pack, drive, fresh) else [Problem("result not reproduced", f"the rows of {_name(drive)}")]
@@ -199,18 +204,17 @@ def _asked(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
 def _of_rows(pack: _Pack, drive: tables.PackedDrive) -> list[Problem]:
     """Run the SQL of a drive's findings on the rows in the pack."""
     pack.n_alone += 1
-    if (rules := _rules(pack)) is None:
+    if pack.known is None:
         return []
     rows = {f"{FINDINGS}/{drive.key}/{row['finding_id']}": row for row in drive.result.findings.to_pylist()}
-    wrong, n = consistency.of_sql(pack.folder, rows, rules, drive.asked)
+    wrong, n = consistency.of_sql(pack.folder, rows, pack.known, drive.asked)
     pack.n_run += n
     return wrong
 
 
-def _rules(pack: _Pack) -> dict[str, Rule] | None:
-    """Return the rules that judged; None: this drivelint has others."""
+def _known(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rule] | None:
     try:
-        return {rule.id: rule for rule in again.rules_of_table(pack.rules, pack.rules_dirs)}
+        return {rule.id: rule for rule in again.rules_of_table(rules, rules_dirs)}
     except UsageError:
         return None
 
@@ -252,7 +256,7 @@ def _notes(pack: _Pack) -> list[str]:
     if pack.n_alone:
         ran = (
             f"{plural(pack.n_run, 'finding')} of theirs gave the numbers from the rows in the pack"
-            if _rules(pack) is not None
+            if pack.known is not None
             else "the SQL of their findings was not run: this drivelint has other rules"
         )
         notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")
