@@ -50,7 +50,7 @@ _NOT_FACTS: Final = frozenset({
 class _Pack:
     """The pack of an audit that was opened, and what was done with its findings so far.
 
-    `known`: the rules that judged; None: this drivelint has others.
+    `known`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
     `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
     """
 
@@ -61,6 +61,7 @@ class _Pack:
     rules: pa.Table
     rules_dirs: tuple[Path, ...]
     known: dict[str, Rule] | None
+    packed_by: str
     n_judged: int = 0
     n_alone: int = 0
     n_run: int = 0
@@ -78,7 +79,8 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
             evidence = consistency.evidence_of(request.folder)
             rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
             dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])
-            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _known(rules, dirs))
+            packed_by = consistency.packed_by(evidence)
+            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _known(rules, dirs), packed_by)
             findings = tables.worst_findings(con, len(evidence["findings"]))
             wrong = [*_of_tables(pack), *_of_evidence(pack, findings)]
             due = statement(pack.folder, evidence)
@@ -270,8 +272,8 @@ def _notes(pack: _Pack) -> list[str]:
         notes.append(f"not judged when it was audited, nor now: {listed(logs, 3)}")
     if changed := sorted(name for name, value in versions().items() if told.get(name) != value):
         notes.append(f"audited by other versions of {', '.join(changed)}")
-    if (packed_by := consistency.packed_by(evidence)) != __version__:
-        notes.append(f"packed by drivelint {packed_by}, and this is {__version__}")
+    if pack.packed_by != __version__:
+        notes.append(f"packed by drivelint {pack.packed_by}, and this is {__version__}")
     if evidence["rules_dirs"]:
         notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
     return notes
