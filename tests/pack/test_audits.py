@@ -139,6 +139,8 @@ def test_without_the_logs_the_sql_is_run_and_the_note_says_so(packed: PackedAudi
     assert not found.problems
     assert "not judged again; it states FAILED" in found.sentence
     assert found.notes[0].startswith("2 drives without a log: judged again only with --trace and --map; 2 findings")
+    rest = "2 drives without a finding in the pack: not judged again; their rows have the hashes in the receipts"
+    assert rest in found.notes
     assert any(note.startswith("not judged when it was audited, nor now:") and REFUSED in note for note in found.notes)
     logs = packed.drives.manifest.parent / "logs"
     one = verify(VerifyRequest(without_logs, packed.public, (logs / CONTACT,)))

@@ -21,7 +21,12 @@ if TYPE_CHECKING:
     from drivelint.pack import PackRequest
 
 Traces = Annotated[
-    list[Path] | None, option("--trace", "FILE", "Where a log is, if it was moved. Repeatable: its hash tells which.")
+    list[Path] | None,
+    option(
+        "--trace",
+        "FILE",
+        "A log that was moved; of an audit, also a folder of them. Repeatable: its hash tells which.",
+    ),
 ]
 Map = Annotated[Path | None, option("--map", "MAP", "Where the map is, if it was moved.")]
 

@@ -263,7 +263,11 @@ def _notes(pack: _Pack) -> list[str]:
         )
         notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")
     if rest := evidence["n_drives"] - len(evidence["not_judged"]) - pack.n_judged - pack.n_alone:
-        known = "not judged again, the rows have the hashes of the receipts"
+        known = (
+            "not judged again; their rows have the hashes in the receipts"
+            if _same_libraries(pack)
+            else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
+        )
         notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {known}")
     if left := evidence["findings_left_out"]:
         notes.append(f"{plural(left, 'finding')} of less weight: no rows in the pack")
