@@ -424,6 +424,19 @@ def test_rows_of_a_finding_that_do_not_give_its_numbers_are_named(
     assert problem == ("finding does not give its numbers", pair.parent.relative_to(pack).as_posix())
 
 
+def test_rows_that_another_pyarrow_wrote_are_not_said_to_have_their_hashes(
+    packed: PackedAudit, without_logs: Path, tmp_path: Path
+) -> None:
+    pack = tmp_path / shutil.copytree(without_logs, tmp_path / "pack").name
+    audited.change_json(pack / AUDIT / "audit.json", lambda told: told["versions"].update(pyarrow="1"))
+    change_evidence(pack, lambda told: told["audit"]["versions"].update(pyarrow="1"))
+    audited.sign_anew(pack, packed.key)
+    found = verify(VerifyRequest(pack, packed.public))
+    assert not found.problems
+    assert any("were not compared, as another pyarrow wrote them" in note for note in found.notes)
+    assert "audited by other versions of pyarrow" in found.notes
+
+
 def cli_main(*arguments: str) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.argv", ["drivelint", *arguments])
