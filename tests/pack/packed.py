@@ -8,7 +8,7 @@ import json
 import shutil
 import subprocess
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     Tamper = Callable[[Path, Packed], tuple[str, str]]
     """Changes a pack; returns the kind of problem that is found, and what is named."""
 
+F = TypeVar("F", bound="Callable[..., tuple[str, str]]")
 STATEMENT, KEY, INFO = "statement.dsse.json", "public-key.pem", "bag-info.txt"
 MANIFEST, TAG_MANIFEST = "manifest-sha256.txt", "tagmanifest-sha256.txt"
 
@@ -201,8 +202,8 @@ def change_numbers(path: Path) -> None:
             change_table(path, field.name, lambda value: None if value is None else 1.5 * value + 0.1)
 
 
-def into(table: dict[str, Tamper]) -> Callable[[Tamper], Tamper]:
-    def add(function: Tamper) -> Tamper:
+def into(table: dict[str, F]) -> Callable[[F], F]:
+    def add(function: F) -> F:
         table[function.__name__] = function
         return function
 
@@ -225,9 +226,9 @@ print(json.dumps(found))
 """
 
 
-def numbers_without_drivelint(pack: Path) -> dict[str, list[dict[str, Any]]]:
+def numbers_without_drivelint(pack: Path, inner: str = "data/findings") -> dict[str, list[dict[str, Any]]]:
     done = subprocess.run(
-        [sys.executable, "-I", "-c", WITHOUT_DRIVELINT, pack / "data/findings"],
+        [sys.executable, "-I", "-c", WITHOUT_DRIVELINT, pack / inner],
         check=False, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

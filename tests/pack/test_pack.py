@@ -84,6 +84,38 @@ def test_a_number_is_written_with_its_type() -> None:
         assert type(found[2]) is type(value)
 
 
+def test_a_check_packs_its_evidence_in_one_go(packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The exit code stays that of the check."""
+    command = [
+        "check",
+        OVERTAKE / "collision.csv",
+        "--map",
+        OVERTAKE / "road.xodr",
+        "--mapping",
+        OVERTAKE / "mapping.toml",
+    ]
+    command += [
+        "--rules",
+        "ukhc.no-collision",
+        "--no-robustness",
+        "--no-annotate",
+        "--out",
+        tmp_path / "result",
+        "--evidence",
+        tmp_path / "pack",
+        "--sign",
+        packed.key,
+        "--quiet",
+    ]
+    monkeypatch.setattr("sys.argv", ["drivelint", *map(str, command)])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 1
+    found = verify(VerifyRequest(tmp_path / "pack", packed.public))
+    assert not found.problems
+    assert files(tmp_path / "pack") == files(make_pack(tmp_path / "result", tmp_path / "again", packed.key))
+
+
 def test_sha256sum_finds_nothing_wrong(packed: Packed) -> None:
     for manifest in ("manifest-sha256.txt", "tagmanifest-sha256.txt"):
         done = subprocess.run(["sha256sum", "--strict", "--quiet", "-c", manifest], cwd=packed.pack, check=False)

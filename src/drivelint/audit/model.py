@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, field, replace
+from pathlib import Path  # noqa: TC003 - msgspec reads it
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from drivelint.drive.trace import DriveInput
 
 RECEIPT_VERSION: Final = 1

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -161,30 +161,16 @@ class Judge:
         return write_batch(results, {table: pa.concat_tables(of) for table, of in rows.items()}, receipts)
 
     def _receipt(self, key: str, drive: AuditDrive, rows: Mapping[str, pa.Table]) -> Receipt:
-        (about,) = rows["drives"].to_pylist()
-        verdicts = rows["verdicts"]
-        stable = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=self._stable))
         return Receipt(
             key=key,
             source_id=drive.source_id,
             batch="",
-            status="judged" if about["status"] == "judged" else "refused",
             log=drive.log,
             size=drive.size,
             stamp=drive.stamp,
-            drive_id=about["drive_id"],
-            log_sha256=about["sha256"],
-            map_sha256=about["map_sha256"],
-            reason=about["status_reason"],
-            lossy=about["lossy"],
-            rows_sha256=rows_sha256(rows),
-            km=about["km"],
-            duration_s=about["duration_s"] or 0.0,
-            counts=_counts(verdicts, "verdict"),
-            failed=_counts(stable.filter(pc.equal(stable["verdict"], "fail")), "severity"),
-            unknown=_counts(stable, "verdict").get("unknown", 0),
             tags=drive.tags,
             options=drive.options_json,
+            **said_of_rows(rows, self._stable),
         )
 
     def close(self) -> None:
@@ -219,6 +205,27 @@ def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
         tags = pa.array([sorted(drive.tags.items())] * rows.num_rows, pa.map_(pa.string(), pa.string()))
         made = made.append_column("tags", tags)
     return made
+
+
+def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, Any]:
+    """Return what a receipt says of a drive's rows. `stable`: the ids of the stable rules."""
+    (about,) = rows["drives"].to_pylist()
+    verdicts = rows["verdicts"]
+    gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))
+    return {
+        "status": "judged" if about["status"] == "judged" else "refused",
+        "drive_id": about["drive_id"],
+        "log_sha256": about["sha256"],
+        "map_sha256": about["map_sha256"],
+        "reason": about["status_reason"],
+        "lossy": about["lossy"],
+        "rows_sha256": rows_sha256(rows),
+        "km": about["km"],
+        "duration_s": about["duration_s"] or 0.0,
+        "counts": _counts(verdicts, "verdict"),
+        "failed": _counts(gating.filter(pc.equal(gating["verdict"], "fail")), "severity"),
+        "unknown": _counts(gating, "verdict").get("unknown", 0),
+    }
 
 
 def rows_sha256(rows: Mapping[str, pa.Table]) -> str:

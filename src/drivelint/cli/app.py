@@ -144,6 +144,8 @@ def check(
             min=0.1,
         ),
     ] = 30.0,
+    evidence: options.Evidence = None,
+    sign: options.Sign = None,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
     ] = False,
@@ -172,6 +174,7 @@ def check(
     from drivelint.settings import SETTINGS_FILE
 
     values.check_confidence(confidence, robustness)
+    pack_result = packs.pack_later(evidence, sign, out, overwrite=overwrite)
     gate_inputs = GateInputs.from_files(
         baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
     )
@@ -217,6 +220,8 @@ def check(
         print_rich(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))
     if result.interrupted:
         say_kept(result.drives["status"].to_pylist(), out)
+    else:
+        pack_result()
     raise typer.Exit(int(exit_status(result).code))
 
 

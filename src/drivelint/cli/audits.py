@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint.cli import options, packs, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
@@ -81,6 +81,8 @@ def audit(
         str | None,
         option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
     ] = None,
+    evidence: options.Evidence = None,
+    sign: options.Sign = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
 ) -> None:
     """Judge many drives, as many at a time as there are cores.
@@ -119,6 +121,7 @@ def audit(
         prune=prune,
         cluster=cluster,
     )
+    pack_result = packs.pack_later(evidence, sign, out, whole=shard is None and not claim)
     with bar(quiet) as progress:
         try:
             counted = run_interruptible(lambda: audited(request, progress))
@@ -130,6 +133,7 @@ def audit(
             raise
     code = counted.exit_code(fail_on, strict=strict)
     typer.echo(inert(summary_text(counted, out, code)))
+    pack_result()
     raise typer.Exit(int(code))
 
 

@@ -55,6 +55,18 @@ MemorySize = Annotated[
         "on it; a step that needs more takes more, with a note. The program itself takes some 300 MB more. Default: 1200MB.",
     ),
 ]
+Evidence = Annotated[
+    Path | None,
+    option("--evidence", "PACK", "Then pack the result as evidence into this folder, as drivelint pack does."),
+]
+Sign = Annotated[
+    Path | None,
+    option(
+        "--sign",
+        "KEY",
+        "Sign the pack with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
+    ),
+]
 FormatOption = Annotated[Format, option("--format", None, "What is printed on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None, option("--rules-dir", "DIR", "Folder with rule packs of your own. Repeatable.")

@@ -5,33 +5,37 @@ from __future__ import annotations
 import os
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from drivelint.cli import options, values
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode, UsageError
-from drivelint.phrases import inert, inert_line
+from drivelint.phrases import inert, inert_line, plural
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.pack import PackRequest
 
 Traces = Annotated[
-    list[Path] | None, option("--trace", "FILE", "Where a log is, if it was moved. Repeatable: its hash tells which.")
+    list[Path] | None,
+    option(
+        "--trace",
+        "FILE",
+        "A log that was moved; of an audit, also a folder of them. Repeatable: its hash tells which.",
+    ),
 ]
 Map = Annotated[Path | None, option("--map", "MAP", "Where the map is, if it was moved.")]
 
 
 def pack(
-    folder: Annotated[Path, argument("DIR", "What check --out wrote.")],
+    folder: Annotated[Path, argument("DIR", "What check --out or audit --out wrote.")],
     *,
     out: Annotated[Path, option("--out", "PACK", "Folder for the evidence pack.")],
-    sign: Annotated[
-        Path | None,
-        option(
-            "--sign",
-            "KEY",
-            "Sign it with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
-        ),
-    ] = None,
+    sign: options.Sign = None,
     with_inputs: Annotated[
         bool, option("--with-inputs", None, "Also copy the logs, the map and the mapping into it.")
     ] = False,
@@ -53,26 +57,69 @@ def pack(
             "Add the time stamp (RFC 3161 response, .tsr) that an authority made of statement.dsse.json in the same pack.",
         ),
     ] = None,
+    findings: Annotated[
+        str | None,
+        option(
+            "--findings", "N|all", "Of an audit: pack the rows of its N worst findings. Default: 100; a check's all."
+        ),
+    ] = None,
     overwrite: Annotated[bool, option("--overwrite", None, "Replace a pack that is there.")] = False,
 ) -> None:
-    """Pack a result as evidence: hashed, signed, and to be checked by others.
+    """Pack the result of a check or an audit as evidence: hashed, signed, and to be checked by others.
 
     A folder in BagIt form with the tables and reports, the rules, for each finding the rows that its rule read and SQL that gives its
-    margin in any DuckDB, and an in-toto statement of what was judged by what. The logs are judged again for it. The same command
-    gives the same bytes.
+    margin in any DuckDB, and an in-toto statement of what was judged by what. The logs of these findings are judged again for it. The
+    same command gives the same bytes.
     """
-    from drivelint.pack import PackRequest, write_pack
+    from drivelint.pack import MOST_FINDINGS, PackRequest
 
-    request = PackRequest(folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite)
+    most = MOST_FINDINGS if findings is None else values.parse_findings(findings)
+    request = PackRequest(
+        folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite, most
+    )
+    _write(request)
+
+
+def pack_later(
+    evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
+) -> Callable[[], None]:
+    """Return what packs a result that `check` or `audit` is going to write; does nothing where no pack is asked for.
+
+    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for what is known before anything is judged.
+    """
+    if evidence is None:
+        if sign is not None:
+            raise UsageError("--sign is of an evidence pack: say where that goes with --evidence PACK")
+        return lambda: None
+    if result is None:
+        raise UsageError("--evidence packs what --out writes: give --out, too")
+    if not whole:
+        raise UsageError(
+            "--evidence packs a whole audit: give drivelint merge and then drivelint pack, when all parts have ended"
+        )
+    from drivelint.pack import PackRequest, ready
+
+    request = PackRequest(Path(result), evidence, sign, date=_date(None), overwrite=overwrite)
+    ready(request)
+    return lambda: _write(request, err=True)
+
+
+def _write(request: PackRequest, *, err: bool = False) -> None:
+    """Write a pack and say what is in it, with `err` on stderr."""
+    from drivelint.pack import write_pack
+
     told = run_interruptible(lambda: write_pack(request))
     findings = told["findings"]
     n = sum(1 for finding in findings if finding["sql"])
-    signed = "signed" if sign else "not signed"
-    typer.echo(f"{inert_line(str(out))}: {signed}; {n} of {len(findings)} findings have SQL that gives their margin")
+    signed = "signed" if request.key else "not signed"
+    left = told.get("findings_left_out")
+    less = f"; {plural(left, 'finding')} of less weight left out (drivelint pack --findings all)" if left else ""
+    said = f"{signed}; {n} of {len(findings)} findings have SQL that gives their margin{less}"
+    typer.echo(f"{inert_line(str(request.out))}: {said}", err=err)
     for finding in findings:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
-            typer.echo(inert_line(why))
+            typer.echo(inert_line(why), err=err)
 
 
 def verify(

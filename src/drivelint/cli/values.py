@@ -48,6 +48,15 @@ def check_confidence(confidence: float | None, robustness: bool) -> None:
         raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
 
 
+def parse_findings(text: str) -> int | None:
+    """Read how many findings, None for `all`. Errors: `UsageError`."""
+    if text.strip().lower() == "all":
+        return None
+    if not re.fullmatch(r"\s*\d{1,9}\s*", text, re.ASCII):
+        raise UsageError(f"--findings {text!r}: write a number such as 100, or all")
+    return int(text)
+
+
 def parse_shard(text: str | None) -> tuple[int, int] | None:
     """Read I/N, the I-th of N parts. Errors: `UsageError`."""
     if text is None:

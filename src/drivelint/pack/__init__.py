@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from drivelint.pack.verify import Verification, VerifyRequest, verify
-from drivelint.pack.write import PackRequest, write_pack
+from drivelint.pack.request import MOST_FINDINGS, PackRequest, Verification, VerifyRequest
+from drivelint.pack.verify import verify
+from drivelint.pack.write import ready, write_pack
 
-__all__ = ["PackRequest", "Verification", "VerifyRequest", "verify", "write_pack"]
+__all__ = ["MOST_FINDINGS", "PackRequest", "Verification", "VerifyRequest", "ready", "verify", "write_pack"]

@@ -18,6 +18,7 @@ from drivelint.evaluate.sql_fragments import Binding
 from drivelint.evaluate.temp_tables import drop_tables
 from drivelint.explain.source import open_drive
 from drivelint.pack import finding_rows, finding_sql
+from drivelint.pack.bag import Problem
 from drivelint.report.progress import Silent
 from drivelint.result.counts import grouped
 from drivelint.run import CheckOptions, check
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     import duckdb
+    import pyarrow as pa
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
@@ -40,9 +42,14 @@ Evidence = dict[str, dict[str, bytes] | str]
 
 def rules_of(result: Result, asked: RunRequest) -> list[Rule]:
     """Return the rules of a result. Errors: `UsageError` for one that is gone or was changed since."""
-    known = catalogue.load_rules(asked.rules_dirs)
+    return rules_of_table(result.rules, asked.rules_dirs)
+
+
+def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
+    """Return the rules of a table `rule`. Errors: `UsageError` for one that is gone or was changed since."""
+    known = catalogue.load_rules(rules_dirs)
     found = []
-    for row in result.rules.to_pylist():
+    for row in rules.to_pylist():
         rule = known.get(row["rule_id"])
         if rule is None or rule.version != row["rule_version"]:
             what = "is not in the catalogue any more" if rule is None else "was changed since"
@@ -51,8 +58,8 @@ def rules_of(result: Result, asked: RunRequest) -> list[Rule]:
     return found
 
 
-def check_again(result: Result, asked: RunRequest, work: Path | None) -> Result:
-    """Return the result of the same check. `work`: where its margins go; None: they are not asked for.
+def check_again(result: Result, asked: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
+    """Return the result of the same check. `work`: where its margins go; None: they are not asked for. `evidence`: with its pictures.
 
     Errors: `UsageError` for a rule that is gone or was changed since, and those of a check.
     """
@@ -68,7 +75,7 @@ def check_again(result: Result, asked: RunRequest, work: Path | None) -> Result:
         "out": work,
         "margins": work is not None,
         "annotate": False,
-        "evidence": True,
+        "evidence": evidence,
     }
     return check(CheckOptions(**given), Silent())
 
@@ -84,9 +91,11 @@ def params_of(rules: Iterable[Rule], asked: RunRequest) -> dict[str, dict[str, o
     }
 
 
-def finding_evidence(result: Result, asked: RunRequest, memory: int | None = DEFAULT_MEMORY) -> Evidence:
-    """Return what gives the numbers of each finding again. `asked` says where the logs are."""
-    rules = {rule.id: rule for rule in rules_of(result, asked)}
+def finding_evidence(
+    result: Result, asked: RunRequest, memory: int | None = DEFAULT_MEMORY, known: Sequence[Rule] = ()
+) -> Evidence:
+    """Return what gives the numbers of each finding again. `asked` says where the logs are; `known`: the rules, if they were read."""
+    rules = {rule.id: rule for rule in known or rules_of(result, asked)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
     for (drive_id, ego_id), mine in grouped(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
@@ -140,6 +149,27 @@ def _of_rule(
         row["finding_id"]: finding_rows.evidence(rule, params, row, references.get(row["ref_id"]), tables)
         for row in findings
     }
+
+
+def compared(
+    folder: Path, files: Mapping[str, bytes], packed: Mapping[str, bytes], *, other_libraries: bool
+) -> tuple[list[Problem], bool]:
+    """Return which files came out otherwise than they are in the pack, and whether some have other bytes.
+
+    `packed`: the bytes of those that are not compared with the file itself. `other_libraries`: others wrote the pack.
+    """
+    wrong, other_bytes = [], False
+    for path, content in files.items():
+        if not (folder / path).is_file():
+            wrong.append(Problem("result not reproduced", f"{path}: is not in the pack"))
+            continue
+        there = packed[path] if path in packed else (folder / path).read_bytes()
+        if there != content:
+            other_bytes = True
+            # the same libraries write the same bytes: what differs then is somebody's work
+            if not (other_libraries and path.endswith(".parquet") and same_rows(there, content)):
+                wrong.append(Problem("result not reproduced", path))
+    return wrong, other_bytes
 
 
 def same_rows(a: bytes, b: bytes) -> bool:

@@ -14,7 +14,7 @@ from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
 from drivelint.pack import again, finding_rows, finding_sql, signature
 from drivelint.pack.bag import DATA, Problem
-from drivelint.pack.contents import EVIDENCE, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
+from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
 from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
 from drivelint.phrases import plural
 from drivelint.report import summary
@@ -24,8 +24,10 @@ from drivelint.result import request as run_request
 from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
+    from drivelint.catalogue import Rule
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
@@ -47,7 +49,7 @@ def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
     """Return what does not agree, and what is said; None: it cannot be read."""
     name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
     try:
-        evidence = _evidence(folder)
+        evidence = evidence_of(folder)
         result = load_result(folder / RESULT)
         wrong = _of_evidence(folder, result, evidence) + _of_files(folder, evidence)
         wrong += _of_reports(folder, result, evidence)
@@ -62,7 +64,7 @@ def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
     return differences(said, due) + wrong, stated
 
 
-def _evidence(folder: Path) -> dict[str, Any]:
+def evidence_of(folder: Path) -> dict[str, Any]:
     """Return `evidence.json`. Errors: `ValueError` where a name stands twice, or for one of another form."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -80,13 +82,7 @@ def _evidence(folder: Path) -> dict[str, Any]:
 def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
     """Return in what `evidence.json` does not say what the result and the rules in the pack say."""
     due = facts(folder, result, run_request.load(folder / RESULT))
-    due["findings"] = result.findings.select(SAID_OF_FINDINGS).to_pylist()
-    told = {**evidence, "findings": [{key: row.get(key) for key in SAID_OF_FINDINGS} for row in evidence["findings"]]}
-    due["rule versions"] = result.rules["rule_version"].to_pylist()
-    told["rule versions"] = [rule["rule_version"] for rule in due["rules"]]
-    due["sql"] = [_place_of_sql(row) for row in evidence["findings"]]
-    told["sql"] = [row["sql"] for row in evidence["findings"]]
-    keys = [key for key, value in due.items() if told.get(key) != value]
+    keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
     wrong = [Problem("evidence.json does not fit the result", key) for key in keys]
@@ -95,10 +91,25 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
 
 
-def _place_of_sql(finding: dict[str, Any]) -> str | None:
+def differing(
+    evidence: dict[str, Any], facts: dict[str, Any], findings: list[dict[str, Any]], rules: Iterable[dict[str, Any]]
+) -> list[str]:
+    """Return the keys of `evidence.json` that do not say these facts, findings and versions of rules, or where the SQL is."""
+    due: dict[str, Any] = {**facts, "findings": findings}
+    said = findings[0].keys() if findings else ()
+    told = {**evidence, "findings": [{key: row.get(key) for key in said} for row in evidence["findings"]]}
+    due["rule versions"] = [rule["rule_version"] for rule in rules]
+    told["rule versions"] = [rule["rule_version"] for rule in facts["rules"]]
+    due["sql"] = [_place_of_sql(row, by_drive="key" in said) for row in evidence["findings"]]
+    told["sql"] = [row["sql"] for row in evidence["findings"]]
+    return [key for key, value in due.items() if told.get(key) != value]
+
+
+def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
     """Return where the SQL of a finding must be; None: there is none, and the reason is said."""
     said = finding["without_sql_because"]
-    return None if isinstance(said, str) and said else f"{DATA}/findings/{finding['finding_id']}/finding.sql"
+    place = f"{FINDINGS}/{finding['key']}" if by_drive else FINDINGS
+    return None if isinstance(said, str) and said else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
@@ -121,11 +132,18 @@ def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
     places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
     places += [inside.get("map"), inside.get("map_dir")]
     kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
-    roots = [place for place in places if place is not None and place.startswith(kept)]
-    roots += [row["sql"].removesuffix("/finding.sql") for row in evidence["findings"] if row["sql"]]
-    files = {path.relative_to(folder).as_posix() for path in (folder / DATA).rglob("*") if path.is_file()}
-    known = {name for name in files if any(name == root or name.startswith(f"{root}/") for root in roots)}
-    return [Problem("file that nothing names", name) for name in sorted(files - named - known)]
+    return unnamed(folder, evidence, named, [place for place in places if place is not None and place.startswith(kept)])
+
+
+def unnamed(folder: Path, evidence: dict[str, Any], named: set[str], roots: Iterable[str]) -> list[Problem]:
+    """Return the files of the payload but those named, those below `roots`, and those of findings."""
+    known = {
+        *roots,
+        *(row["sql"].removesuffix(f"/{finding_rows.SQL_FILE}") for row in evidence["findings"] if row["sql"]),
+    }
+    files = {path.relative_to(folder) for path in (folder / DATA).rglob("*") if path.is_file()}
+    found = [path.as_posix() for path in files if known.isdisjoint(each.as_posix() for each in (path, *path.parents))]
+    return [Problem("file that nothing names", name) for name in sorted(set(found) - named)]
 
 
 def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
@@ -154,19 +172,31 @@ def of_findings(folder: Path, result: Result, asked: RunRequest) -> tuple[list[P
         rules = {rule.id: rule for rule in again.rules_of(result, asked)}
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
+    if why := unlike_rules(list(rules.values()), result.rules, asked):
+        return [Problem("run.json does not fit the result", why)], ""
+    rows = {f"{FINDINGS}/{row['finding_id']}": row for row in result.findings.to_pylist()}
+    wrong, n = of_sql(folder, rows, rules, asked)
+    return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
+
+
+def unlike_rules(rules: list[Rule], table: pa.Table, asked: RunRequest) -> str:
+    """Return in what the table `rule` does not say which rules were asked for, with which parameters; '' where it does."""
     try:
-        given = catalogue.parse_params(list(rules.values()), asked.params)
-        table = collect.rule_table(list(rules.values()), given, asked.profiles or DEFAULT_PROFILES)
+        given = catalogue.parse_params(rules, asked.params)
+        due = collect.rule_table(rules, given, asked.profiles or DEFAULT_PROFILES)
     except DriveLintError as error:
-        return [Problem("run.json does not fit the result", str(error))], ""
-    if table.to_pylist() != result.rules.to_pylist():
-        return [
-            Problem("run.json does not fit the result", "rules.parquet has other parameters, profiles or rules")
-        ], ""
+        return str(error)
+    return "" if due.to_pylist() == table.to_pylist() else "rules.parquet has other parameters, profiles or rules"
+
+
+def of_sql(
+    folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], asked: RunRequest
+) -> tuple[list[Problem], int]:
+    """Return the findings whose SQL gives other numbers, and of how many it was run. `findings`: folder in the pack -> finding."""
     params = again.params_of(rules.values(), asked)
     wrong, n = [], 0
-    for row in result.findings.to_pylist():
-        place = folder / DATA / "findings" / row["finding_id"]
+    for inner, row in findings.items():
+        place = folder / inner
         if not (place / finding_rows.SQL_FILE).is_file():
             continue
         n += 1
@@ -181,5 +211,5 @@ def of_findings(folder: Path, result: Result, asked: RunRequest) -> tuple[list[P
         except UNREADABLE:
             same = False
         if not same:
-            wrong.append(Problem("finding does not give its numbers", place.relative_to(folder).as_posix()))
-    return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
+            wrong.append(Problem("finding does not give its numbers", inner))
+    return wrong, n

@@ -18,12 +18,16 @@ from drivelint.result import folder as folder_of_result
 from drivelint.result import request as run_request
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from drivelint.pack.again import Evidence
+    from drivelint.pack.finding_sql import Row
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
 EVIDENCE: Final = "data/evidence.json"
 RESULT: Final = "data/result"
+FINDINGS: Final = "data/findings"
 FORM: Final = 1
 """What `evidence` says in `evidence.json`: raised when a key changes its meaning or goes."""
 OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or "/" in name)) - {
@@ -51,12 +55,23 @@ def facts(folder: Path, result: Result, asked: RunRequest) -> dict[str, Any]:
         "drives": [{key: drive[key] for key in _SAID_OF_DRIVES} for drive in judged(drives)],
         "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
         "options": _options(asked, result),
+        **facts_of_rules(folder, rules),
+        "outputs": hashes(folder, RESULT),
+    }
+
+
+def facts_of_rules(folder: Path, rules: Sequence[Row]) -> dict[str, Any]:
+    """Return the files and the parameters of the rules of a result; `rules`: its table `rule`."""
+    return {
         "rules": [_rule(folder, rule["rule_id"]) for rule in rules],
         "parameters": {f"{rule['rule_id']}.{each['name']}": each["value"] for rule in rules for each in rule["params"]},
-        "outputs": {
-            path.relative_to(folder).as_posix(): sha256_of(path) for path in sorted((folder / RESULT).iterdir())
-        },
     }
+
+
+def hashes(folder: Path, inner: str) -> dict[str, str]:
+    """Return file -> hash of all files below a folder of the pack."""
+    files = sorted(path for path in (folder / inner).rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): sha256_of(path) for path in files}
 
 
 def _rule(folder: Path, rule_id: str) -> dict[str, str]:
@@ -84,15 +99,23 @@ def library_versions() -> dict[str, str]:
     }
 
 
-def findings(result: Result, found: Evidence) -> list[dict[str, Any]]:
-    """Return the findings with their numbers, and the SQL that gives these or why there is none."""
+def inside(folder: Path, path: str) -> Path:
+    """Return a path of `evidence.json` in the pack. Errors: `ValueError` for one that leads out of it."""
+    found = folder / path
+    if not found.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
+    return found
+
+
+def findings(rows: Iterable[Row], found: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
+    """Return findings with their numbers, and the SQL that gives these or why there is none. `place`: the folder of theirs."""
     told = []
-    for row in result.findings.to_pylist():
+    for row in rows:
         files = found[row["finding_id"]]
         has_files = isinstance(files, dict)
         told.append({
             **{key: row[key] for key in SAID_OF_FINDINGS},
-            "sql": f"data/findings/{row['finding_id']}/finding.sql" if has_files else None,
+            "sql": f"{place}/{row['finding_id']}/finding.sql" if has_files else None,
             "without_sql_because": None if has_files else files,
         })  # fmt: skip
     return told

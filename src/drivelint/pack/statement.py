@@ -35,13 +35,13 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
     maps = sorted({(drive["map_name"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
     content = {
         "_type": TYPE,
-        "subject": [_named(drive["file_name"], drive["sha256"]) for drive in drives],
+        "subject": [named(drive["file_name"], drive["sha256"]) for drive in drives],
         "predicateType": PREDICATE,
         "predicate": {
-            "result": _result(tests, is_clean=summary["exit"]["code"] == ExitCode.OK),
+            "result": result_word(tests, is_clean=summary["exit"]["code"] == ExitCode.OK),
             "configuration": [
-                *(_named(f"map {name}", digest) for name, digest in maps),
-                *(_named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
+                *(named(f"map {name}", digest) for name, digest in maps),
+                *(named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
                 {
                     "name": "check",
                     "annotations": {
@@ -56,7 +56,7 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
             "failedTests": tests["fail"],
             "drivelint_undecidedTests": tests["unknown"],
             "drivelint_exit": summary["exit"],
-            "drivelint_pack": [_named(name, bag.sha256_of(folder / name)) for name in SEALED],
+            "drivelint_pack": [named(name, bag.sha256_of(folder / name)) for name in SEALED],
         },
     }
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
@@ -83,7 +83,8 @@ def differences(said: bytes, due: bytes) -> list[bag.Problem]:
     return problems
 
 
-def _named(name: str, digest: str) -> dict[str, Any]:
+def named(name: str, digest: str) -> dict[str, Any]:
+    """Return a file or a log as in-toto names it."""
     return {"name": name, "digest": {"sha256": digest}}
 
 
@@ -100,8 +101,11 @@ def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
     return {word: sorted(name for name, no in worst.items() if order[no] == word) for word in order}
 
 
-def _result(tests: Mapping[str, list[str]], *, is_clean: bool) -> str:
-    """`is_clean`: the exit code is 0, so every drive was judged, on a map that fits, and from a whole log."""
+def result_word(tests: Mapping[str, list[str]], *, is_clean: bool) -> str:
+    """Return PASSED, WARNED or FAILED.
+
+    `is_clean`: the exit code is 0, so every drive was judged, on a map that fits, and from a whole log.
+    """
     if tests["fail"]:
         return "FAILED"
     passed = is_clean and tests["pass"] and not (tests["near_miss"] or tests["unknown"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -11,10 +11,11 @@ import pyarrow.compute as pc
 
 from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.pack import again, bag, consistency, signature, timestamp
+from drivelint.pack import again, audits, bag, consistency, signature, timestamp
 from drivelint.pack.bag import Problem
-from drivelint.pack.contents import EVIDENCE, RESULT, library_versions
+from drivelint.pack.contents import RESULT, inside, library_versions
 from drivelint.pack.inputs import judged, located
+from drivelint.pack.request import Verification
 from drivelint.pack.statement import ENVELOPE, FILE
 from drivelint.pack.write import PUBLIC_KEY
 from drivelint.phrases import plural
@@ -26,28 +27,9 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
     from drivelint.pack.consistency import Stated
+    from drivelint.pack.request import VerifyRequest
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
-
-
-@dataclass(frozen=True)
-class VerifyRequest:
-    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it."""
-
-    folder: Path
-    key: Path | None = None
-    traces: tuple[Path, ...] = ()
-    map: Path | None = None
-    timestamp_root: Path | None = None
-
-
-@dataclass(frozen=True)
-class Verification:
-    """What is wrong with a pack, in words if nothing is, and what was not looked at."""
-
-    problems: list[Problem]
-    sentence: str
-    notes: list[str]
 
 
 def verify(request: VerifyRequest) -> Verification:
@@ -62,18 +44,22 @@ def verify(request: VerifyRequest) -> Verification:
     wrong += [problem for problem in (*more, *stamp.problems) if problem not in wrong]
     notes: list[str] = []
     judging, outcome = "not judged again", ""
-    if not wrong:
+    if not wrong and audits.is_packed(request.folder):
+        wrong, judging, outcome, notes = audits.verified(request)
+    elif not wrong:
         wrong, stated = consistency.of_statement(request.folder)
         if stated is not None and not wrong:
             judging, wrong, notes = _of_contents(request, stated)
-            outcome = f"; it states {stated.outcome}"
+            outcome = stated.outcome
     elif any(problem.kind != "not signed" for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
     signed = ", ".join(filter(None, (signed, stamp.said)))
     state = "consistent" if key is None else "untouched since it was signed"
-    sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{outcome}"
+    sentence = (
+        f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{outcome and f'; it states {outcome}'}"
+    )
     return Verification(wrong, sentence, [*stamp.notes, *notes])
 
 
@@ -164,19 +150,13 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
 def _asked(folder: Path, evidence: dict[str, Any]) -> RunRequest:
     """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
 
-    def place(path: str) -> Path:
-        found = folder / path
-        if not found.resolve().is_relative_to(folder.resolve()):
-            raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
-        return found
-
-    inside = evidence["inputs"]
+    inputs = evidence["inputs"]
     asked = run_request.load(folder / RESULT)
-    mapping = asked.mapping if evidence["mapping"] is None else str(place(evidence["mapping"]))
-    asked = replace(asked, mapping=mapping, rules_dirs=tuple(place(path) for path in evidence["rules_dirs"]))
-    if inside is not None:
-        map_, map_dir = (place(inside[what]) if what in inside else None for what in ("map", "map_dir"))
-        traces = {name: str(place(path)) for name, path in inside["traces"].items()}
+    mapping = asked.mapping if evidence["mapping"] is None else str(inside(folder, evidence["mapping"]))
+    asked = replace(asked, mapping=mapping, rules_dirs=tuple(inside(folder, path) for path in evidence["rules_dirs"]))
+    if inputs is not None:
+        map_, map_dir = (inside(folder, inputs[what]) if what in inputs else None for what in ("map", "map_dir"))
+        traces = {name: str(inside(folder, path)) for name, path in inputs["traces"].items()}
         asked = replace(asked, traces=traces, map=map_, map_dir=map_dir)
     return asked
 
@@ -200,21 +180,12 @@ def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, li
     except DriveLintError as error:
         return "", [Problem("result not reproduced", str(error))]
     whole = result.drives.num_rows == fresh.drives.num_rows
-    held = {f"{RESULT}/{name}.parquet": name for name in TABLE_OF_FILE}
+    packed = {
+        f"{RESULT}/{name}.parquet": parquet_bytes(_judged_rows(result, name), table)
+        for name, table in ({} if whole else TABLE_OF_FILE).items()
+    }
     other_libraries = stated.evidence["packed_with"] != library_versions()
-    other_bytes, wrong = False, []
-    for path, content in files.items():
-        if not (folder / path).is_file():
-            wrong.append(Problem("result not reproduced", f"{path}: is not in the pack"))
-            continue
-        there = (folder / path).read_bytes()
-        if path in held and not whole:
-            there = parquet_bytes(_judged_rows(result, held[path]), TABLE_OF_FILE[held[path]])
-        if there != content:
-            other_bytes = True
-            # the same libraries write the same bytes: what differs then is somebody's work
-            if not (other_libraries and path.endswith(".parquet") and again.same_rows(there, content)):
-                wrong.append(Problem("result not reproduced", path))
+    wrong, other_bytes = again.compared(folder, files, packed, other_libraries=other_libraries)
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()
     }

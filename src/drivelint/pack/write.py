@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint import __version__
+from drivelint.audit.bucket import as_url
 from drivelint.errors import UsageError
-from drivelint.pack import again, bag, contents, signature, timestamp
+from drivelint.pack import again, audits, bag, contents, signature, timestamp
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
+from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
 from drivelint.pack.inputs import located
+from drivelint.pack.request import MOST_FINDINGS, Content
 from drivelint.pack.statement import ENVELOPE, FILE, statement
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import request as run_request
@@ -22,6 +25,7 @@ from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
+    from drivelint.pack.request import PackRequest
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
@@ -37,42 +41,24 @@ class _Checked(NamedTuple):
     found: again.Evidence
 
 
-@dataclass(frozen=True)
-class PackRequest:
-    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it, its time stamp."""
-
-    folder: Path
-    out: Path
-    key: Path | None = None
-    with_inputs: bool = False
-    traces: tuple[Path, ...] = ()
-    map: Path | None = None
-    date: str | None = None
-    timestamp: Path | None = None
-    overwrite: bool = False
-
-
 def write_pack(request: PackRequest) -> dict[str, Any]:
     """Write the pack as one: until it is whole, nothing is at `out`. Return what its `evidence.json` says.
 
     Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
     """
-    if request.timestamp is not None and request.key is None:
-        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
-    key = None if request.key is None else signature.signing_key(request.key)
-    _free(request)
-    result = load_result(request.folder)
-    asked = run_request.load(request.folder)
-    asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
-    checked = _Checked(result, asked, again.rules_of(result, asked), again.finding_evidence(result, asked))
+    key = ready(request)
+    is_audit = audits.is_audit(request.folder)
+    if not is_audit and request.findings != MOST_FINDINGS:
+        raise UsageError("--findings is of an audit: the pack of a check has all of its findings")
+    content = audits.content(request) if is_audit else _content(request)
     try:
         request.out.parent.mkdir(parents=True, exist_ok=True)
         work = Path(mkdtemp(prefix=".drivelint.", dir=request.out.parent))
         try:
-            told = _payload(work, request, checked)
+            told = content.payload(work)
             info = {"Bag-Software-Agent": f"drivelint {__version__}"}
             bag.begin(work, info if request.date is None else {"Bagging-Date": request.date, **info})
-            said = statement(work, result, summary_of(work), told)
+            said = content.statement(work, told)
             if key is None:
                 (work / FILE).write_bytes(said)
             else:
@@ -93,14 +79,40 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
     return told
 
 
-def _free(request: PackRequest) -> None:
-    out = request.out
+def ready(request: PackRequest) -> signature.SigningKey | None:
+    """Return the key that signs a pack. Errors: `UsageError` where it cannot be used, or where `out` is taken or cannot be written."""
+    if (url := as_url(request.folder)) is not None:
+        raise UsageError(f"{url}: is in an object store: copy it into a folder of this machine and pack that")
+    if (url := as_url(request.out)) is not None:
+        raise UsageError(f"{url}: a pack is a folder of this machine: write it here and copy it there")
+    if request.timestamp is not None and request.key is None:
+        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
+    key = None if request.key is None else signature.signing_key(request.key)
+    _free(request.out, overwrite=request.overwrite)
+    if request.out.resolve().is_relative_to(request.folder.resolve()):
+        raise UsageError(f"{request.out}: lies in the result that is packed: choose a folder beside it")
+    return key
+
+
+def _free(out: Path, *, overwrite: bool) -> None:
     if not out.exists() or (out.is_dir() and not any(out.iterdir())):
         return
     if not out.is_dir() or not (out / bag.DECLARATION).is_file() or not (out / EVIDENCE).is_file():
-        raise UsageError(f"--out {out}: is there and is no evidence pack: choose another folder")
-    if not request.overwrite:
-        raise UsageError(f"--out {out}: has a pack: choose another folder, or replace it with --overwrite")
+        raise UsageError(f"{out}: is there and is no evidence pack: choose another folder")
+    if not overwrite:
+        raise UsageError(f"{out}: has a pack: choose another folder, or replace it with drivelint pack --overwrite")
+
+
+def _content(request: PackRequest) -> Content:
+    """Return what makes a pack of a check's result. The logs are judged again here, before anything is written."""
+    result = load_result(request.folder)
+    asked = run_request.load(request.folder)
+    asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
+    checked = _Checked(result, asked, again.rules_of(result, asked), again.finding_evidence(result, asked))
+    return Content(
+        lambda work: _payload(work, request, checked),
+        lambda work, told: statement(work, result, summary_of(work), told),
+    )
 
 
 def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, Any]:
@@ -115,17 +127,10 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
         (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
     for name, files in found.items():
         if isinstance(files, dict):
-            place = _made(work / "data" / "findings" / name, work)
-            for file, content in files.items():
-                (place / file).write_bytes(content)
-    for rule in rules:
-        place = work / "data" / "rules" / rule.pack
-        place.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(rule.path, place / rule.path.name)
-    dirs = work / "data" / "rules_dirs"
-    folders = [_copy(folder.resolve(), dirs / str(no), work) for no, folder in enumerate(asked.rules_dirs)]
+            write_files(files, work / "data" / "findings" / name, work)
+    copy_rules(rules, work)
     named = asked.mapping is not None and Path(asked.mapping).is_file()  # else it is a shipped one, or none
-    mapping = _copy(Path(str(asked.mapping)), work / "data" / "mapping", work) if named else None
+    mapping = copy(Path(str(asked.mapping)), work / "data" / "mapping", work) if named else None
     inputs = _copied_inputs(work, asked) if request.with_inputs else None
     left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in copied]
     told = {
@@ -133,9 +138,9 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
         **contents.facts(work, result, asked),
         "packed_with": contents.library_versions(),
         "mapping": mapping,
-        "rules_dirs": folders,
+        "rules_dirs": copy_rules_dirs(asked.rules_dirs, work),
         "inputs": inputs,
-        "findings": contents.findings(result, found),
+        "findings": contents.findings(result.findings.to_pylist(), found),
         "left_out": [path.relative_to(request.folder).as_posix() for path in left],
     }
     (work / EVIDENCE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
@@ -147,26 +152,9 @@ def _copied_inputs(work: Path, asked: RunRequest) -> dict[str, Any]:
     inputs = work / "data" / "inputs"
     told: dict[str, Any] = {"traces": {}}
     for name, text in sorted(asked.traces.items()):
-        told["traces"][name] = _copy(Path(text), inputs / "traces" / name, work)
+        told["traces"][name] = copy(Path(text), inputs / "traces" / name, work)
     for what in ("map", "map_dir"):
         given = getattr(asked, what)
         if given is not None:
-            told[what] = _copy(given, inputs / what, work)
+            told[what] = copy(given, inputs / what, work)
     return told
-
-
-def _made(place: Path, work: Path) -> Path:
-    """Make a folder in the pack. Its name may be an id of a result that somebody else made."""
-    if not place.resolve().is_relative_to(work.resolve() / "data") or place.is_dir():
-        raise UsageError(f"{place.name}: no id of a finding or a drive: check the drives again")
-    place.mkdir(parents=True)
-    return place
-
-
-def _copy(source: Path, place: Path, work: Path) -> str:
-    target = _made(place, work) / source.name
-    if source.is_dir():
-        shutil.copytree(source, target)
-    else:
-        shutil.copyfile(source, target)
-    return target.relative_to(work).as_posix()

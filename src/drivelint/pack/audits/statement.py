@@ -1,0 +1,55 @@
+"""The in-toto statement about an audit: every drive with its log, its map, its status and what its verdicts come to.
+
+A test is a drive. It has passed if it was judged whole and on a map that fits, and nothing about it failed, is unknown or only just held.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from drivelint.errors import ExitCode
+from drivelint.fleet_report.opened import opened
+from drivelint.pack import bag
+from drivelint.pack.audits.tables import AUDIT
+from drivelint.pack.statement import PREDICATE, SEALED, TYPE, named, result_word
+from drivelint.result.model import MISFITS
+from drivelint.sql.statements import statement as query
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+
+def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
+    """Return the statement about the audit whose tables stand, with their manifest, in the pack `folder`."""
+    with opened(str(folder / AUDIT)) as (con, _, _):
+        drives = con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MISFITS)}).to_arrow_table().to_pylist()
+    outcomes = {word: _names(drives, word) for word in ("pass", "near_miss", "fail", "unknown")}
+    maps = sorted({(drive["map"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
+    audit = evidence["audit"]
+    content = {
+        "_type": TYPE,
+        "subject": [named(drive["log"], drive["log_sha256"]) for drive in drives if drive["log_sha256"]],
+        "predicateType": PREDICATE,
+        "predicate": {
+            "result": result_word(outcomes, is_clean=evidence["exit"]["code"] == ExitCode.OK),
+            "configuration": [
+                *(named(f"map {name}", digest) for name, digest in maps),
+                *(named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
+                {"name": "audit", "annotations": {**audit, "parameters": evidence["parameters"]}},
+            ],
+            "passedTests": outcomes["pass"],
+            "warnedTests": outcomes["near_miss"],
+            "failedTests": outcomes["fail"],
+            "drivelint_undecidedTests": outcomes["unknown"],
+            "drivelint_drives": drives,
+            "drivelint_exit": evidence["exit"],
+            "drivelint_pack": [named(name, bag.sha256_of(folder / name)) for name in SEALED],
+        },
+    }
+    return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def _names(drives: list[dict[str, Any]], outcome: str) -> list[str]:
+    return [f"{drive['drive_id']} {drive['key']}" for drive in drives if drive["outcome"] == outcome]

@@ -1,0 +1,216 @@
+"""The tables of an audit in a pack: whether they agree, its worst findings, and one drive of it as a result of a check."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import msgspec
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from drivelint.audit import JudgeSettings
+from drivelint.audit.compact import chunk_name, chunks
+from drivelint.audit.driver import empty_rows
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE, SUMMARY_FILE
+from drivelint.audit.summary import summed
+from drivelint.audit.worker import TABLES, said_of_rows
+from drivelint.drive.trace import DriveInput
+from drivelint.errors import UsageError
+from drivelint.formats import expand_traces
+from drivelint.formats.files import identify
+from drivelint.pack.bag import DATA, Problem, sha256_of
+from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
+from drivelint.pack.inputs import located
+from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.counts import grouped
+from drivelint.result.model import Result
+from drivelint.result.request import RunRequest
+from drivelint.sql.statements import statement
+from drivelint.sql.store import arrow_schemas
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import duckdb
+
+    from drivelint.audit.store import ResultStore
+    from drivelint.fleet_report.opened import Audit
+    from drivelint.pack.finding_sql import Row
+
+AUDIT: Final = f"{DATA}/audit"
+FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
+SAID: Final = ("key", *SAID_OF_FINDINGS)
+"""What `evidence.json` says of a finding of an audit: its drive is known by its key."""
+_OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
+"""What `summary.json` says of the run that wrote it; no table tells it."""
+
+
+class PackedDrive(NamedTuple):
+    """A drive with findings of which a pack has the rows, as the result of a check; `receipt`: its row of `receipts`."""
+
+    key: str
+    receipt: Row
+    result: Result
+    asked: RunRequest
+
+
+def is_audit(folder: Path) -> bool:
+    """Whether `audit --out` wrote a folder."""
+    return (folder / AUDIT_FILE).is_file()
+
+
+def is_packed(folder: Path) -> bool:
+    """Whether a pack is of an audit."""
+    return (folder / AUDIT).is_dir()
+
+
+def names(results: ResultStore) -> list[str]:
+    """Return the files of an audit that a pack has: its settings, summary and rules, and all chunks of its tables."""
+    return [*FILES, *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunks(results))]
+
+
+def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
+    """Return what follows from the tables in the pack `folder`, and must be said as it is in `evidence.json`."""
+    counted = summed(con, 0)
+    fail_on = str(audit.told["fail_on"])
+    not_judged = con.execute(statement("audit/not_judged")).to_arrow_table().to_pylist()
+    return {
+        "audit": audit.told,
+        "n_drives": counted.n_drives,
+        "n_lossy": counted.lossy,
+        "n_findings": sum(counted.findings.values()),
+        "not_judged": not_judged,
+        "exit": {"code": int(counted.exit_code(fail_on, strict=False)), "fail_on": fail_on},
+        **facts_of_rules(folder, rules),
+        "outputs": hashes(folder, AUDIT),
+    }
+
+
+def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, said: dict[str, Any]) -> list[str]:
+    """Return the keys of `summary.json` that do not say what the tables say."""
+    counted = vars(summed(con, 0)) | {"robust": bool(audit.settings["robustness"])}
+    return sorted(key for key in (counted.keys() | said.keys()) - _OF_RUN if said.get(key) != counted.get(key))
+
+
+def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
+    """Yield in what receipts do not say what the rows of their drives say, chunk by chunk.
+
+    `same_libraries`: the hash of the rows, which is one of Parquet, is compared, too.
+    """
+    stable = rules.filter(pc.equal(rules["status"], "stable"))["rule_id"].combine_chunks()
+    schemas = {table: rows.schema for table, rows in empty_rows().items()}
+    seen: set[str] = set()
+    for chunk in chunks(results):
+        with TemporaryDirectory(prefix="drivelint-pack-") as home:
+            parts = {}
+            for table in (*TABLES, "receipts"):
+                rows = pq.read_table(results.fetch(chunk_name(table, chunk), Path(home)), partitioning=None)
+                parts[table] = _by_key(rows.cast(schemas[table]) if table in schemas else rows)
+        receipts = {key: part.to_pylist() for key, part in parts.pop("receipts").items()}
+        for key in sorted({*receipts, *(key for part in parts.values() for key in part)}):
+            rows_of_key = {table: parts[table].get(key, schemas[table].empty_table()) for table in TABLES}
+            is_one = len(receipts.get(key, ())) == rows_of_key["drives"].num_rows == 1 and key not in seen
+            seen.add(key)
+            if not is_one:
+                yield Problem("receipts do not fit the tables", f"{key}: a drive has one receipt and one row in drives")
+                continue
+            for what in _unlike(receipts[key][0], said_of_rows(rows_of_key, stable), same_libraries=same_libraries):
+                yield Problem("receipts do not fit the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
+
+
+def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
+    """Return in what a receipt does not say what follows from its rows."""
+    told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
+    if told["status"] == "quarantined" and due["status"] == "refused":
+        due |= {"status": "quarantined"}
+        if str(due["reason"]).endswith(str(told["reason"])):  # the row names the log before it
+            due |= {"reason": told["reason"]}
+    if not same_libraries:
+        due.pop("rows_sha256")
+    return sorted(name for name, value in due.items() if told.get(name) != value)
+
+
+def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
+    """Return key -> its rows, which lie together, as chunks have them."""
+    counted = pc.value_counts(rows["key"]).to_pylist()
+    ends = [0]
+    for each in counted:
+        ends.append(ends[-1] + each["counts"])
+    return {each["values"]: rows.slice(a, b - a) for each, (a, b) in zip(counted, pairwise(ends), strict=True)}
+
+
+def worst_findings(con: duckdb.DuckDBPyConnection, most: int | None) -> list[Row]:
+    """Return the worst findings in the order of reports, or all of them. Each has the key of its drive."""
+    sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE))
+    found: list[Row] = con.execute(sql, {"most": most}).to_arrow_table().to_pylist()
+    return found
+
+
+def packed_drives(
+    con: duckdb.DuckDBPyConnection, audit: Audit, rules: pa.Table, findings: Sequence[Row], rules_dirs: tuple[Path, ...]
+) -> Iterator[PackedDrive]:
+    """Yield the drives of these findings, one after the other, as results of checks. `rules_dirs`: where they are now."""
+    for key, rows in grouped(findings, lambda row: row["key"]).items():
+        (receipt,), (drive,) = (
+            con.execute(f"FROM {table} WHERE key = ?", [key]).to_arrow_table().to_pylist()
+            for table in ("receipts", "drives")
+        )
+        mine = [{name: value for name, value in row.items() if name != "key"} for row in rows]
+        about = {name: value for name, value in drive.items() if name not in {"key", "log", "tags"}}
+        result = Result(
+            verdicts=arrow_schemas()["verdict"].empty_table(),
+            findings=pa.Table.from_pylist(mine, schema=arrow_schemas()["finding"]),
+            drives=pa.Table.from_pylist([about], schema=arrow_schemas()["drive"]),
+            rules=rules,
+            fail_on=str(audit.told["fail_on"]),
+        )
+        yield PackedDrive(key, receipt, result, asked_of(audit, receipt, rules_dirs))
+
+
+def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
+    """Return what a check of a drive would be asked for the same; None: of no drive."""
+    options = msgspec.json.decode(
+        (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
+    )
+    given = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
+    settings = settings_of(audit)
+    traces = {} if receipt is None else {receipt["drive_id"]: receipt["log"]}
+    return RunRequest(**given, traces=traces, profiles=settings.profiles, params=settings.params, rules_dirs=rules_dirs)
+
+
+def settings_of(audit: Audit) -> JudgeSettings:
+    """Return what decided the verdicts of an audit, with the folders of rules where they were."""
+    return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
+
+
+def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], given: Sequence[Path]) -> dict[str, Path]:
+    """Return hash -> path of the given logs whose drives have one of these findings; folders are searched.
+
+    Files of other sizes are not read. Errors: `UsageError` where no log is of any; `TraceError` for what is not there.
+    """
+    if not given:
+        return {}
+    keys = sorted({row["key"] for row in findings})
+    sql = "SELECT log_sha256, size FROM receipts WHERE list_contains($keys, key)"
+    receipts = con.execute(sql, {"keys": keys}).fetchall()
+    wanted, sizes = ({row[i] for row in receipts} for i in (0, 1))
+    likely = [path for path in expand_traces(list(map(str, given))) if path.is_dir() or path.stat().st_size in sizes]
+    found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
+    if not found:
+        raise UsageError(f"--trace {given[0]}: no log there is of a drive with a finding in the pack")
+    return found
+
+
+def located_drive(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
+    """Return the check of a drive with the paths at which its log and map are now; both were hashed.
+
+    `log`: None: it is where it was. `map_`: counts for the drives that were judged on it. Errors: as `inputs.located`.
+    """
+    if map_ is not None and (not map_.is_file() or sha256_of(map_) != drive.receipt["map_sha256"]):
+        map_ = None
+    return located(drive.asked, drive.result.drives.to_pylist(), () if log is None else (log,), map_)

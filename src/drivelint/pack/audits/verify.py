@@ -1,0 +1,283 @@
+"""Verifies the pack of an audit: its tables, what it says of them, and the drives whose logs are at hand."""
+
+from __future__ import annotations
+
+import json
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import duckdb
+import msgspec
+import pyarrow.parquet as pq
+
+from drivelint import __version__
+from drivelint.audit.identity import run_id, versions
+from drivelint.audit.run import RULES_FILE, SUMMARY_FILE
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.worker import TABLES, rows_sha256, with_key
+from drivelint.errors import DriveLintError, UsageError
+from drivelint.fleet_report.opened import opened
+from drivelint.pack import again, consistency, signature
+from drivelint.pack.audits import tables
+from drivelint.pack.audits.statement import statement
+from drivelint.pack.bag import DATA, Problem
+from drivelint.pack.consistency import UNREADABLE
+from drivelint.pack.contents import EVIDENCE, FINDINGS, inside, library_versions
+from drivelint.pack.statement import ENVELOPE, FILE, differences
+from drivelint.phrases import listed, plural
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    import pyarrow as pa
+
+    from drivelint.catalogue import Rule
+    from drivelint.fleet_report.opened import Audit
+    from drivelint.pack.finding_sql import Row
+    from drivelint.pack.request import VerifyRequest
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+_UNREADABLE: Final = (*UNREADABLE, duckdb.Error, msgspec.MsgspecError, DriveLintError)
+_NOT_FACTS: Final = frozenset({
+    "evidence", "packed_with", "mappings", "rules_dirs", "inputs", "findings", "findings_left_out", "left_out",
+})  # fmt: skip
+
+
+@dataclass
+class _Pack:
+    """The pack of an audit that was opened, and what was done with its findings so far.
+
+    `known`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
+    `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
+    """
+
+    folder: Path
+    con: duckdb.DuckDBPyConnection
+    audit: Audit
+    evidence: dict[str, Any]
+    rules: pa.Table
+    rules_dirs: tuple[Path, ...]
+    known: dict[str, Rule] | None
+    packed_by: str
+    n_judged: int = 0
+    n_alone: int = 0
+    n_run: int = 0
+    other_bytes: bool = False
+
+
+def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
+    """Return what is wrong, what was judged again in words, what the pack states, and what was not looked at.
+
+    Errors: `UsageError` for logs or a map that were given and are of no drive in the pack.
+    """
+    with ExitStack() as stack:
+        try:
+            con, audit, _ = stack.enter_context(opened(str(request.folder / tables.AUDIT)))
+            evidence = consistency.evidence_of(request.folder)
+            rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
+            dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])
+            packed_by = consistency.packed_by(evidence)
+            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _known(rules, dirs), packed_by)
+            findings = tables.worst_findings(con, len(evidence["findings"]))
+            wrong = [*_of_tables(pack), *_of_evidence(pack, findings)]
+            due = statement(pack.folder, evidence)
+            wrong = _of_statement(pack.folder, due) + wrong
+            outcome = str(json.loads(due)["predicate"]["result"])
+        except _UNREADABLE as error:
+            return [Problem("result not readable", str(error))], "", "", []
+        if wrong:
+            return wrong, "not judged again", "", []
+        given = tables.logs_of(con, findings, request.traces)
+        try:
+            for drive in tables.packed_drives(con, audit, rules, findings, dirs):
+                wrong += _of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+        except msgspec.MsgspecError as error:
+            wrong.append(Problem("receipts not readable", str(error)))
+        return wrong, _judging(pack), outcome, _notes(pack)
+
+
+def _of_tables(pack: _Pack) -> Iterator[Problem]:
+    """Yield in what the tables, receipts, rules and summary of the audit do not agree."""
+    place = pack.folder / tables.AUDIT
+    told = pack.audit.told
+    said = json.loads((place / SUMMARY_FILE).read_bytes())
+    for key in tables.unlike_summary(pack.con, pack.audit, said):
+        yield Problem("summary.json does not fit the tables", key)
+    yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
+    if pack.known is not None:
+        asked = tables.asked_of(pack.audit, None, pack.rules_dirs)
+        if why := consistency.unlike_rules(list(pack.known.values()), pack.rules, asked):
+            yield Problem("audit.json does not fit the result", why)
+    settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
+    if told["versions"] == versions() and told["run_id"] != run_id(settings):
+        yield Problem("audit.json does not fit the result", "run_id")
+
+
+def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
+    """Yield in what `evidence.json` does not say what the tables say, and the files that nothing names."""
+    folder, evidence = pack.folder, pack.evidence
+    due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
+    due["findings_left_out"] = due["n_findings"] - len(findings)
+    said = [{key: row[key] for key in tables.SAID} for row in findings]
+    keys = consistency.differing(evidence, due, said, pack.rules.to_pylist())
+    inputs = evidence["inputs"] or {"traces": {}, "maps": {}}
+    of_findings = {row["key"] for row in findings}
+    if evidence["inputs"] is not None and inputs["traces"].keys() != of_findings:
+        keys.append("inputs")
+    for key in [*keys, *sorted(evidence.keys() - due.keys() - _NOT_FACTS)]:
+        yield Problem("evidence.json does not fit the result", key)
+    named = {EVIDENCE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
+    places = [
+        *evidence["rules_dirs"],
+        *evidence["mappings"].values(),
+        *inputs["traces"].values(),
+        *inputs["maps"].values(),
+    ]
+    kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
+    of_audit = {f"{tables.AUDIT}/{name}" for name in tables.names(LocalFolder(folder / tables.AUDIT))}
+    named -= {name for name in due["outputs"] if name not in of_audit}
+    yield from consistency.unnamed(folder, evidence, named, [place for place in places if place.startswith(kept)])
+
+
+def _of_statement(folder: Path, due: bytes) -> list[Problem]:
+    name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
+    if not (folder / name).is_file():
+        return [Problem("statement missing", FILE)]
+    content = (folder / name).read_bytes()
+    return differences(signature.payload_of(content) if name == ENVELOPE else content, due)
+
+
+def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Path | None) -> list[Problem]:
+    """Judge a drive again; where its log is not at hand, run the SQL of its findings.
+
+    Errors: `UsageError` where a log was given and its map cannot be found.
+    """
+    inputs = pack.evidence["inputs"]
+    try:
+        drive = drive._replace(asked=_asked(pack, drive))
+    except UNREADABLE as error:
+        return [Problem("evidence.json not readable", str(error))]
+    if log is None and inputs is None:
+        return _of_rows(pack, drive)
+    try:
+        asked = tables.located_drive(drive, log, map_)
+    except UsageError as error:
+        if log is not None:
+            raise
+        return [Problem("inputs do not fit the result", str(error))]
+    pack.n_judged += 1
+    try:
+        fresh = again.check_again(drive.result, asked, None, evidence=False)
+        evidence = again.finding_evidence(drive.result, asked, known=[*(pack.known or {}).values()])
+    except DriveLintError as error:
+        return [Problem("result not reproduced", str(error))]
+    wrong = [] if _same_rows(pack, drive, fresh) else [Problem("result not reproduced", f"the rows of {_name(drive)}")]
+    place = f"{FINDINGS}/{drive.key}"
+    files = {
+        f"{place}/{name}/{file}": content
+        for name, contents in evidence.items()
+        if isinstance(contents, dict)
+        for file, content in contents.items()
+    }
+    other_libraries = pack.evidence["packed_with"] != library_versions()
+    differing, other_bytes = again.compared(pack.folder, files, {}, other_libraries=other_libraries)
+    pack.other_bytes |= other_bytes
+    there = {path.relative_to(pack.folder).as_posix() for path in (pack.folder / place).rglob("*") if path.is_file()}
+    extra = sorted(there - files.keys())
+    return [*wrong, *differing, *(Problem("result not reproduced", f"{path}: no finding gives it") for path in extra)]
+
+
+def _asked(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
+    """Return the check of a drive with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
+    asked = drive.asked
+    if drive.key in pack.evidence["mappings"]:
+        asked = replace(asked, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
+    if (inputs := pack.evidence["inputs"]) is not None:
+        road = inside(pack.folder, inputs["maps"][drive.key]) if drive.key in inputs["maps"] else None
+        is_folder = road is not None and road.is_dir()
+        traces = {drive.receipt["drive_id"]: str(inside(pack.folder, inputs["traces"][drive.key]))}
+        asked = replace(asked, traces=traces, map=None if is_folder else road, map_dir=road if is_folder else None)
+    return asked
+
+
+def _of_rows(pack: _Pack, drive: tables.PackedDrive) -> list[Problem]:
+    """Run the SQL of a drive's findings on the rows in the pack."""
+    pack.n_alone += 1
+    if pack.known is None:
+        return []
+    rows = {f"{FINDINGS}/{drive.key}/{row['finding_id']}": row for row in drive.result.findings.to_pylist()}
+    wrong, n = consistency.of_sql(pack.folder, rows, pack.known, drive.asked)
+    pack.n_run += n
+    return wrong
+
+
+def _known(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rule] | None:
+    try:
+        return {rule.id: rule for rule in again.rules_of_table(rules, rules_dirs)}
+    except UsageError:
+        return None
+
+
+def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
+    """Tell whether a drive that was judged again has the rows of the audit."""
+    rows = {table: with_key(getattr(fresh, table), drive.key, None) for table in TABLES}
+    if rows_sha256(rows) == drive.receipt["rows_sha256"]:
+        return True
+    pack.other_bytes = True
+    return not _same_libraries(pack) and all(
+        pack.con.execute(f"FROM {table} WHERE key = ?", [drive.key])
+        .to_arrow_table()
+        .select(of.column_names)
+        .to_pylist()
+        == of.to_pylist()
+        for table, of in rows.items()
+    )
+
+
+def _same_libraries(pack: _Pack) -> bool:
+    return bool(pack.audit.told["versions"].get("pyarrow") == versions()["pyarrow"])
+
+
+def _name(drive: tables.PackedDrive) -> str:
+    return f"{drive.receipt['drive_id']} ({drive.key})"
+
+
+def _judging(pack: _Pack) -> str:
+    if not pack.n_judged:
+        return "not judged again"
+    same = "the same rows, written by another version of a library" if pack.other_bytes else "the same bytes"
+    return f"{pack.n_judged} of {plural(pack.evidence['n_drives'], 'drive')} judged again: {same}"
+
+
+def _notes(pack: _Pack) -> list[str]:
+    """Return what was not held against the logs, and what is not drivelint's own."""
+    notes, evidence, told = [], pack.evidence, pack.audit.told["versions"]
+    if pack.n_alone:
+        ran = (
+            f"{plural(pack.n_run, 'finding')} of theirs gave the numbers from the rows in the pack"
+            if pack.known is not None
+            else "the SQL of their findings was not run: this drivelint has other rules"
+        )
+        notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")
+    if rest := evidence["n_drives"] - len(evidence["not_judged"]) - pack.n_judged - pack.n_alone:
+        known = (
+            "not judged again; their rows have the hashes in the receipts"
+            if _same_libraries(pack)
+            else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
+        )
+        notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {known}")
+    if left := evidence["findings_left_out"]:
+        notes.append(f"{plural(left, 'finding')} of less weight: no rows in the pack")
+    if evidence["not_judged"]:
+        logs = [row["log"] for row in evidence["not_judged"]]
+        notes.append(f"not judged when it was audited, nor now: {listed(logs, 3)}")
+    if changed := sorted(name for name, value in versions().items() if told.get(name) != value):
+        notes.append(f"audited by other versions of {', '.join(changed)}")
+    if pack.packed_by != __version__:
+        notes.append(f"packed by drivelint {pack.packed_by}, and this is {__version__}")
+    if evidence["rules_dirs"]:
+        notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
+    return notes

@@ -1,0 +1,61 @@
+"""What `pack` and `verify` are asked, and what `verify` finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from drivelint.pack.bag import Problem
+
+MOST_FINDINGS: Final = 100
+"""Of so many findings of an audit a pack has the rows, unless it is asked for more."""
+
+
+@dataclass(frozen=True)
+class PackRequest:
+    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it, its time stamp.
+
+    `findings`: of an audit, the rows of so many of the worst findings go into it; None: of all. A check's all do.
+    """
+
+    folder: Path
+    out: Path
+    key: Path | None = None
+    with_inputs: bool = False
+    traces: tuple[Path, ...] = ()
+    map: Path | None = None
+    date: str | None = None
+    timestamp: Path | None = None
+    overwrite: bool = False
+    findings: int | None = MOST_FINDINGS
+
+
+class Content(NamedTuple):
+    """What makes a pack of a result: writes its payload and returns what `evidence.json` says; returns its statement."""
+
+    payload: Callable[[Path], dict[str, Any]]
+    statement: Callable[[Path, dict[str, Any]], bytes]
+
+
+@dataclass(frozen=True)
+class VerifyRequest:
+    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it."""
+
+    folder: Path
+    key: Path | None = None
+    traces: tuple[Path, ...] = ()
+    map: Path | None = None
+    timestamp_root: Path | None = None
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What is wrong with a pack, in words if nothing is, and what was not looked at."""
+
+    problems: list[Problem]
+    sentence: str
+    notes: list[str]
