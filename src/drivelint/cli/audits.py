@@ -86,7 +86,7 @@ def audit(
     """Judge many drives, as many at a time as there are cores.
 
     Results are kept as they come: an audit that was interrupted goes on where it was when the same command is given again.
-    A manifest has a column log, may have map, ego and environment (weather=rain;light=night), and any others, which are tags.
+    A manifest has a column log, may have map, ego and environment (weather=wet;light=night), and any others, which are tags.
 
     Exit codes: as those of check; drives that cannot be judged, or kill their worker, make 4.
     """
