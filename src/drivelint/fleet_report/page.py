@@ -10,7 +10,7 @@ from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
 from drivelint.fleet_report import figures
 from drivelint.fleet_report.content import FleetContent, content
-from drivelint.fleet_report.difference_text import rate_name
+from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, times
 from drivelint.fleet_report.opened import opened
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
@@ -109,6 +109,9 @@ _FILTERS: Final[dict[str, Any]] = {
     "share": figures.share,
     "finding_line": finding_line,
     "rate_name": rate_name,
+    "rate_sides": rate_sides,
+    "rate_line": rate_line,
+    "times": times,
     "beside": _beside,
     "provide": _provide,
     "mend": _mend,
