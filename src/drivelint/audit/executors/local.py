@@ -63,7 +63,7 @@ class LocalPool:
         return ProcessPool(
             max_workers=self._workers,
             max_tasks=TASKS_PER_WORKER,
-            initializer=_begin,
+            initializer=begin_worker,
             initargs=(self._memory, os.getpid()),
             context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
         )
@@ -87,7 +87,7 @@ def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
         return Outcome(task, error=error)
 
 
-def _begin(memory: int | None, parent: int) -> None:
+def begin_worker(memory: int | None, parent: int) -> None:
     """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
