@@ -12,6 +12,7 @@ from lxml import html
 
 from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import Standing
 from drivelint.fleet.missing import missing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
@@ -36,7 +37,7 @@ class Told:
         with duckdb.connect() as con:
             audits.add_rows(con, drives, verdicts, findings, [ROOM, CONTACT])
             con.register("receipts", RECEIPT_SCHEMA.empty_table())
-            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, "d", 0)
+            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, Standing("d"))
             self.content = content_.content(con, audit, None, by)
         self.markdown = page.markdown(self.content).decode()
         self.html: Any = html.fromstring(page.html(self.content))
@@ -195,7 +196,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         needs = rule("a-room", profiles=[], requires=["indicator", "map"])
         audits.add_rows(con, drives, [said("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs])
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
-        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, "d", 0)
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
         text = page.markdown(content_.content(con, audit, None, ())).decode()
     assert "decides nothing alone, 1 judgements with other signals" in text
     assert "at most 0" not in text

@@ -11,6 +11,7 @@ import pytest
 from scipy.stats import fisher_exact
 
 from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import Standing
 from drivelint.errors import ExitCode
 from drivelint.fleet.rate_change import rate_changes
 from drivelint.fleet.rates import rates
@@ -50,7 +51,9 @@ def compared(base_also: tuple[str, ...] = (), new_also: tuple[str, ...] = ()) ->
     with duckdb.connect() as con:
         fleet(con, "base_", "r1", base_also)
         fleet(con, "", "r2", new_also)
-        sides = [Audit(name, LocalFolder(Path(name)), {"fail_on": "critical"}, "d", 0) for name in ("new", "base")]
+        sides = [
+            Audit(name, LocalFolder(Path(name)), {"fail_on": "critical"}, Standing("d")) for name in ("new", "base")
+        ]
         return difference(con, sides[0], sides[1], 50)
 
 

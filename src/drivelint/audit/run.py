@@ -24,6 +24,7 @@ from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed, summed_receipts
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
 
 AUDIT_FILE: Final = "audit.json"
-SUMMARY_FILE: Final = "summary.json"
 RULES_FILE: Final = "rules.parquet"
 _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
@@ -106,6 +106,7 @@ def _audited(
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         progress.stage("listing", None)
         n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
+        parts.ask(results, parts.name_of(request.shard, claim=request.claim), n_drives)
         create_views(con, results, Path(home))
         if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
             create_views(con, results, Path(home))
@@ -224,7 +225,7 @@ def merge(out: str, progress: Progress) -> AuditSummary:
         if isinstance(results, LocalFolder):
             results.sweep()
         results.delete(list(results.names("claims")))
-        return _close(con, results, Path(home), 0, parts.missing(results))
+        return replace(_close(con, results, Path(home), 0, parts.missing(results)), n_asked=parts.asked(results))
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:

@@ -30,10 +30,15 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
         f"{counted.reused} had a result already" if counted.reused else "",
     )
     yield ", ".join(state for state in states if state)
-    if counted.n_asked is not None and counted.n_asked != counted.n_drives:
-        yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
     if counted.missing_parts:
-        yield f"INCOMPLETE: these parts have not ended: {', '.join(counted.missing_parts)}: give the same audits again"
+        of = (
+            ""
+            if counted.n_asked is None
+            else f"{counted.n_drives} of {plural(counted.n_asked, 'drive')} have a result: "
+        )
+        yield f"INCOMPLETE: these parts have not ended: {', '.join(counted.missing_parts)}: {of}give the same audits again"
+    elif counted.n_asked is not None and counted.n_asked != counted.n_drives:
+        yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
     if counted.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return

@@ -5,9 +5,11 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures import TimeoutError as TookTooLongError
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING
 
 from pebble import ProcessExpired, ProcessPool
@@ -58,6 +60,9 @@ class LocalPool:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def _started(self) -> ProcessPool:
+        sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
+        resource_tracker.ensure_running()  # its start would take the block below off again
+        sys.warnoptions.pop()
         # threads and processes that are started from here on inherit it: Ctrl-C is the main thread's
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return ProcessPool(
