@@ -1,10 +1,10 @@
 -- The rules that were broken most: severity first, then findings.
-SELECT severity, rule_id, n_findings, n_drives, is_contact
+SELECT severity, rule_id, n_findings, n_drives, n_possible, is_contact
 FROM (
     SELECT
-        f.severity, f.rule_id, count(*) AS n_findings, count(DISTINCT f.key) AS n_drives,
+        f.severity, f.rule_id, count(*) AS n_findings, count(DISTINCT f.key) AS n_drives, count(*) FILTER (is_possible) AS n_possible,
         coalesce(bool_or(list_contains(r.tags, 'contact')), false) AS is_contact
-    FROM findings f
+    FROM ({event}) f
     LEFT JOIN rules r USING (rule_id)
     GROUP BY ALL
 )

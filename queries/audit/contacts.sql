@@ -1,5 +1,9 @@
--- How many drives have a finding of a rule about contacts.
-SELECT count(DISTINCT f.key)
-FROM findings f
-JOIN rules r USING (rule_id)
-WHERE list_contains(r.tags, 'contact')
+-- How many drives have a finding of a rule about contacts that is sure, or of which nobody looked; how many only possible ones.
+SELECT count(*) FILTER (NOT only_possible) AS contacts, count(*) FILTER (only_possible) AS contacts_possible
+FROM (
+    SELECT f.key, bool_and(f.is_possible) AS only_possible
+    FROM ({event}) f
+    JOIN rules r USING (rule_id)
+    WHERE list_contains(r.tags, 'contact')
+    GROUP BY f.key
+)

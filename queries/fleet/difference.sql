@@ -36,10 +36,15 @@ WITH kept AS (
     SELECT rule_id, CASE WHEN count(DISTINCT rule_version) = 1 THEN min(rule_version) END AS version,
         CASE WHEN count(DISTINCT params::VARCHAR) = 1 THEN min([p."name" || '=' || p."value" FOR p IN params]::VARCHAR) END AS params
     FROM {new}rules GROUP BY rule_id
+), base_release AS (
+    -- the software of a drive that the other audit does not have, where all drives of its audit have the same
+    SELECT CASE WHEN count(DISTINCT tags['release']) = 1 AND count(tags['release']) = count(*) THEN min(tags['release']) END AS was FROM {base}drives
+), new_release AS (
+    SELECT CASE WHEN count(DISTINCT tags['release']) = 1 AND count(tags['release']) = count(*) THEN min(tags['release']) END AS now FROM {new}drives
 ), compared AS (
-    SELECT t.*, {'software': s.software, 'rule': n.version <> b.version, 'parameters': n.params <> b.params, 'data': s.data, 'map': s.map,
+    SELECT t.*, {'software': coalesce(s.software, now <> was), 'rule': n.version <> b.version, 'parameters': n.params <> b.params, 'data': s.data, 'map': s.map,
         'tool': $new_tool::VARCHAR <> $base_tool::VARCHAR} AS differs
-    FROM told t
+    FROM told t CROSS JOIN base_release CROSS JOIN new_release
     LEFT JOIN same_drive s ON s.new_key = t.new_key AND s.base_key = t.base_key
     LEFT JOIN base_rule b ON b.rule_id = t.rule_id
     LEFT JOIN new_rule n ON n.rule_id = t.rule_id

@@ -16,14 +16,17 @@ WITH {subject}, {profiled}, judged_subject AS (
 ), found AS (
     SELECT key, ego_id, rule_id, profile, count(*) AS n, count(*) FILTER (n_stays < {least_share} * n_copies) AS n_possible
     FROM {of}findings GROUP BY ALL
+), sure AS (
+    SELECT key, ego_id, rule_id, profile, count(*) AS n FROM ({event}) WHERE NOT is_possible GROUP BY ALL
 ), lost AS (
     SELECT {value} AS tag_value, count(*) AS n_lost
     FROM (SELECT *, NULL::STRUCT(km DOUBLE, hours DOUBLE) AS ego FROM {of}drives WHERE status <> 'judged') d {without} GROUP BY ALL
 ), counted AS (
-    SELECT j.*, s.* EXCLUDE (key, ego_id), f.n AS n_found, f.n_possible
+    SELECT j.*, s.* EXCLUDE (key, ego_id), f.n AS n_found, f.n_possible, e.n AS n_sure
     FROM judged_subject j
     JOIN subject s ON s.key = j.key AND s.ego_id = j.ego_id
     LEFT JOIN found f ON f.key = j.key AND f.ego_id = j.ego_id AND f.rule_id = j.rule_id AND f.profile IS NOT DISTINCT FROM j.profile
+    LEFT JOIN sure e ON e.key = j.key AND e.ego_id = j.ego_id AND e.rule_id = j.rule_id AND e.profile IS NOT DISTINCT FROM j.profile
     UNION ALL BY NAME
     -- Drives that could not be judged count for every rule, also at a value of the tag at which no other drive is.
     SELECT r.rule_id, r.profile, l.tag_value, l.n_lost FROM (SELECT DISTINCT rule_id, profile FROM judged_subject) r CROSS JOIN lost l
@@ -39,7 +42,7 @@ SELECT rule_id, profile, tag_value,
     coalesce(sum(round(3.6e9 * hours)::BIGINT) FILTER (extent = 'unknown'), 0) / 3.6e9 AS hours_unknown,
     coalesce(sum(n_found) FILTER (extent = 'judged'), 0)::BIGINT AS findings,
     coalesce(sum(n_found) FILTER (extent <> 'judged'), 0)::BIGINT AS findings_of_unknown,
-    coalesce(sum(n_possible), 0)::BIGINT AS findings_possible,
+    coalesce(sum(n_possible), 0)::BIGINT AS findings_possible, coalesce(sum(n_sure), 0)::BIGINT AS events_sure,
     coalesce(sum(n_whole), 0)::BIGINT AS occasions, coalesce(sum(n_whole_failed), 0)::BIGINT AS occasions_failed,
     coalesce(sum(n_pass + n_fail - n_whole), 0)::BIGINT AS occasions_partly,
     coalesce(sum(n_pass), 0)::BIGINT AS n_pass, coalesce(sum(n_fail), 0)::BIGINT AS n_fail, coalesce(sum(n_unknown), 0)::BIGINT AS n_unknown,

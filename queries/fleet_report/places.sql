@@ -1,6 +1,6 @@
 -- The places with most findings, of about 100 m: in how many drives, of which rules.
 WITH placed AS (
-    SELECT round(lat, 3) AS lat, round(lon, 3) AS lon, key, rule_id, severity FROM findings WHERE lon IS NOT NULL AND lat IS NOT NULL
+    SELECT round(lat, 3) AS lat, round(lon, 3) AS lon, key, rule_id, severity FROM counted_findings WHERE lon IS NOT NULL AND lat IS NOT NULL
 ), counted AS (
     SELECT lat, lon, count(*) AS n, count(*) FILTER (severity = 'critical') AS critical, count(DISTINCT key) AS drives
     FROM placed GROUP BY ALL ORDER BY n DESC, critical DESC, lat, lon LIMIT $most

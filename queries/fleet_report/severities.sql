@@ -1,3 +1,2 @@
--- Findings by severity, the drives that have them, and how many of the findings are only possible.
-SELECT severity, count(*) AS findings, count(DISTINCT key) AS drives, count(*) FILTER (n_stays < {least_share} * n_copies) AS possible
-FROM findings GROUP BY ALL ORDER BY ALL
+-- Findings by severity, and how many of them are only possible; a touch of two egos counts once.
+SELECT severity, count(*) AS findings, count(*) FILTER (is_possible) AS possible FROM ({event}) GROUP BY ALL ORDER BY ALL

@@ -8,6 +8,7 @@ import duckdb
 import pyarrow as pa
 
 from drivelint.sql.store import arrow_schemas
+from tests.report.synthetic import drive, finding, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -60,3 +61,24 @@ def add_rows(
         full = [row | {"tags": list((row.get("tags") or {}).items())} if name == "drives" else row for row in full]
         con.register(f"{of}{name}_rows", pa.Table.from_pylist(full, schema=schema))
         con.execute(f"CREATE TABLE {of}{name} AS FROM {of}{name}_rows")
+
+
+def ego_drive(name: str, km: float = 100.0, hours: float = 2.0, **over: Any) -> dict[str, Any]:
+    way = {
+        "ego_id": "1",
+        "km": km,
+        "hours": hours,
+        "engaged_km": over.pop("engaged_km", km),
+        "engaged_hours": hours,
+        "n_steps": 9,
+    }
+    return drive(name, **({"sha256": name, "exposure": [way], "tags": {"release": "a"}} | over))
+
+
+def said(drive_id: str, word: str, **over: Any) -> dict[str, Any]:
+    return verdict(word, **({"drive_id": drive_id, "profile": None} | over))
+
+
+def found(drive_id: str, **over: Any) -> dict[str, Any]:
+    times = dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), 0)
+    return finding(**({"drive_id": drive_id, "profile": None, "finding_id": drive_id} | times | over))

@@ -15,30 +15,10 @@ from drivelint.errors import UsageError
 from drivelint.fleet import intervals
 from drivelint.fleet.rates import Rate, rates
 from tests.fleet import audits
-from tests.report.synthetic import drive, finding, rule, verdict
+from tests.fleet.audits import ego_drive, found, said
+from tests.report.synthetic import drive, rule
 
 ROOM = rule(profiles=[])
-
-
-def ego_drive(name: str, km: float = 100.0, hours: float = 2.0, **over: Any) -> dict[str, Any]:
-    way = {
-        "ego_id": "1",
-        "km": km,
-        "hours": hours,
-        "engaged_km": over.pop("engaged_km", km),
-        "engaged_hours": hours,
-        "n_steps": 9,
-    }
-    return drive(name, **({"sha256": name, "exposure": [way], "tags": {"release": "a"}} | over))
-
-
-def said(drive_id: str, word: str, **over: Any) -> dict[str, Any]:
-    return verdict(word, **({"drive_id": drive_id, "profile": None} | over))
-
-
-def found(drive_id: str, **over: Any) -> dict[str, Any]:
-    times = dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), 0)
-    return finding(**({"drive_id": drive_id, "profile": None, "finding_id": drive_id} | times | over))
 
 
 def counted(

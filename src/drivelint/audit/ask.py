@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint.audit.compact import create_views, database, escaped
+from drivelint.audit.compact import database, escaped
 from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
+from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
 from drivelint.phrases import inert, inert_json
 from drivelint.sql.store import quoted
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from drivelint.audit.store import ResultStore
 
 
@@ -27,10 +30,13 @@ _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
 """What a cell begins with that a spreadsheet takes for a formula; so does a tab, which is shown as a backslash and t."""
 
 
-def ask(dest: str, query: str, format_: str) -> str:
-    """Return the rows of a SELECT as text, csv or json. Errors: `UsageError` for another statement, or one that fails."""
+def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:
+    """Return the rows of a SELECT as text, csv or json. `warn` hears that the audit has not ended.
+
+    Errors: `UsageError` for another statement, or one that fails.
+    """
     with database() as con, TemporaryDirectory(prefix="drivelint-sql-") as home:
-        _open(con, dest, Path(home))
+        _open(con, dest, Path(home), warn)
         try:
             statements = con.extract_statements(query)
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
@@ -54,13 +60,12 @@ def _inert_cell(cell: re.Match[str]) -> str:
     return f"{quote}{chr(39) * is_formula}{text}{quote}"
 
 
-def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path) -> None:
+def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[[str], None]) -> None:
     """Create the views of an audit, or of a check's result, and close the database off from everything else."""
     results = open_store(dest)
     if results.read(AUDIT_FILE) is not None:
-        if next(iter(results.names("receipts")), None) is not None:
-            raise UsageError(f"{dest}: some results are not packed yet: let the audit end, or drivelint merge {dest}")
-        create_views(con, results, home)
+        if warning := views_of_all(con, results, home).warning:
+            warn(f"{dest}: {warning}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
         if "verdicts.parquet" not in files:

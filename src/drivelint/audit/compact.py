@@ -72,7 +72,7 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
     _remove_unfinished(results)
     n_packed = 0
     with database() as con, TemporaryDirectory(prefix="drivelint-compact-") as home:
-        for receipts in _loose_receipts(results, whole_batches=while_judging):
+        for receipts in loose_receipts(results, whole_batches=while_judging):
             n_packed += _pack(results, con, receipts, Path(home))
     if not while_judging:
         _remove_orphans(results)
@@ -134,7 +134,7 @@ def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
     return digest(told)
 
 
-def _loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[list[Receipt]]:
+def loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[list[Receipt]]:
     """Yield the receipts that are in no chunk, those of a batch together, some thousand at a time."""
     by_batch: dict[str, list[Receipt]] = {}
     for name in sorted(results.names("receipts")):
@@ -169,14 +169,12 @@ def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequen
     known = _known(results, con, receipts, home)
     new = [receipt for receipt in receipts if receipt.key not in known]
     if new:
-        table = pa.Table.from_pylist([_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
+        table = pa.Table.from_pylist([receipt_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
         con.register("_packed", table.select(["key", "batch"]))
         rows = {}
         for name in TABLES:
-            files = {each.batch: str(results.fetch(batch_name(name, each.batch), home)) for each in new}
-            con.read_parquet(escaped(files.values()), filename=True).create_view("_rows", replace=True)
             rows[name] = home / f"{name}.parquet"
-            packed = statement("audit/packed", order=_ORDER[name])
+            packed = batch_rows(con, results, home, name, new)
             written = con.execute(
                 f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
             ).fetchone()
@@ -189,6 +187,15 @@ def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequen
     results.delete(receipt_name(receipt.key) for receipt in receipts)
     results.delete(batch_name(name, batch) for batch in {each.batch for each in receipts} for name in TABLES)
     return len(new)
+
+
+def batch_rows(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, receipts: Sequence[Receipt]
+) -> str:
+    """Return the SELECT of the rows of a table that the batches of these receipts have, of the drives in the relation `_packed`."""
+    files = {each.batch: str(results.fetch(batch_name(table, each.batch), home)) for each in receipts}
+    con.read_parquet(escaped(files.values()), filename=True).create_view("_rows", replace=True)
+    return statement("audit/packed", order=_ORDER[table])
 
 
 def _known(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> set[str]:
@@ -240,7 +247,8 @@ def _read(results: ResultStore, table: str, chunk: str, home: Path) -> pa.Table:
     return pq.read_table(results.fetch(chunk_name(table, chunk), home), partitioning=None)
 
 
-def _row(receipt: Receipt) -> dict[str, Any]:
+def receipt_row(receipt: Receipt) -> dict[str, Any]:
+    """Return a receipt as a row of its table."""
     told = msgspec.to_builtins(receipt)
     return {**told, **{key: sorted(told[key].items()) for key in ("counts", "failed", "tags")}}
 

@@ -27,6 +27,21 @@ def begin(results: ResultStore, part: str) -> None:
     results.delete([f"parts/ended/{part}"])
 
 
+def ask(results: ResultStore, part: str, n_drives: int) -> None:
+    """Say how many drives a part that has begun is to judge."""
+    results.write(f"parts/begun/{part}", f"{n_drives}\n".encode())
+
+
+def asked(results: ResultStore) -> int | None:
+    """Return how many drives the parts without an end are to judge, or all parts; of shards all of them; None: not known."""
+    begun = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
+    open_ = missing(results) or sorted(begun)
+    if not open_:
+        return None
+    counted = [n for name, n in begun.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
+    return sum(map(int, counted)) if all(n.isdigit() for n in counted) else None
+
+
 def end(results: ResultStore, part: str) -> None:
     """Say that a part has come to its end."""
     results.write(f"parts/ended/{part}", b"\n")

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
-from contextlib import nullcontext
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,11 +18,13 @@ from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
+from drivelint.audit.executors.local import begin_worker
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed, summed_receipts
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
@@ -37,7 +43,6 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
 
 AUDIT_FILE: Final = "audit.json"
-SUMMARY_FILE: Final = "summary.json"
 RULES_FILE: Final = "rules.parquet"
 _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
@@ -101,6 +106,7 @@ def _audited(
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         progress.stage("listing", None)
         n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
+        parts.ask(results, parts.name_of(request.shard, claim=request.claim), n_drives)
         create_views(con, results, Path(home))
         if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
             create_views(con, results, Path(home))
@@ -145,7 +151,7 @@ def _judge(
     def busy() -> None:
         nonlocal fresh
         if request.shard is None and claims is None and fresh >= RECEIPTS_PER_COMPACTION:
-            compact(results, while_judging=True)
+            _compact_apart(request.out)
             fresh = 0
 
     workers = executor or open_executor(
@@ -167,6 +173,20 @@ def _judge(
     finally:
         workers.close()
     return counted
+
+
+def _compact_apart(out: str) -> None:
+    """Pack what is whole in a process of its own, so that what its libraries keep does not add up in the driver. Errors: as `compact`."""
+    context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
+    with (
+        suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
+        ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(None, os.getpid())) as apart,
+    ):
+        apart.submit(_compact_there, out).result()
+
+
+def _compact_there(out: str) -> None:
+    compact(open_store(out), while_judging=True)
 
 
 def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
@@ -205,7 +225,7 @@ def merge(out: str, progress: Progress) -> AuditSummary:
         if isinstance(results, LocalFolder):
             results.sweep()
         results.delete(list(results.names("claims")))
-        return _close(con, results, Path(home), 0, parts.missing(results))
+        return replace(_close(con, results, Path(home), 0, parts.missing(results)), n_asked=parts.asked(results))
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:

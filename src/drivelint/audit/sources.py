@@ -13,17 +13,20 @@ import pyarrow.parquet as pq
 
 from drivelint.audit.bucket import download, is_url, list_objects, look
 from drivelint.audit.model import AuditDrive
+from drivelint.drive import conditions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import TRACE_SUFFIXES, is_utf8
+from drivelint.phrases import hint
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from drivelint.drive.trace import DriveInput
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
-"""Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=rain;light=night`), and options."""
+"""Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=wet;light=night`), and options."""
+_SIDES: Final = ("auto", "lht", "rht")
 _ROWS: Final = 10_000
 
 
@@ -34,6 +37,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     matter. Paths in it are relative to it. Any other source is what `check` takes.
     Errors: `UsageError` for a manifest that cannot be understood, `TraceError` for a source that is missing.
     """
+    conditions.parse(options.env)
     logs: list[str] = []
     for source in sources:
         if is_url(source):
@@ -71,17 +75,38 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
 
 
 def _is_manifest(path: Path) -> bool:
-    if not path.is_file():
+    """Whether a file is a manifest. Errors: `UsageError` for one in which another column than `log` names the logs."""
+    if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
     try:
         if path.suffix.lower() == ".parquet":
-            return "log" in pq.read_schema(path).names
-        if path.suffix.lower() == ".csv":
+            names = pq.read_schema(path).names
+        else:
             with path.open(encoding="utf-8-sig", errors="replace") as file:
-                return "log" in re.split(r"[,\r\n]", file.readline(65536).replace('"', ""))
+                names, cells = (re.split(r"[,\r\n]", file.readline(65536).replace('"', "")) for _ in range(2))
     except (OSError, ValueError) as error:
         raise TraceError(f"{path}: cannot be read: {error}") from error
+    if "log" in names:
+        return True
+    first = _first_row(path) if path.suffix.lower() == ".parquet" else dict(zip(names, cells, strict=False))
+    for name, value in first.items():  # a table of states has numbers and actors, but no names of logs
+        text = str(value)
+        is_log = text.lower().endswith(tuple(TRACE_SUFFIXES)) or ("/" in text and (path.parent / text).exists())
+        if is_log and name not in OPTION_COLUMNS:
+            raise UsageError(
+                f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
+            )
     return False
+
+
+def _first_row(path: Path) -> dict[str, Any]:
+    """Return the first row of a Parquet file; empty where there is none, or where it is damaged, which its reader tells."""
+    try:
+        with pq.ParquetFile(path) as file:
+            batch = next(file.iter_batches(1), None)
+            return batch.to_pylist()[0] if batch is not None and batch.num_rows else {}
+    except (OSError, ValueError):
+        return {}
 
 
 def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditDrive]:
@@ -89,19 +114,38 @@ def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditD
         log = row.pop("log")
         if not log:
             raise UsageError(f"{named}, row {number}: no log: fill the column log")
+        try:
+            _require_values(row, options)
+        except UsageError as error:
+            raise UsageError(f"{named}, row {number} ({log}): {error}: nothing was judged yet") from error
         own: dict[str, Any] = {}
         if place := row.pop("map", None):
             own |= {"map": Path(_beside(named, place)), "map_dir": None}
         if ego := row.pop("ego", None):
             own["ego"] = ego
         if env := row.pop("environment", None):
-            own["env"] = (*options.env, *(part.strip() for part in env.split(";") if part.strip()))
+            own["env"] = (*options.env, *_parts(env))
         if (mapping := row.pop("mapping", None)) and (Path(path).parent / mapping).is_file():
             mapping = _beside(named, mapping)
         said = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
         own |= {name: value for name, value in said.items() if value}
         tags = {name: value for name, value in sorted(row.items()) if value}
         yield AuditDrive(_beside(named, log), replace(options, **own), tags)
+
+
+def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
+    """Refuse what a drive could not be judged with, so that no drive is judged before somebody mends it. Errors: `UsageError`."""
+    try:
+        conditions.parse((*options.env, *_parts(row.get("environment", ""))))
+    except UsageError as error:
+        raise UsageError(str(error).replace("--env", "environment", 1)) from error
+    side = row.get("handedness", "")
+    if side and side not in _SIDES:
+        raise UsageError(f"handedness {side!r}: {hint(side, _SIDES)}")
+
+
+def _parts(environment: str) -> tuple[str, ...]:
+    return tuple(part.strip() for part in environment.split(";") if part.strip())
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:

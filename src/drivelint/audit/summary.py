@@ -6,8 +6,11 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow.compute as pc
+
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
+from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -26,7 +29,9 @@ class AuditSummary:
     """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
     `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings. `n_asked`: drives of the sources, `n_absent`:
-    results of others, from earlier runs. `missing_parts`: shards that have not come to their end.
+    results of others, from earlier runs. `missing_parts`: shards that have not come to their end. `copies`: drives whose logs have the
+    content of another one's. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one.
+    In `findings`, a touch of two egos counts once; `possible`: those that are only possible.
     """
 
     n_drives: int = 0
@@ -45,8 +50,11 @@ class AuditSummary:
     n_asked: int | None = None
     n_absent: int = 0
     missing_parts: list[str] = field(default_factory=list)
+    copies: int = 0
     findings: dict[str, int] = field(default_factory=dict)
+    possible: int = 0
     contacts: int = 0
+    contacts_possible: int = 0
     broken: list[dict[str, Any]] = field(default_factory=list)
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
@@ -93,15 +101,17 @@ def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
-    broken, unknown_for, not_judged = (
-        con.execute(statement(f"audit/{name}")).to_arrow_table() for name in ("broken", "unknown", "not_judged")
+    event = statement("fleet/event", of="", least_share=str(LEAST_SHARE))
+    broken, contacts, unknown_for, not_judged = (
+        con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
+        for name in ("broken", "contacts", "unknown", "not_judged")
     )
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
-    (contacts,) = con.execute(statement("audit/contacts")).fetchall()[0]
     return replace(
         summed_receipts(con, "receipts"),
         reused=n_reused,
-        contacts=contacts,
+        **contacts.to_pylist()[0],
+        possible=pc.sum(broken["n_possible"]).as_py() or 0,
         digest=tables_digest(con),
         findings={
             each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])

@@ -20,25 +20,31 @@ def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
 
 
 def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
-    yield f"{plural(counted.n_drives, 'drive')}, {counted.km:,.2f} km, {counted.hours:,.2f} h"
+    yield f"{plural(counted.n_drives, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
     states = (
         f"{counted.judged} judged",
         f"{counted.refused} refused" if counted.refused else "",
         f"{counted.quarantined} quarantined" if counted.quarantined else "",
         f"{counted.lossy} lossy" if counted.lossy else "",
+        f"{counted.copies} with the content of another one, counted again" if counted.copies else "",
         f"{counted.reused} had a result already" if counted.reused else "",
     )
     yield ", ".join(state for state in states if state)
-    if counted.n_asked is not None and counted.n_asked != counted.n_drives:
-        yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
     if counted.missing_parts:
-        yield f"INCOMPLETE: these parts have not ended: {', '.join(counted.missing_parts)}: give the same audits again"
+        of = (
+            ""
+            if counted.n_asked is None
+            else f"{counted.n_drives} of {plural(counted.n_asked, 'drive')} have a result: "
+        )
+        yield f"INCOMPLETE: these parts have not ended: {', '.join(counted.missing_parts)}: {of}give the same audits again"
+    elif counted.n_asked is not None and counted.n_asked != counted.n_drives:
+        yield f"asked for: {plural(counted.n_asked, 'log')}{_difference(counted)}"
     if counted.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
-    contact = f"; CONTACT in {plural(counted.contacts, 'drive')}" if counted.contacts else ""
     found = [f"{counted.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
-    yield f"findings: {', '.join(found)}{contact}; how sure they are was {'' if counted.robust else 'not '}examined"
+    sure = f"examined: {counted.possible} only possible" if counted.robust else "not examined: --robustness"
+    yield f"findings: {', '.join(found)}{_contacts(counted)}; how sure they are was {sure}"
     for row in counted.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
     if counted.unknown_for:
@@ -48,11 +54,18 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     if left := counted.refused + counted.quarantined:
         yield f"not judged: {plural(left, 'drive')}"
         for row in counted.not_judged:
-            yield f"  {row['status']}: {row['reason']}"
+            many = f" ({plural(row['n'], 'drive')})" if row["n"] > 1 else ""
+            yield f"  {row['status']}{many}: {row['reason']}"
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
+
+
+def _contacts(counted: AuditSummary) -> str:
+    """Return in how many drives an ego touched something, and in how many others it may have."""
+    numbers = (("CONTACT", counted.contacts), ("possible contact", counted.contacts_possible))
+    return "".join(f"; {words} in {plural(n, 'drive')}" for words, n in numbers if n)
 
 
 def _difference(counted: AuditSummary) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -10,7 +11,8 @@ from drivelint.cli import options, packs, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
-from drivelint.phrases import inert, inert_line
+from drivelint.errors import DriveLintError
+from drivelint.phrases import inert, inert_line, plural
 
 
 @options.takes_drive_input
@@ -88,7 +90,7 @@ def audit(
     """Judge many drives, as many at a time as there are cores.
 
     Results are kept as they come: an audit that was interrupted goes on where it was when the same command is given again.
-    A manifest has a column log, may have map, ego and environment (weather=rain;light=night), and any others, which are tags.
+    A manifest has a column log, may have map, ego and environment (weather=wet;light=night), and any others, which are tags.
 
     Exit codes: as those of check; drives that cannot be judged, or kill their worker, make 4.
     """
@@ -126,15 +128,29 @@ def audit(
         try:
             counted = run_interruptible(lambda: audited(request, progress))
         except KeyboardInterrupt:
-            typer.echo(
-                f"drivelint: what was judged stays in {inert_line(out)}: the same command goes on with the rest",
-                err=True,
-            )
+            typer.echo(f"drivelint: {_kept(out)}: the same command goes on with the rest", err=True)
             raise
     code = counted.exit_code(fail_on, strict=strict)
     typer.echo(inert(summary_text(counted, out, code)))
     pack_result()
     raise typer.Exit(int(code))
+
+
+def _kept(out: str) -> str:
+    """Return in words how many drives have a result."""
+    from tempfile import TemporaryDirectory
+
+    from drivelint.audit.store import open_store
+    from drivelint.audit.unpacked import n_results
+
+    try:
+        with TemporaryDirectory(prefix="drivelint-kept-") as home:
+            n = n_results(open_store(out), Path(home))
+    except (DriveLintError, OSError):  # whoever interrupts wants an end, not a message about a store
+        return f"what was judged stays in {inert_line(out)}"
+    if not n:
+        return f"no drive has a result in {inert_line(out)} yet"
+    return f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
 
 
 def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")]) -> None:
@@ -160,4 +176,7 @@ def sql(
     """Ask the tables of an audit or a check in SQL. Nothing is changed."""
     from drivelint.audit.ask import ask
 
-    typer.echo(ask(dest, query, format_), nl=False)
+    def warn(warning: str) -> None:
+        typer.echo(f"drivelint: {inert_line(warning)}", err=True)
+
+    typer.echo(ask(dest, query, format_, warn), nl=False)

@@ -48,7 +48,7 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
             found = difference(con, later, earlier, most)
             if rows is not None:
                 write_rows(con, rows)
-        least = fail_on or str(later.told.get("fail_on", "critical"))
+        least = difference_text.least_severity(found, fail_on)
         if format_ == "json":
             typer.echo(inert_json(difference_text.to_json(found, least)))
         elif format_ == "markdown":

@@ -17,7 +17,7 @@ class MissingSignal:
     """A signal that rules require and drives do not have: a forecast of what recording it would decide, and at most so much.
 
     `*_alone`: where nothing else that the rule requires is missing; the others need further signals, too. Where the signal is there, a rule
-    may still be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive.
+    may still be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive. `formats`: of the logs.
     """
 
     signal: str
@@ -29,17 +29,23 @@ class MissingSignal:
     km_alone: float
     judgements: int
     judgements_alone: int
+    formats: list[str]
 
 
 @dataclass(frozen=True)
 class Undecided:
-    """A reason of unknown verdicts though all required signals are there, such as an ego that is not placed for a while."""
+    """A reason of unknown verdicts though all required signals are there, such as an ego that is not placed for a while.
+
+    `rule_id`, `reason`: one of the rules, and what one of its verdicts says.
+    """
 
     reason_code: str
     cause_code: str | None
     rules: int
     drives: int
     verdicts: int
+    rule_id: str
+    reason: str
 
 
 @dataclass(frozen=True)
@@ -55,4 +61,7 @@ def missing(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
     subject = statement("fleet/subject", of=of, value=value_of(None), without="")
     signals = con.execute(statement("fleet/missing", of=of, subject=subject)).fetchall()
     others = con.execute(statement("fleet/undecided", of=of, subject=subject)).fetchall()
-    return Missing(tuple(MissingSignal(*row) for row in signals), tuple(Undecided(*row) for row in others))
+    return Missing(
+        tuple(MissingSignal(*row) for row in signals),
+        tuple(Undecided(*row) for row in others),
+    )

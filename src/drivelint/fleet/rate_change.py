@@ -1,9 +1,10 @@
-"""Tests whether the rates of two audits differ, by an exact test and a correction for many rules."""
+"""Tests whether the rates of two audits differ, per km and per occasion, by exact tests and a correction for many rules."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from math import inf
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.fleet.intervals import holm
 from drivelint.fleet.rates import OTHER, rates
@@ -13,18 +14,45 @@ if TYPE_CHECKING:
 
     import duckdb
 
+    from drivelint.fleet.intervals import Estimate
     from drivelint.fleet.rates import Rate
 
 ALLOWED_FALSE_CALLS: Final = 0.05
 """The chance that any rule is called if the rates of no rule differ."""
 
 
+class RateTest(NamedTuple):
+    """One test of a rule's rates: per 100 km or per occasion. `events`, `rates`: of both audits, the base's first.
+
+    `p_value`: the chance of a difference like this or a rarer one, if the rates are the same; `corrected`: for all tests that could
+    call a difference.
+    """
+
+    per: str
+    events: tuple[int, int]
+    of: tuple[float, float]
+    rates: tuple[Estimate, Estimate]
+    p_value: float
+    corrected: float
+
+    @property
+    def ratio(self) -> float | None:
+        """How many times the base's rate the new one is; infinite where the base has no event."""
+        base, new = (each.rate or 0.0 for each in self.rates)
+        return inf if base == 0 else new / base
+
+    @property
+    def is_called(self) -> bool:
+        """Whether the rates differ, as far as 5 % of false calls in all tests together are allowed."""
+        return self.corrected <= ALLOWED_FALSE_CALLS
+
+
 @dataclass(frozen=True)
 class RateChange:
     """The rates of a rule in two audits. `base`, `new`: of the logs that only one of the audits has; None: it has none of them.
 
-    `p_value`: the chance of a difference like this or a rarer one, if findings per km are the same; None: one audit has no exposure.
-    `corrected`: the same, corrected for all rules that were tested.
+    `p_value`: of findings per km, `occasion_p_value`: of failed occasions; None: one audit has no exposure, or no occasion.
+    `corrected`, `occasion_corrected`: the same, corrected for all tests; None: without an event on either side no test can call it.
     """
 
     rule_id: str
@@ -34,11 +62,33 @@ class RateChange:
     new: Rate | None
     p_value: float | None
     corrected: float | None
+    occasion_p_value: float | None = None
+    occasion_corrected: float | None = None
 
     @property
     def is_called(self) -> bool:
         """Whether the rates differ, as far as 5 % of false calls in all rules together are allowed."""
-        return self.corrected is not None and self.corrected <= ALLOWED_FALSE_CALLS
+        return any(each.is_called for each in self.tests)
+
+    @property
+    def tests(self) -> list[RateTest]:
+        """The tests that could call a difference."""
+        if self.base is None or self.new is None:
+            return []
+        sides = (self.base, self.new)
+        found = []
+        if self.p_value is not None and self.corrected is not None:
+            told = [(each.findings, each.km, each.per_100km) for each in sides]
+            found.append(_test("100 km", told, self.p_value, self.corrected))
+        if self.occasion_p_value is not None and self.occasion_corrected is not None:
+            told = [(each.occasions_failed, float(each.occasions), each.per_occasion) for each in sides]
+            found.append(_test("occasion", told, self.occasion_p_value, self.occasion_corrected))
+        return found
+
+
+def _test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, corrected: float) -> RateTest:
+    (n, of, rate), (n_new, of_new, rate_new) = sides
+    return RateTest(per, (n, n_new), (of, of_new), (rate, rate_new), p_value, corrected)
 
 
 def compare_rates(
@@ -56,17 +106,39 @@ def compare_rates(
 def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
     """Return the changes of these rates, whose exposures are independent of each other, in the order of their names.
 
-    The test is exact, given the sum of the findings: if findings per km are the same, each of them falls into the new audit with the new
-    audit's share of the exposure. Like the interval of a rate, it assumes that findings occur independently of each other.
+    The tests are exact, given the sum of the events: if findings per km are the same, each of them falls into the new audit with the new
+    audit's share of the exposure; if the shares of failed occasions are, Fisher's test holds. Like the intervals, they assume that
+    events occur independently of each other. Where neither audit has an event, no test can call a difference, so none is corrected for.
     """
     had, has = ({(rate.rule_id, rate.profile, rate.tag_value): rate for rate in side} for side in (base, new))
     names = sorted(had.keys() | has.keys(), key=lambda name: tuple((part is not None, part or "") for part in name))
-    values = {name: p for name in names if (p := _p_value(had.get(name), has.get(name))) is not None}
-    corrected = dict(zip(values, holm(list(values.values())), strict=True))
-    return [RateChange(*name, had.get(name), has.get(name), values.get(name), corrected.get(name)) for name in names]
+    values: dict[tuple[Any, str], float] = {}
+    for name in names:
+        sides = had.get(name), has.get(name)
+        for per, found in (("km", _per_km(*sides)), ("occasion", _per_occasion(*sides))):
+            if found is not None:
+                values[name, per] = found
+    able = [key for key in values if _can_differ(had[key[0]], has[key[0]], key[1])]
+    corrected = dict(zip(able, holm([values[key] for key in able]), strict=True))
+    return [
+        RateChange(
+            *name,
+            had.get(name),
+            has.get(name),
+            values.get((name, "km")),
+            corrected.get((name, "km")),
+            values.get((name, "occasion")),
+            corrected.get((name, "occasion")),
+        )
+        for name in names
+    ]
 
 
-def _p_value(base: Rate | None, new: Rate | None) -> float | None:
+def _can_differ(base: Rate, new: Rate, per: str) -> bool:
+    return bool(base.findings + new.findings if per == "km" else base.occasions_failed + new.occasions_failed)
+
+
+def _per_km(base: Rate | None, new: Rate | None) -> float | None:
     from scipy.stats import binomtest
 
     if base is None or new is None or base.km <= 0 or new.km <= 0:
@@ -75,3 +147,12 @@ def _p_value(base: Rate | None, new: Rate | None) -> float | None:
     if not findings:
         return 1.0
     return float(binomtest(new.findings, findings, new.km / (base.km + new.km)).pvalue)
+
+
+def _per_occasion(base: Rate | None, new: Rate | None) -> float | None:
+    from scipy.stats import fisher_exact
+
+    if base is None or new is None or not base.occasions or not new.occasions:
+        return None
+    table = [[each.occasions_failed, each.occasions - each.occasions_failed] for each in (base, new)]
+    return float(fisher_exact(table)[1])

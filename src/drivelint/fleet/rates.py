@@ -44,6 +44,7 @@ class Rate:
     `egos_*`: subjects that were wholly judged; of these, with a failed verdict; not wholly judged; where the rule was never in force
     (another nation, other conditions, or the automated driver never drove). `drives_not_judged`: their way is not known at all.
     `km`, `hours`, `findings`: of the subjects that were wholly judged. `findings_possible`: of all findings those that are not sure.
+    `events_sure`: all the others, where a touch of two egos, which is a finding of each, counts once.
     `occasions`: verdicts that passed or failed, judged at each of their steps, in whatever subject; `occasions_partly`: at a part of them.
     """
 
@@ -62,6 +63,7 @@ class Rate:
     findings: int
     findings_of_unknown: int
     findings_possible: int
+    events_sure: int
     occasions: int
     occasions_failed: int
     occasions_partly: int
@@ -93,8 +95,11 @@ class Rate:
 
     @property
     def at_least_per_100km(self) -> float | None:
-        """The lower end of the rate over all exposure, if nothing more happened where it was not judged; None: there is no exposure."""
-        found = intervals.poisson(self.findings + self.findings_of_unknown, (self.km + self.km_unknown) / 100)
+        """The lower end of the rate over all exposure, if nothing more happened where it was not judged; None: there is no exposure.
+
+        It stands on `events_sure`: what is only possible may not have happened, and one touch is no two.
+        """
+        found = intervals.poisson(self.events_sure, (self.km + self.km_unknown) / 100)
         return None if found.rate is None else found.low
 
 
@@ -113,7 +118,7 @@ def rates(
         "without": "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256",
         "least_share": str(LEAST_SHARE),
     }
-    parts = {name: statement(f"fleet/{name}", **fragments) for name in ("subject", "profiled")}
+    parts = {name: statement(f"fleet/{name}", **fragments) for name in ("subject", "profiled", "event")}
     rows = con.execute(statement("fleet/rates", **fragments, **parts), bound_tag(by))
     names = [column[0] for column in rows.description or ()]
     return [Rate(**dict(zip(names, row, strict=True))) for row in rows.fetchall()]

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.catalogue.header import CONTACT
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.missing import Missing, missing
 from drivelint.fleet.rates import Rate, rates
+from drivelint.fleet.situations import value_of
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
 from drivelint.fleet_report.difference import AuditDifference, difference, verdict_counts
 from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.figures import LogAxis, log_axis
 from drivelint.fleet_report.places import FindingMap, finding_map
+from drivelint.phrases import plural
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
@@ -30,6 +34,11 @@ MAX_DRIVES: Final = 50
 """Drives in a table."""
 MAX_CHANGES: Final = 50
 """Findings of each standing against a baseline."""
+_SAME: Final = {
+    "verdicts": "ego_id, rule_id, profile, object_id, occurrence, ref_id, t_start_ns, verdict",
+    "findings": "ego_id, rule_id, profile, object_id, t_start_ns, t_end_ns",
+}
+"""Table -> what makes two rows of logs of one content the same."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +46,9 @@ class FleetContent:
     """An audit as the fleet page tells it.
 
     `totals`: the row of `drives.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
-    `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command`. `not_judged`: some of the drives.
+    `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
+    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. Logs of one content are one drive;
+    `n_without_rate`: findings of such a log that another one stands for in the rates, as it was judged otherwise.
     """
 
     audit: Audit
@@ -49,6 +60,8 @@ class FleetContent:
     axis: LogAxis
     worst: list[Row]
     n_drives_with_findings: int
+    n_without_rate: int
+    contacts: tuple[int, int]
     not_judged: list[Row]
     by_tag: list[RatesByTag]
     coverage: Coverage
@@ -65,6 +78,21 @@ class FleetContent:
     def n_not_judged(self) -> int:
         """Number of drives that could not be judged."""
         return int(self.totals["drives"] - self.totals["judged"])
+
+    @property
+    def sureness(self) -> str:
+        """In how many drives the egos touched something, and how sure the findings are; '' without a finding."""
+        if not self.n_findings:
+            return ""
+        numbers = zip(("CONTACT", "possible contact"), self.contacts, strict=True)
+        touched = [f"{words} in {plural(n, 'drive')}" for words, n in numbers if n]
+        n = sum(row["possible"] for row in self.severities.values())
+        looked = (
+            f"examined: {n:,} only possible"
+            if self.audit.settings.get("robustness")
+            else "not examined: audit --robustness does it"
+        )
+        return "; ".join([*touched, f"how sure the findings are was {looked}"])
 
     @property
     def is_all_decided(self) -> bool:
@@ -91,7 +119,11 @@ class FleetContent:
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
     """Return what there is to say of an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
-    (totals,) = _rows(con, "drives", of="")
+    for table, same in _SAME.items():
+        con.execute(statement("fleet_report/counted", table=table, columns=same))
+    event = statement("fleet/event", of="counted_", least_share=share)
+    (totals,) = _rows(con, "drives")
+    (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
     columns = {row[0] for row in con.execute("DESCRIBE receipts").fetchall()}
     worst = _rows(
         con,
@@ -102,20 +134,24 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
     )
     for row in worst:
         row["command"] = check_command(row["log"], row["options"], audit.settings, row["drive_id"])
+        row["explain"] = shlex.join(["drivelint", "explain", row["finding_id"], "--in", f"drives/{row['drive_id']}"])
         row["tags"] = dict(row["tags"] or ())
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
     found = sorted(rates(con), key=lambda rate: _gravest_first(rate, rules))
-    with_findings = con.execute("SELECT count(DISTINCT key) FROM findings").fetchall()[0][0]
+    subject = statement("fleet/subject", of="", value=value_of(None), without="")
+    (with_findings,) = _rows(con, "with_findings", subject=subject)
     return FleetContent(
         audit=audit,
         totals=totals,
-        severities={row["severity"]: row for row in _rows(con, "severities", least_share=share)},
-        verdicts=verdict_counts(con, ""),
+        severities={row["severity"]: row for row in _rows(con, "severities", event=event)},
+        verdicts=verdict_counts(con, "counted_"),
         rules=rules,
         rates=found,
         axis=log_axis(rate.per_100km for rate in found if rate.findings),
         worst=worst,
-        n_drives_with_findings=with_findings,
+        n_drives_with_findings=with_findings["drives"],
+        n_without_rate=with_findings["without_rate"],
+        contacts=touched,
         not_judged=_rows(con, "not_judged", {"most": MAX_DRIVES}),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),
@@ -126,7 +162,8 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
 
 
 def _gravest_first(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
-    severity = SEVERITIES.index(rules[rate.rule_id]["severity"])
+    rule = rules[rate.rule_id]
+    severity = SEVERITIES.index(rule["severity"]), CONTACT not in rule["tags"]
     n = rate.findings + rate.findings_of_unknown
     return (not n, severity, -(rate.per_100km.rate or 0.0), -n, rate.rule_id, rate.profile or "")
 

@@ -10,7 +10,7 @@ import duckdb
 
 from drivelint.errors import UsageError
 from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
-from drivelint.fleet.rate_change import RateChange, compare_rates
+from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.opened import BASE
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
     Row = dict[str, Any]
 
+NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
+NEAREST: Final = 5
+"""Tests of rates that are shown where fewer call a difference."""
 _WHY: Final = {
     "drive_not_checked": "the drive was not checked",
     "drive_not_judged": "the drive could not be judged",
@@ -72,7 +75,8 @@ class Opened(NamedTuple):
 class AuditDifference:
     """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
 
-    `gating`: severity -> new findings of stable rules. `causes`: what else differs -> standing -> number of findings.
+    `of_new_drives`: new findings of drives that the base does not have. `gating`: severity -> new findings of stable rules.
+    `causes`: what else differs -> standing -> number of findings.
     `base_only`, `new_only`: at most `most` logs that the other has not.
     """
 
@@ -80,6 +84,7 @@ class AuditDifference:
     new: Audit
     counts: dict[str, int]
     worse: int
+    of_new_drives: int
     fixed: tuple[int, int]
     gating: dict[str, int]
     verdicts: tuple[dict[str, int], dict[str, int]]
@@ -94,8 +99,17 @@ class AuditDifference:
 
     @property
     def headline(self) -> str:
-        """The counts in one sentence."""
-        return f"{self.counts['new']} new, {counts_sentence(self.counts, self.worse, self.fixed)}"
+        """The counts in one sentence; of audits without a common drive, that there is nothing to count."""
+        if self.is_disjoint:
+            return f"{NOTHING_IN_COMMON}; compare rates"
+        added = f" ({self.of_new_drives} in drives that the base does not have)" if self.of_new_drives else ""
+        return f"{self.counts['new']} new{added}, {counts_sentence(self.counts, self.worse, self.fixed)}"
+
+    @property
+    def is_disjoint(self) -> bool:
+        """Whether no drive is in both, so that no finding of one can be held against the other."""
+        told = self.comparison
+        return not told.drives_both and bool(told.drives_base_only and told.drives_new_only)
 
     def n_failing(self, fail_on: str) -> int:
         """Return how many new findings of stable rules are at or above a severity."""
@@ -108,9 +122,15 @@ class AuditDifference:
         return [each for each in self.rates if each.is_called]
 
     @property
-    def n_tested(self) -> int:
-        """Number of rates that were compared."""
-        return sum(each.p_value is not None for each in self.rates)
+    def tested(self) -> list[tuple[RateChange, RateTest]]:
+        """The tests that could call a difference, the nearest to one first."""
+        found = [(change, test) for change in self.rates for test in change.tests]
+        return sorted(found, key=lambda each: (each[1].p_value, each[0].rule_id, each[0].profile or "", each[1].per))
+
+    @property
+    def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
+        """The tests that call a difference; at least the nearest ones."""
+        return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
 
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: int) -> AuditDifference:
@@ -131,6 +151,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         new=new,
         counts={standing: counted[standing] for standing in DIFF_STATUSES},
         worse=gating["worse"],
+        of_new_drives=gating["of_new_drives"],
         fixed=(gating["passes"], gating["not_applicable"]),
         gating={severity: gating[severity] for severity in SEVERITIES},
         verdicts=(verdict_counts(con, BASE), verdict_counts(con, "")),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
 from drivelint.errors import ExitCode
-from drivelint.fleet_report.figures import figure, interval
+from drivelint.fleet_report.difference import NOTHING_IN_COMMON
+from drivelint.fleet_report.figures import figure, interval, share
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.phrases import one_line
 from drivelint.report.markdown import code, escaped
@@ -17,7 +19,7 @@ from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
     from drivelint.fleet.coverage import RuleCoverage
-    from drivelint.fleet.rate_change import RateChange
+    from drivelint.fleet.rate_change import RateChange, RateTest
     from drivelint.fleet_report.difference import AuditDifference
 
 AUDIT_DIFF_SCHEMA: Final = 1
@@ -31,8 +33,15 @@ def rate_name(of: RateChange | RuleCoverage) -> str:
     return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
 
 
-def exit_code(found: AuditDifference, fail_on: str) -> ExitCode:
-    """FAILED for new findings that gate; NOT_JUDGED where one of the audits has not ended, so that more may come."""
+def least_severity(found: AuditDifference, asked: str | None) -> str | None:
+    """Return the severity that gates: what was asked, else the audit's own; None where no finding can be matched and nothing was asked."""
+    return asked or (None if found.is_disjoint else str(found.new.told.get("fail_on", "critical")))
+
+
+def exit_code(found: AuditDifference, fail_on: str | None) -> ExitCode:
+    """FAILED for new findings that gate; NOT_JUDGED where more may come, or where findings of no drive can be matched."""
+    if fail_on is None:
+        return ExitCode.NOT_JUDGED
     if found.n_failing(fail_on):
         return ExitCode.FAILED
     return ExitCode.NOT_JUDGED if _warnings(found) else ExitCode.OK
@@ -42,20 +51,41 @@ def _warnings(found: AuditDifference) -> list[str]:
     return [audit.warning for audit in (found.base, found.new) if audit.warning]
 
 
-def _exit(found: AuditDifference, fail_on: str) -> str:
+def _exit(found: AuditDifference, fail_on: str | None) -> str:
     """Return the exit code and its reason, in one line."""
+    if fail_on is None:
+        return f"exit 4: {NOTHING_IN_COMMON}; --fail-on SEVERITY gates on all of the newer audit"
     if exit_code(found, fail_on) == ExitCode.NOT_JUDGED:
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(found)[0]}"
     return exit_sentence(found.n_failing(fail_on), fail_on)
 
 
-def to_text(found: AuditDifference, fail_on: str, *, markdown: bool = False) -> str:
+def rate_line(of: tuple[RateChange, RateTest]) -> str:
+    """Return the rates of a test, how many times the earlier one the later one is, and the chance of it."""
+    change, test = of
+    was, now = rate_sides(test)
+    name = f"{rate_name(change)} per {test.per}"
+    return f"{name}: {was}, now {now}: {times(test)}, p {figure(test.p_value)}, corrected {figure(test.corrected)}"
+
+
+def times(test: RateTest) -> str:
+    """Return how many times the earlier rate the later one is."""
+    return "there was none" if test.ratio == math.inf else f"{figure(test.ratio)} times"
+
+
+def rate_sides(test: RateTest) -> list[str]:
+    """Return both rates of a test in words, the earlier first."""
+    if test.per == "occasion":
+        told = zip(test.events, test.of, test.rates, strict=True)
+        return [f"{n} of {of:.0f}, {share(rate)}" for n, of, rate in told]
+    return [interval(rate) for rate in test.rates]
+
+
+def to_text(found: AuditDifference, fail_on: str | None, *, markdown: bool = False) -> str:
     """Return a difference as text for a person, or as Markdown."""
     filters: dict[str, Any] = {
         "finding_line": finding_line,
-        "interval": interval,
-        "figure": figure,
-        "rate_name": rate_name,
+        "rate_line": rate_line,
         "escaped": escaped,
         "code": code,
     }
@@ -74,7 +104,7 @@ def _one_line(value: Any) -> Any:
     return one_line(value) if isinstance(value, str) and "\n" in value else value
 
 
-def to_json(found: AuditDifference, fail_on: str) -> str:
+def to_json(found: AuditDifference, fail_on: str | None) -> str:
     """Return a difference as JSON: all counts, and the first entries of each standing with the number of those left out."""
     content = {
         "audit_diff_schema": AUDIT_DIFF_SCHEMA,
@@ -103,7 +133,9 @@ def to_json(found: AuditDifference, fail_on: str) -> str:
         ],
         "left_out": {standing: found.counts[standing] - len(entries) for standing, entries in found.entries.items()},
         "opened": [each._asdict() for each in found.opened],
-        "rates": [_rate_change(each) for each in found.rates if each.p_value is not None],
+        "rates": [
+            _rate_change(each) for each in found.rates if each.p_value is not None or each.occasion_p_value is not None
+        ],
     }
     return msgspec.json.format(msgspec.json.encode(finite(msgspec.to_builtins(content))), indent=2).decode()
 
@@ -116,5 +148,8 @@ def _rate_change(each: RateChange) -> dict[str, Any]:
             "km": rate.km,
             "km_unknown": rate.km_unknown,
             "per_100km": rate.per_100km._asdict(),
+            "occasions": rate.occasions,
+            "occasions_failed": rate.occasions_failed,
         }
-    return {**told, "p_value": each.p_value, "corrected": each.corrected, "called": each.is_called}
+    values = ("p_value", "corrected", "occasion_p_value", "occasion_corrected")
+    return {**told, **{name: getattr(each, name) for name in values}, "called": each.is_called}

@@ -9,11 +9,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit import parts
 from drivelint.audit.bucket import as_url
-from drivelint.audit.compact import create_views, database
-from drivelint.audit.run import AUDIT_FILE, SUMMARY_FILE
+from drivelint.audit.compact import database
+from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import open_store
+from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.audit.store import ResultStore
+    from drivelint.audit.unpacked import Standing
 
 BASE: Final = "base_"
 """What the names of the views of the earlier audit begin with; those of the other begin with nothing."""
@@ -29,18 +30,17 @@ BASE: Final = "base_"
 
 @dataclass(frozen=True)
 class Audit:
-    """An audit that was opened: where it lies, and what `audit.json` says.
-
-    `digest`: the hash of all rows; None: the audit has not ended, or is not packed. `n_loose`: drives that were judged since and are
-    not packed, so that no view has them.
-    """
+    """An audit that was opened: where it lies, what `audit.json` says, and how far it is."""
 
     dest: str
     results: ResultStore
     told: dict[str, Any]
-    digest: str | None
-    n_loose: int
-    missing_parts: tuple[str, ...] = ()
+    standing: Standing
+
+    @property
+    def digest(self) -> str | None:
+        """The hash of all rows; None: the audit has not ended."""
+        return self.standing.digest
 
     @property
     def name(self) -> str:
@@ -61,16 +61,8 @@ class Audit:
 
     @property
     def warning(self) -> str:
-        """What is not in its tables though it was or will be judged; '' where nothing is."""
-        if self.digest is not None and not self.n_loose and not self.missing_parts:
-            return ""
-        more = f"{self.n_loose} judged drives are not packed yet; " if self.n_loose else ""
-        again = (
-            "give the same audit again"
-            if self.missing_parts in {(), (parts.ALL,)}
-            else (f"parts without an end: {', '.join(self.missing_parts)}; give them again, then drivelint merge")
-        )
-        return f"{self.dest}: the audit has not ended: {more}{again}, to have all"
+        """That it has not ended; '' where it has."""
+        return self.standing.warning and f"{self.dest}: {self.standing.warning}"
 
 
 def destination(path: Path) -> str:
@@ -106,7 +98,4 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str) ->
     content = results.read(AUDIT_FILE)
     if content is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
-    create_views(con, results, home, prefix)
-    summary = json.loads(results.read(SUMMARY_FILE) or b"{}")
-    n_loose = sum(1 for _ in results.names("receipts"))
-    return Audit(dest, results, json.loads(content), summary.get("digest"), n_loose, tuple(parts.missing(results)))
+    return Audit(dest, results, json.loads(content), views_of_all(con, results, home, prefix))

@@ -10,11 +10,11 @@ from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
 from drivelint.fleet_report import figures
 from drivelint.fleet_report.content import FleetContent, content
-from drivelint.fleet_report.difference_text import rate_name
+from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, times
 from drivelint.fleet_report.opened import opened
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
-from drivelint.reasons.signals import how_to_provide, remedy
+from drivelint.reasons.signals import WHAT_IS_NULL, how_to_provide, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.report.markdown import code, escaped
 from drivelint.result.counts import SEVERITIES, VERDICTS
@@ -25,13 +25,14 @@ if TYPE_CHECKING:
 
     from jinja2 import Environment
 
-    from drivelint.fleet.missing import Undecided
+    from drivelint.fleet.missing import MissingSignal, Undecided
+    from drivelint.fleet.rates import Rate
     from drivelint.fleet_report.opened import Audit
 
 FORMATS: Final = ("html", "markdown")
 _FILES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
 _STANDING_TITLES: Final = {
-    "never_decided": "Never decided: unknown each time",
+    "never_decided": "Never decided: none passed or failed, some are unknown",
     "never_triggered": "Never triggered: what they are about did not happen",
     "never_in_force": "Never in force: another nation, other conditions, or no automated driver",
     "not_run": "Not run: no drive was judged by them",
@@ -79,14 +80,27 @@ def _words(found: FleetContent) -> dict[str, Any]:
     }
 
 
-def _provide(signal: str) -> str:
-    """Return how to provide a signal, in whatever format."""
-    return how_to_provide(signal, "mapped")
+def _beside(rate: Rate) -> str:
+    """Return what is to be said beside the rate of what was judged, where there are findings in what was not judged wholly."""
+    if not rate.findings_of_unknown:
+        return ""
+    least = rate.at_least_per_100km
+    return f", at least {figures.figure(least)} over all" if least else ", of all nothing sure"
+
+
+def _provide(each: MissingSignal) -> str:
+    """Return how to provide a signal in the formats of the logs that lack it."""
+    told: dict[str, list[str]] = {}
+    for log_format in each.formats:
+        told.setdefault(how_to_provide(each.signal, log_format), []).append(log_format)
+    return "; ".join(f"{', '.join(of)}: {text}" if len(told) > 1 else text for text, of in told.items())
 
 
 def _mend(each: Undecided) -> str:
-    """Return what would decide verdicts that are unknown for a reason."""
-    return remedy(each.reason_code, None, "mapped")
+    """Return what would decide verdicts that are unknown for a reason, and what one of them says."""
+    advice = remedy(each.reason_code, None, "mapped")
+    said = f"{each.rule_id}: {each.reason}"
+    return said if advice == WHAT_IS_NULL else f"{advice} ({said})"
 
 
 _FILTERS: Final[dict[str, Any]] = {
@@ -95,6 +109,10 @@ _FILTERS: Final[dict[str, Any]] = {
     "share": figures.share,
     "finding_line": finding_line,
     "rate_name": rate_name,
+    "rate_sides": rate_sides,
+    "rate_line": rate_line,
+    "times": times,
+    "beside": _beside,
     "provide": _provide,
     "mend": _mend,
     "plural": plural,

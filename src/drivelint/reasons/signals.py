@@ -27,7 +27,8 @@ SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
 """What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
 SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
-_SHOWN = "what is NULL, or has no row, in the rows that it was judged on"
+WHAT_IS_NULL: Final = "what is NULL, or has no row, in the rows that it was judged on"
+"""The remedy of a reason that has none of its own: the verdict's own words say more."""
 _A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
@@ -64,7 +65,7 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
         )
     return REMEDIES.get(code, "{advice}").format(
         object="the object" if object_id is None else f"object {object_id}",
-        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else _SHOWN),
+        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else WHAT_IS_NULL),
     )
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures import TimeoutError as TookTooLongError
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING
 
 from pebble import ProcessExpired, ProcessPool
@@ -58,12 +60,15 @@ class LocalPool:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def _started(self) -> ProcessPool:
+        sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
+        resource_tracker.ensure_running()  # its start would take the block below off again
+        sys.warnoptions.pop()
         # threads and processes that are started from here on inherit it: Ctrl-C is the main thread's
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         return ProcessPool(
             max_workers=self._workers,
             max_tasks=TASKS_PER_WORKER,
-            initializer=_begin,
+            initializer=begin_worker,
             initargs=(self._memory, os.getpid()),
             context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
         )
@@ -87,7 +92,7 @@ def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
         return Outcome(task, error=error)
 
 
-def _begin(memory: int | None, parent: int) -> None:
+def begin_worker(memory: int | None, parent: int) -> None:
     """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's

@@ -1,0 +1,117 @@
+"""Reads an audit that has not ended, or whose results are not packed yet, as a whole one is read, and says that it is not one."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import duckdb
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from drivelint.audit import parts
+from drivelint.audit.compact import (
+    RECEIPT_SCHEMA,
+    batch_rows,
+    chunk_name,
+    chunks,
+    create_views,
+    loose_receipts,
+    receipt_row,
+)
+from drivelint.audit.driver import empty_rows
+from drivelint.audit.worker import TABLES, batch_name
+from drivelint.errors import UsageError
+from drivelint.phrases import plural
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.audit.model import Receipt
+    from drivelint.audit.store import ResultStore
+
+SUMMARY_FILE: Final = "summary.json"
+
+
+class Standing(NamedTuple):
+    """How far an audit is. `digest`: the hash of all rows; None: it has not ended. `n_loose`: of `n_results`, what is not packed yet.
+
+    `n_asked`: drives of the parts that have not ended, or of all; None: not known.
+    """
+
+    digest: str | None
+    n_loose: int = 0
+    n_results: int = 0
+    n_asked: int | None = None
+    missing_parts: tuple[str, ...] = ()
+
+    @property
+    def warning(self) -> str:
+        """What is to be said of an audit that has not ended; '' of one that has."""
+        if self.digest is not None and not self.n_loose and not self.missing_parts:
+            return ""
+        of = "" if self.n_asked is None else f" of {self.n_asked}"
+        more = f"{self.n_results}{of} drives have a result; "
+        more += (
+            f"{plural(self.n_loose, 'judged drive')} {'is' if self.n_loose == 1 else 'are'} not packed yet; "
+            if self.n_loose
+            else ""
+        )
+        again = (
+            "give the same audit again"
+            if self.missing_parts in {(), (parts.ALL,)}
+            else (f"parts without an end: {', '.join(self.missing_parts)}; give them again, then drivelint merge")
+        )
+        return f"the audit has not ended: {more}{again}, to have all"
+
+
+def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
+    """Create the views of `create_views` over all results, also those that are not packed. `prefix`: as there.
+
+    Errors: `UsageError` where somebody packs them meanwhile.
+    """
+    inner = f"packed_{prefix}"
+    try:
+        create_views(con, results, home, inner)
+        loose = _unpacked(con, results, inner)
+        for table in (*TABLES, "receipts"):
+            _fill(con, results, home, table, loose)
+            con.execute(f"CREATE OR REPLACE TABLE loose_{prefix}{table} AS FROM _loose")
+            both = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
+            con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
+        con.execute(f"CREATE OR REPLACE VIEW {prefix}rules AS FROM {inner}rules")
+    except (duckdb.IOException, FileNotFoundError) as error:
+        raise UsageError("an audit is at work there and has just packed results: ask again") from error
+    (n,) = con.execute(f"SELECT count(*) FROM {prefix}receipts").fetchone() or (0,)
+    told = json.loads(results.read(SUMMARY_FILE) or b"{}")
+    missing = parts.missing(results)
+    return Standing(told.get("digest"), len(loose), n, parts.asked(results), tuple(missing))
+
+
+def n_results(results: ResultStore, home: Path) -> int:
+    """Return how many drives have a result."""
+    n = sum(1 for _ in results.names("receipts"))
+    for each in chunks(results):
+        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), home)).num_rows
+    return n
+
+
+def _unpacked(con: duckdb.DuckDBPyConnection, results: ResultStore, inner: str) -> list[Receipt]:
+    """Return the receipts that are in no chunk, and whose rows are there."""
+    known = {key for (key,) in con.execute(f"SELECT key FROM {inner}receipts").fetchall()}
+    found = [each for some in loose_receipts(results, whole_batches=False) for each in some if each.key not in known]
+    there = {name.rpartition("/")[2] for name in results.names(f"batches/{TABLES[-1]}")}
+    return [each for each in found if batch_name("", each.batch).rpartition("/")[2] in there]
+
+
+def _fill(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, loose: list[Receipt]) -> None:
+    """Make the table `_loose` of the rows of these receipts."""
+    receipts = pa.Table.from_pylist([receipt_row(each) for each in loose], schema=RECEIPT_SCHEMA)
+    if table == "receipts" or not loose:
+        con.register("_some", receipts if table == "receipts" else empty_rows()[table])
+        con.execute("CREATE OR REPLACE TABLE _loose AS FROM _some")
+        con.unregister("_some")
+        return
+    con.register("_packed", receipts.select(["key", "batch"]))
+    con.execute(f"CREATE OR REPLACE TABLE _loose AS {batch_rows(con, results, home, table, loose)}")
+    con.unregister("_packed")

@@ -1,0 +1,56 @@
+"""While workers judge, results are packed in a process of their own, so that the driver's memory does not grow with the drives."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from drivelint.audit import run as audit_run
+from drivelint.audit.compact import chunks, compact
+from drivelint.audit.executors import Outcome
+from drivelint.audit.store import LocalFolder, ResultStore
+from drivelint.errors import UsageError
+from tests.audit import fleet
+from tests.audit.here import InThisProcess, judged
+
+
+class Watched(InThisProcess):
+    """Counts the chunks that are there before each task, and may spoil a receipt."""
+
+    def __init__(self, out: Path, spoiled: bool = False) -> None:
+        super().__init__()
+        self.out, self.spoiled, self.seen = out, spoiled, [0]
+
+    def wait(self) -> list[Outcome]:
+        self.seen.append(len(chunks(LocalFolder(self.out))))
+        found = super().wait()
+        if self.spoiled:
+            next(self.out.glob("receipts/*/*.json")).write_bytes(b"{}")
+        return found
+
+
+def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drives = fleet.write(tmp_path / "fleet", 20)
+    whole = judged(drives, tmp_path / "whole")
+    here: list[bool] = []
+
+    def noted(results: ResultStore, *, while_judging: bool = False) -> int:
+        here.append(while_judging)
+        return compact(results, while_judging=while_judging)
+
+    monkeypatch.setattr(audit_run, "compact", noted)
+    monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
+    executor = Watched(tmp_path / "out")
+    assert judged(drives, tmp_path / "out", executor).digest == whole.digest
+    assert executor.seen[-1] > 0, "there was a chunk before the end"
+    assert here, "the test can fail"
+    assert not any(here), f"process {os.getpid()} packed while it judged"
+
+
+def test_its_errors_keep_their_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drives = fleet.write(tmp_path / "fleet", 20)
+    monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
+    with pytest.raises(UsageError, match="not a receipt of drivelint"):
+        judged(drives, tmp_path / "out", Watched(tmp_path / "out", spoiled=True))

@@ -1,0 +1,102 @@
+"""An audit that did not end: `sql`, `report` and `diff` read what is there, and say how much of it that is."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from drivelint.audit import merge
+from drivelint.audit.ask import ask
+from drivelint.audit.compact import create_views, database, tables_digest
+from drivelint.audit.executors import Outcome
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.text import summary_text
+from drivelint.audit.unpacked import n_results, views_of_all
+from drivelint.errors import ExitCode
+from drivelint.fleet_report import page
+from drivelint.fleet_report.difference import difference
+from drivelint.fleet_report.opened import opened, opened_both
+from drivelint.report.progress import Silent
+from tests.audit import fleet
+from tests.audit.here import InThisProcess, judged
+
+N_DRIVES = 20
+
+
+class Stopped(InThisProcess):
+    """Is interrupted before its last two tasks."""
+
+    def wait(self) -> list[Outcome]:
+        if len(self.tasks) < 2:
+            raise KeyboardInterrupt
+        return super().wait()
+
+
+@pytest.fixture(scope="module")
+def interrupted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """Return the place of an audit that was interrupted, and of how many drives it has results."""
+    home = tmp_path_factory.mktemp("interrupted")
+    drives = fleet.write(home / "fleet", N_DRIVES)
+    with pytest.raises(KeyboardInterrupt):
+        judged(drives, home / "out", Stopped())
+    n = sum(1 for _ in (home / "out").glob("receipts/*/*.json"))
+    assert 0 < n < N_DRIVES
+    return home / "out", n
+
+
+def test_sql_answers_and_says_how_much_is_there(interrupted: tuple[Path, int]) -> None:
+    out, n = interrupted
+    told: list[str] = []
+    for table in ("drives", "receipts"):
+        (row,) = json.loads(ask(str(out), f"SELECT count(*) AS n FROM {table}", "json", told.append))
+        assert row == {"n": n}
+    assert (
+        f"the audit has not ended: {n} of {N_DRIVES} drives have a result; {n} judged drives are not packed" in told[0]
+    )
+    assert n_results(LocalFolder(out), out) == n
+
+
+def test_report_and_diff_show_what_is_there(interrupted: tuple[Path, int], tmp_path: Path) -> None:
+    out, n = interrupted
+    name, audit = page.write(str(out), "markdown", (), None)
+    text = (out / name).read_text(encoding="utf-8")
+    assert f"{n} of {n} drives were judged" in text
+    assert f"{n} of {N_DRIVES} drives have a result" in text
+    assert audit.warning
+    with opened_both(str(out), str(out)) as (con, earlier, later):
+        found = difference(con, later, earlier, 5)
+    assert found.comparison.drives_both == n
+    assert sum(found.verdicts[0].values()) >= n
+
+
+def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_missing(
+    interrupted: tuple[Path, int],
+) -> None:
+    out, n = interrupted
+    with database() as con:
+        views_of_all(con, LocalFolder(out), out)
+        before = tables_digest(con)
+    merged = merge(str(out), Silent())
+    assert merged.digest == before
+    assert f"INCOMPLETE: these parts have not ended: all: {n} of {N_DRIVES} drives have a result: give" in summary_text(
+        merged, "out", ExitCode.NOT_JUDGED
+    )
+    with opened(str(out)) as (_, audit, _):
+        assert f"{n} of {N_DRIVES} drives have a result; give the same audit again" in audit.warning
+    with database() as con:
+        create_views(con, LocalFolder(out), out)
+        assert tables_digest(con) == before
+
+
+def test_workers_do_not_hear_a_ctrl_c_while_they_begin() -> None:
+    """What multiprocessing starts first took the block off again, and each worker printed a traceback."""
+    code = (
+        "import signal; from drivelint.audit.executors.local import LocalPool; LocalPool(1)\n"
+        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, []))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "True"

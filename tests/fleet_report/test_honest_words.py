@@ -1,0 +1,213 @@
+"""What the fleet page says of fleets made by hand: findings beside a rate, copies, contacts, reasons, rules that nothing decided."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pytest
+from lxml import html
+
+from drivelint.audit.compact import RECEIPT_SCHEMA
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import Standing
+from drivelint.fleet.missing import missing
+from drivelint.fleet_report import content as content_
+from drivelint.fleet_report import page
+from drivelint.fleet_report.opened import Audit
+from tests.fleet import audits
+from tests.fleet.audits import ego_drive, found, said
+from tests.report.synthetic import rule
+
+CONTACT = rule("z-contact", profiles=[], tags=["contact"], title="No collision")
+ROOM = rule("a-room", profiles=[], title="Room")
+
+
+def words_of(element: Any) -> str:
+    return " ".join(element.text_content().split())
+
+
+class Told:
+    """The page of a fleet as text."""
+
+    def __init__(self, drives: list[Any], verdicts: list[Any], findings: list[Any], *by: str, **settings: Any) -> None:
+        verdicts = [{**row, "t_start_ns": None, "object_id": None} for row in verdicts]
+        with duckdb.connect() as con:
+            audits.add_rows(con, drives, verdicts, findings, [ROOM, CONTACT])
+            con.register("receipts", RECEIPT_SCHEMA.empty_table())
+            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, Standing("d"))
+            self.content = content_.content(con, audit, None, by)
+        self.markdown = page.markdown(self.content).decode()
+        self.html: Any = html.fromstring(page.html(self.content))
+        (header,) = self.html.findall(".//header")
+        self.header = words_of(header)
+
+    def row(self, table: str, name: str) -> Any:
+        rows: list[Any] = self.html.xpath(f"{table}//tbody/tr")
+        return next(row for row in rows if name in row.text_content())
+
+
+def touched(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:
+    return found(drive_id, rule_id="z-contact", finding_id=f"{drive_id}-{n}", t_worst_s=12.5, **over)
+
+
+def words(drive_id: str, word: str = "pass", **over: Any) -> list[Any]:
+    return [said(drive_id, word, **({"rule_id": name} | over)) for name in ("a-room", "z-contact")]
+
+
+def test_findings_where_not_all_was_judged_do_not_look_like_none() -> None:
+    """One site has two contacts, in a drive that has unknowns too; the other has none."""
+    drives = [
+        ego_drive("a", tags={"site": "x"}),
+        ego_drive("b", tags={"site": "y"}),
+        ego_drive("c", tags={"site": "x"}),
+    ]
+    told = Told(
+        drives,
+        [*words("a", "fail"), *words("a", "unknown"), *words("b"), *words("c")],
+        [touched("a"), touched("a", 1)],
+        "site",
+    )
+    (partly, none) = (told.row("//section[@aria-labelledby='by-1']", site) for site in ("x", "y"))
+    assert none.xpath(".//*[contains(@class, 'none')]")
+    assert not partly.xpath(".//*[contains(@class, 'none')]")
+    assert partly.xpath(".//rect[@class='open']")
+    assert "at least 0.121 over all" in partly.text_content()
+    in_rates = told.row("//div[contains(@class, 'rate-table')]", "z-contact")
+    assert not in_rates.xpath(".//*[contains(@class, 'none')]")
+    assert re.search(r"z-contact.*at least 0\.0807 over all", told.markdown), (
+        "two findings in 300 km, Garwood's lower end"
+    )
+
+
+def test_at_least_counts_a_touch_of_two_egos_once_and_nothing_that_is_only_possible() -> None:
+    both = [touched("a", n, ego_id=ego, object_id=other) for n, ego, other in ((0, "1", "2"), (1, "2", "1"))]
+    way = ego_drive("a")["exposure"]
+    drives = [ego_drive("a", exposure=[*way, {**way[0], "ego_id": "2"}])]
+    verdicts = [row for ego in "12" for word in ("fail", "unknown") for row in words("a", word, ego_id=ego)]
+    for findings, n_sure in ((both, 1), ([{**row, "n_copies": 100, "n_stays": 30} for row in both], 0)):
+        told = Told(drives, verdicts, findings, robustness=True)
+        (rate,) = [each for each in told.content.rates if each.rule_id == "z-contact"]
+        assert (rate.findings_of_unknown, rate.events_sure) == (2, n_sure)
+        assert told.content.headline[1] == "1 critical finding in 1 of 1 drives"
+        assert rate.at_least_per_100km == pytest.approx(0.0253178 / 2 * n_sure)
+    assert "of all, nothing sure" in told.row("//div[contains(@class, 'rate-table')]", "z-contact").text_content()
+
+
+def test_the_header_names_contacts_and_how_sure_they_are() -> None:
+    drives, verdicts = [ego_drive("a"), ego_drive("b")], [*words("a", "fail"), *words("b", "fail")]
+    findings = [touched("a", n_copies=100, n_stays=100), touched("b", n_copies=100, n_stays=30)]
+    told = Told(drives, verdicts, findings, robustness=True)
+    said_ = "CONTACT in 1 drive; possible contact in 1 drive; how sure the findings are was examined: 1 only possible"
+    assert said_ in told.header
+    assert said_ in told.markdown
+    told = Told(drives, verdicts, [touched("a"), touched("b")], robustness=False)
+    assert "CONTACT in 2 drives; how sure the findings are was not examined: audit --robustness" in told.header
+
+
+def test_rules_of_contacts_stand_above_others_of_their_severity() -> None:
+    told = Told(
+        [ego_drive("a")], words("a", "fail"), [found("a", n_copies=None), found("a", occurrence=1), touched("a")]
+    )
+    assert [each.rule_id for each in told.content.rates] == ["z-contact", "a-room"]
+
+
+def test_the_hours_of_the_header_are_those_of_the_egos() -> None:
+    way = ego_drive("a")["exposure"]
+    told = Told(
+        [ego_drive("a", exposure=[*way, {**way[0], "ego_id": "2"}], duration_s=7200.0)],
+        [*words("a"), *words("a", ego_id="2")],
+        [],
+    )
+    assert "200 km by 2 egos in 4.00 h" in told.header
+    assert sum(each.hours for each in told.content.coverage.situations if each.situation == "weather") == 4.0
+
+
+def test_logs_of_one_content_count_once_everywhere() -> None:
+    drives = [ego_drive(name, sha256="same") for name in "abc"] + [ego_drive("d")]
+    verdicts = [row for name in "abcd" for row in words(name, "fail" if name != "d" else "pass")]
+    told = Told(drives, verdicts, [touched(name) for name in "abc"])
+    assert told.content.headline[1] == "1 critical finding in 1 of 2 drives"
+    assert "2 of 2 drives were judged: 200 km by 2 egos" in told.header
+    assert "2 more logs have the content of another one: each content counts once" in told.header
+    assert "2 more logs of the content of another one" in told.markdown
+    (rate,) = [each for each in told.content.rates if each.rule_id == "z-contact"]
+    assert (rate.findings, rate.km, len(told.content.worst)) == (1, 200, 1)
+    assert told.content.verdicts == {"pass": 2, "fail": 2, "unknown": 0, "not_applicable": 0, "error": 0}
+
+
+def test_a_copy_that_was_judged_by_other_options_hides_nothing() -> None:
+    drives = [ego_drive(name, sha256="same") for name in "ab"]
+    told = Told(drives, [*words("a"), *words("b", "fail"), *words("b", "unknown")], [touched("b")])
+    assert told.content.headline[1] == "1 critical finding in 1 of 1 drives"
+    assert "1 finding of them, judged by other options, is in no rate" in told.header
+    assert not told.content.is_all_decided
+
+
+def test_a_rule_that_nothing_decided_says_in_how_many_drives_it_was_unknown() -> None:
+    verdicts = [*words("a", "unknown"), *words("b", "not_applicable", reason_code="not_triggered")]
+    told = Told([ego_drive("a"), ego_drive("b")], verdicts, [])
+    coverage = " ".join(told.html.xpath("//section[@aria-labelledby='coverage']")[0].text_content().split())
+    assert "unknown each time" not in coverage
+    assert "Never decided: none passed or failed, some are unknown (2)" in coverage
+    assert "No collision (unknown in 1 of 2 drives)" in coverage
+    assert "`z-contact` (unknown in 1 of 2 drives)" in told.markdown
+    assert "100 did not apply" in " ".join(
+        told.row("//div[contains(@class, 'rate-table')]", "z-contact").xpath("./td[@data-label='km judged']//text()")
+    )
+
+
+def test_what_would_decide_it_names_the_rule_and_its_own_words() -> None:
+    verdicts = [
+        *words("a", "unknown", reason_code="null_value", cause_code="margin", reason="the width of 7 is not known"),
+        *words("b", "unknown", reason_code="null_value", cause_code="speed", reason="the speed of 9 is not known"),
+    ]
+    told = Told([ego_drive("a"), ego_drive("b")], verdicts, [])
+    for why in ("a-room: the width of 7 is not known", "a-room: the speed of 9 is not known"):
+        assert why in told.html.xpath("//section[@aria-labelledby='open']")[0].text_content()
+        assert why in told.markdown
+    assert "null value (margin)" in told.markdown
+
+
+def test_a_signal_is_advised_in_the_formats_that_lack_it() -> None:
+    def fleet(log_format: str) -> str:
+        lack = [{"ego_id": "1", "signal": "indicator", "reason_code": "missing_indicator", "reason": ""}]
+        needs = rule("a-room", profiles=[], requires=["indicator"])
+        with duckdb.connect() as con:
+            row = ego_drive("a", not_judged=lack, format=log_format)
+            audits.add_rows(
+                con, [row], [said("a", "unknown", rule_id="a-room", reason_code="missing_indicator")], [], [needs]
+            )
+            (each,) = missing(con).signals
+        return page._provide(each)
+
+    assert fleet("commonroad") != fleet("mapped")
+    assert "mapping" not in fleet("commonroad")
+
+
+def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
+    lack = [
+        {"ego_id": "1", "signal": name, "reason_code": f"missing_{name}", "reason": ""} for name in ("indicator", "map")
+    ]
+    drives = [ego_drive("a", not_judged=lack)]
+    with duckdb.connect() as con:
+        needs = rule("a-room", profiles=[], requires=["indicator", "map"])
+        audits.add_rows(con, drives, [said("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs])
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        text = page.markdown(content_.content(con, audit, None, ())).decode()
+    assert "decides nothing alone, 1 judgements with other signals" in text
+    assert "at most 0" not in text
+
+
+def test_a_worst_drive_has_its_finding_the_time_and_the_command_that_explains_it() -> None:
+    findings = [found("a", margin=-50.0, t_worst_s=1.0), touched("a", object_id="439", margin=-0.1)]
+    told = Told([ego_drive("a")], words("a", "fail"), findings)
+    (row,) = told.html.xpath("//div[contains(@class, 'worst-table')]//tbody/tr")
+    assert "No collision at 12.50 s, object 439" in " ".join(row.text_content().split()).replace(
+        "collisionat", "collision at"
+    )
+    assert "drivelint explain a-0 --in drives/a" in row.xpath(".//code[@class='command']")[1].text_content()
+    assert "No collision at 12.50 s" in told.markdown

@@ -1,0 +1,129 @@
+"""Two audits of other drives: their findings are not new faults, their rates are compared."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import pytest
+from scipy.stats import fisher_exact
+
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import Standing
+from drivelint.errors import ExitCode
+from drivelint.fleet.rate_change import rate_changes
+from drivelint.fleet.rates import rates
+from drivelint.fleet_report import difference_text
+from drivelint.fleet_report.difference import AuditDifference, difference
+from drivelint.fleet_report.figures import figure
+from drivelint.fleet_report.opened import Audit
+from tests.fleet import audits
+from tests.fleet.audits import ego_drive, found, said
+from tests.report.synthetic import rule
+
+RULES = [rule(name, profiles=[]) for name in ("follow", "overtake", "silent", "still")]
+N = {"r1": (2, 22), "r2": (17, 24)}
+"""Release -> failed overtakes, and all of them."""
+
+
+def fleet(con: duckdb.DuckDBPyConnection, of: str, release: str, also: tuple[str, ...] = ()) -> None:
+    """Write an audit of one drive of 100 km with these overtakes, and of further ones without any."""
+    failed, n = N[release]
+    name = f"drive-{release}"
+    drives = [ego_drive(each, tags={"release": release}) for each in (name, *also)]
+    verdicts = [
+        said(name, "fail" if k < failed else "pass", rule_id="overtake", occurrence=k, ref_id=None) for k in range(n)
+    ]
+    verdicts += [said(each, "pass", rule_id="follow", ref_id=None) for each in (name, *also)]
+    verdicts += [said(name, "pass", rule_id=each, ref_id=None) for each in ("silent", "still")]
+    findings = [
+        found(
+            name, rule_id="overtake", occurrence=k, finding_id=f"{name}-{k}", t_start_ns=k * 10**10, t_end_ns=k * 10**10
+        )
+        for k in range(failed)
+    ]
+    audits.add_rows(con, drives, verdicts, findings, RULES, of=of)
+
+
+def compared(base_also: tuple[str, ...] = (), new_also: tuple[str, ...] = ()) -> AuditDifference:
+    with duckdb.connect() as con:
+        fleet(con, "base_", "r1", base_also)
+        fleet(con, "", "r2", new_also)
+        sides = [
+            Audit(name, LocalFolder(Path(name)), {"fail_on": "critical"}, Standing("d")) for name in ("new", "base")
+        ]
+        return difference(con, sides[0], sides[1], 50)
+
+
+@pytest.fixture(scope="module")
+def disjoint() -> AuditDifference:
+    return compared()
+
+
+def test_audits_without_a_common_drive_are_told_as_such(disjoint: AuditDifference) -> None:
+    for markdown in (False, True):
+        text = difference_text.to_text(disjoint, None, markdown=markdown)
+        assert "the two audits have no drive in common: findings cannot be matched; compare rates" in text
+        assert "17 new" not in text
+        assert "the drive was not checked" not in text
+
+
+def test_they_gate_on_nothing_and_are_no_pass_unless_asked(disjoint: AuditDifference) -> None:
+    def code(asked: str | None) -> ExitCode:
+        return difference_text.exit_code(disjoint, difference_text.least_severity(disjoint, asked))
+
+    assert code(None) == ExitCode.NOT_JUDGED
+    assert code("critical") == ExitCode.FAILED
+    assert code("never") == ExitCode.OK
+    assert json.loads(difference_text.to_json(disjoint, None))["exit"]["code"] == 4
+
+
+def test_findings_of_added_drives_are_told_apart() -> None:
+    told = compared(base_also=("shared",), new_also=("shared",))
+    assert told.headline.startswith("17 new (17 in drives that the base does not have), ")
+    assert difference_text.least_severity(told, None) == "critical"
+
+
+def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_only_it_has() -> None:
+    for told in (compared(), compared(base_also=("shared",), new_also=("shared",))):
+        assert set(told.causes) == {("software",)}
+        assert "software" not in told.causes_not_known
+
+
+def test_rates_are_tested_per_occasion_too(disjoint: AuditDifference) -> None:
+    (change,) = disjoint.called
+    tests = {each.per: each for each in change.tests}
+    assert change.rule_id == "overtake"
+    expected = fisher_exact([[2, 20], [17, 7]])[1]
+    assert tests["occasion"].p_value == pytest.approx(expected)
+    assert tests["occasion"].corrected == pytest.approx(2 * expected), "two tests of the one rule that has findings"
+    assert tests["occasion"].ratio == pytest.approx(17 / 24 / (2 / 22))
+    text = difference_text.to_text(disjoint, None)
+    assert "Rates of 1 rule differ, by 2 tests" in text
+    assert "  differs: overtake per occasion: 2 of 22, 9.09 %" in text
+    assert f"7.79 times, p {figure(expected)}, corrected {figure(2 * expected)}" in text
+
+
+def test_the_nearest_candidates_are_shown_where_nothing_is_called() -> None:
+    with duckdb.connect() as con:
+        fleet(con, "", "r1")
+        fleet(con, "base_", "r1")
+        same = rate_changes(rates(con), rates(con, of="base_"))
+    assert not any(each.is_called for each in same)
+    assert [(each.rule_id, len(each.tests)) for each in same] == [
+        ("follow", 0), ("overtake", 2), ("silent", 0), ("still", 0)
+    ]  # fmt: skip
+    assert {test.ratio for each in same for test in each.tests} == {1.0}
+
+
+def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
+    def told(n: int) -> Any:
+        with duckdb.connect() as con:
+            row = ego_drive("a")
+            audits.add_rows(con, [row], [said("a", "fail" if n else "pass")], [found("a")] * n, [rule(profiles=[])])
+            return rates(con)
+
+    (change,) = rate_changes(told(0), told(1))
+    assert [difference_text.times(each) for each in change.tests] == ["there was none"] * 2
