@@ -153,7 +153,10 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
 def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
     if off_map_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
-    return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
+    if verdicts["pass"]:
+        return Text("no finding", "dim")
+    applied = verdicts["unknown"] + verdicts["error"] or not verdicts["not_applicable"]
+    return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
 def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
@@ -213,7 +216,7 @@ def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
     n = rule_counts(result)
     said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
-    said.append(f"{n.idle} never applied" if n.idle else "")
+    said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
     first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
     if near:
