@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -32,6 +33,11 @@ def one_line(result: Result) -> str:
 
 def _inputs(result: Result) -> str:
     return " | ".join(f"{note.label}: {note.words}" for note in input_notes(result))
+
+
+def block_html(text: str) -> str:
+    """Return text whose columns stay one under the other, whatever the style of the page that it is shown in."""
+    return f'<pre><span style="display: inline-block; font-family: monospace; line-height: 1.2">{escape(text)}</span></pre>'
 
 
 def summary_html(result: Result) -> str:
