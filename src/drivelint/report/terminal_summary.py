@@ -17,7 +17,7 @@ from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
-from drivelint.report.worst_first import is_contact, worst_first
+from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
@@ -190,7 +190,9 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
         # a title says what is so when the rule is kept: alone it would say the opposite
         parts.append(rules[row["rule_id"]]["title"] if parts else f"not kept: {rules[row['rule_id']]['title']}")
     parts += who
-    when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
+    if later := worst_later(row, rules, start_ns):
+        parts.append(later)
+    when = f"{seconds(moment_ns(row, rules), start_ns):>8} "
     what = "possible contact " if doubt(row) else "CONTACT "
     if doubt(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
