@@ -184,6 +184,7 @@ def test_an_explanation_is_that_of_the_command_line(
     assert told.text.strip() == done.stdout.strip()
     assert told.data()["verdict"]["finding_id"] == name
     assert told._repr_html_().startswith("<pre>")
+    assert "font-family: monospace" in told._repr_html_(), "the page of a notebook may have another font for <pre>"
     with pytest.raises(drivelint.DriveLintError, match="nowhere"):
         checked.explain("nowhere")
 

@@ -46,13 +46,14 @@ def folder(tmp_path: Path) -> Path:
 
 def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
-    assert list(PROGRAMS) == ["gap.py", "plot.py", "fastest.py", "way.py"]
-    first, plot, fastest, way, result, table = run(folder, *PROGRAMS.values(), "r", "r.findings")
+    assert list(PROGRAMS) == ["gap.py", "plot.py", "room.py", "fastest.py", "way.py"]
+    first, plot, room, fastest, way, result, table = run(folder, *PROGRAMS.values(), "r", "r.findings")
     assert streams(first).keys() == {"stdout"}, "no progress, no warning"
     assert (folder / "report.html").read_text("utf-8").startswith("<!doctype html>")
     (picture,) = (each["data"]["image/png"] for each in plot if "image/png" in each.get("data", {}))
     assert base64.b64decode(picture).startswith(b"\x89PNG")
     assert (folder / "overlap.png").stat().st_size > 5000
+    assert any("image/png" in each.get("data", {}) for each in room)
     assert any("image/png" in each.get("data", {}) for each in way)
     assert (folder / "way.png").stat().st_size > 5000
     assert streams(fastest)["stdout"].splitlines()[1] == "{'actor_id': '2', 'mps': 0.0}"

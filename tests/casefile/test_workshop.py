@@ -40,6 +40,21 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
     assert "no case notices" not in "\n".join(said)
 
 
+def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
+    workshop.new_rule("mine.two", tmp_path, "invariant")
+    monkeypatch.setattr(workshop.mutation, "judge_all_mutants", lambda *_: iter(()))
+    for file in (sql, cases):
+        assert said_of(file) == (ExitCode.OK, "ok   mine.one: 10 of 10 checks")
+    said = Said()
+    (sql.parent / "survivors.toml").write_text('[[survivor]]\nrule = "mine.two"\nmutant = "x"\nreason = "y"\n', "utf-8")
+    assert workshop.mutation_test(sql, (), said) is ExitCode.OK, "an entry of another rule is none of its business"
+    other = tmp_path / "mine" / "notes.txt"
+    other.write_text("no rule", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"notes\.txt: no rule, nor the cases of one"):
+        said_of(other)
+
+
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
     sql.write_text("mine", encoding="utf-8")

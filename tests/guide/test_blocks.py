@@ -10,10 +10,13 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pytest
@@ -197,6 +200,18 @@ def test_the_settings_of_the_ci_guide_are_taken(folder: Path) -> None:
     assert "[nominal]" in done.stdout
     assert "[aggressive]" not in done.stdout, "nothing fails with it"
     assert "at or above severity major" in done.stdout
+
+
+def test_the_hooks_stop_a_commit(folder: Path) -> None:
+    (config,) = (b.body for b in blocks(FOLDER / "ci.md") if b.mark == "workflow: pre-commit")
+    hooks: list[dict[str, Any]] = yaml.safe_load(config)["repos"][0]["hooks"]
+    rules, drives = (hook["entry"] for hook in hooks)
+    assert [bool(re.search(hook["files"], "drives/a.mcap")) for hook in hooks] == [False, True]
+    assert [bool(re.search(hook["files"], "my-rules/mine/r1.sql")) for hook in hooks] == [True, False]
+    assert all(shlex.split(entry)[0] == "drivelint" for entry in (rules, drives))
+    assert run("drivelint rules new mine.r1 --dir my-rules", folder).returncode == 0
+    assert run(rules, folder).returncode == 0
+    assert run(drives, folder).returncode == 1
 
 
 def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from drivelint.catalogue import load_rules, select_rules
 from drivelint.inspect import InspectRequest, inspect
 from drivelint.inspect.text import render
 from tests.formats.osi import osi_log
@@ -55,6 +57,19 @@ def test_nothing_is_cut_off(width: int) -> None:
     lacking = "".join(text(InspectRequest(LOG, mapping=str(ON_ROAD["mapping"])), width).split())
     for said in ("ukhc.r162.safe-distance-ahead", "theroadasOpenDRIVE:--mapFILE"):
         assert said in lacking
+
+
+def test_drafts_are_counted_apart_from_what_check_runs() -> None:
+    n_run = len(select_rules(load_rules(), (), ()))
+    n_all = len(select_rules(load_rules(), ("ukhc",), ()))
+    shown = " ".join(text(InspectRequest(LOG, **ON_ROAD)).split())  # type: ignore[arg-type]
+    assert re.search(
+        rf"can decide \d+ of the {n_run} rules that check runs \(ukhc\), and \d+ of {n_all - n_run} drafts", shown
+    )
+    assert "r163.cut-in (draft)" in shown
+    assert "r162.safe-distance-ahead," in shown
+    named = " ".join(text(InspectRequest(LOG, **ON_ROAD, rules=("ukhc.r163.cut-in",))).split())  # type: ignore[arg-type]
+    assert "can decide 1 of 1 rules (ukhc.r163.cut-in)" in named, "check runs a draft that is named"
 
 
 def test_plain_where_it_is_no_terminal() -> None:

@@ -213,3 +213,49 @@ def test_a_near_miss_in_a_run_with_a_baseline_is_not_said_to_lack_one() -> None:
     near = result([verdict("pass", near_miss=True, margin=0.1)])
     assert "a near miss is no finding" in page(against(NONE, near))
     assert "no baseline was given" not in page(against(NONE, near))
+
+
+def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() -> None:
+    """Of two egos one is off the map: rules that did not apply to the other are unknown for that one only."""
+    rules = [rule(), *(rule(f"ukhc.{name}") for name in ("lost", "lost2", "idle", "idle2", "idle3", "never"))]
+    rows = [verdict("pass"), verdict("unknown", ego_id="2")]
+    rows += [verdict("unknown", rule_id=f"ukhc.{name}", ego_id=ego) for name in ("lost", "lost2") for ego in "12"]
+    for name in ("idle", "idle2", "idle3"):
+        rows += [
+            verdict("not_applicable", rule_id=f"ukhc.{name}"),
+            verdict("unknown", rule_id=f"ukhc.{name}", ego_id="2"),
+        ]
+    rows += [verdict("not_applicable", rule_id="ukhc.never", ego_id=ego) for ego in "12"]
+    of = result(rows, rules=rules)
+    assert "7 rules: 1 judged, 2 never judgeable, 1 never applied, 3 not applicable or unknown" in screen(of)
+    text = " ".join(re.sub(r"<[^>]+>", "", page(of)).split())
+    assert "2 of the rules could be judged nowhere, 1 not everywhere." in text
+    assert "3 of the rules did not apply in some places and could not be judged in the others. 1 never applied." in text
+
+
+def test_a_run_in_which_no_rule_applied_says_so() -> None:
+    of = result([verdict("not_applicable"), verdict("not_applicable", ego_id="2")])
+    words = "not applicable no findings, as no rule applied: what they are about did not happen"
+    assert heads(of) == [words] * 3
+    assert exit_status(of).code == ExitCode.OK
+    assert any(re.match(r"d1 +no rule applied ", line) for line in screen(of))
+    (h1,) = re.findall(r"<h1>(.*?)</h1>", page(of), re.DOTALL)
+    assert '"#k-not_applicable"' in h1
+    for more in ("unknown", "error"):
+        assert "NOT APPLICABLE" not in screen(result([verdict("not_applicable"), verdict(more)]))[2]
+
+
+def test_the_mark_beside_pass_is_that_of_a_pass() -> None:
+    for of in (against(run(MIXED), run(MIXED)), run([], verdict("unknown"))):
+        (h1,) = re.findall(r"<h1>(.*?)</h1>", page(of), re.DOTALL)
+        assert '"#k-pass"' in h1
+        assert "PASS" in h1
+
+
+def test_the_worst_moment_of_a_passing_page_says_that_it_is_let_through() -> None:
+    known = page(against(run(MIXED), run(MIXED)))
+    assert re.search(r'id="worst">The worst moment, which is known ', known)
+    assert '<div class="hero k-fail k-through">' in known
+    new = page(against(NONE, run(MIXED)))
+    assert 'id="worst">The worst moment <' in new
+    assert "k-fail k-through" not in new

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drivelint.api.check_result import CheckResult
+from drivelint.api.notebook import block_html
 from drivelint.api.options import FailOn, one_of
 from drivelint.errors import ExitCode
 from drivelint.gate import compare_results, descriptions
@@ -50,7 +50,7 @@ class Comparison:
         return self.text
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text)}</pre>"
+        return block_html(self.text)
 
 
 def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: FailOn | None = None) -> Comparison:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -11,10 +12,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from drivelint.report.html.environment import visible
 from drivelint.report.inputs import input_notes
 from drivelint.report.terminal_summary import verdict_line, worst_gating
+from drivelint.report.worst_first import when
 from drivelint.result import counts
 from drivelint.result.certainty import certainty
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, measure, rule_name, seconds, subject
+from drivelint.result.text import comparison, measure, rule_name, subject
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -34,20 +36,25 @@ def _inputs(result: Result) -> str:
     return " | ".join(f"{note.label}: {note.words}" for note in input_notes(result))
 
 
+def block_html(text: str) -> str:
+    """Return text whose columns stay one under the other, whatever the style of the page that it is shown in."""
+    return f'<pre><span style="display: inline-block; font-family: monospace; line-height: 1.2">{escape(text)}</span></pre>'
+
+
 def summary_html(result: Result) -> str:
     """Return the summary as HTML, everything from a log escaped."""
     found = worst_gating(result)
-    titles = dict(zip(*(result.rules[name].to_pylist() for name in ("rule_id", "title")), strict=True))
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     starts = result.start_times
     end = exit_status(result)
     rows = [
         {
             "drive": row["drive_id"],
-            "time": seconds(row["t_worst_ns"], starts[row["drive_id"]]),
+            "time": when(row, rules, starts[row["drive_id"]]),
             "severity": row["severity"],
             "certainty": certainty(row),
             "rule": rule_name(row),
-            "title": titles[row["rule_id"]],
+            "title": rules[row["rule_id"]]["title"],
             "who": subject(row),
             "measured": comparison(row),
             "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),

@@ -96,11 +96,12 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     for result in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
         say(mutation.result_text(result))
         results.append(result)
-    strange = [] if only or refused else mutation.entries_without_rule(rules)
+    is_part = bool(only) or (root is not None and root.is_file())
+    strange = [] if is_part or refused else mutation.entries_without_rule(rules)
     for line in strange:
         say(f"FAIL {line}")
     say(mutation.summary(results))
-    enough = only or mutation.noticed_share(results) >= mutation.LEAST_NOTICED_SHARE
+    enough = is_part or mutation.noticed_share(results) >= mutation.LEAST_NOTICED_SHARE
     good = enough and not strange and all(result.ok for result in results)
     return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
 
@@ -108,9 +109,14 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
 def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]:
     """Yield the rules of a folder (None: the shipped ones) that `only` selects, or why each cannot be used.
 
-    Errors: `UsageError` where nothing is selected.
+    `root` may be the file of one rule, or of its cases. Errors: `UsageError` where nothing is selected.
     """
-    found = rule_files(root or folder("queries") / "assertions")
+    if root is not None and root.is_file():
+        found = [root.with_name(root.name.removesuffix(".cases.yml").removesuffix(".sql") + ".sql")]
+        if not found[0].is_file():
+            raise UsageError(f"{root}: no rule, nor the cases of one: give PACK/NAME.sql, or a folder of packs")
+    else:
+        found = rule_files(root or folder("queries") / "assertions")
     chosen = [file for file in found if not only or any(fnmatchcase(rule_id_of(file), name) for name in only)]
     if not chosen:
         raise UsageError(f"--rules {', '.join(only)}: none of the {len(found)} rules here has such an id")

@@ -104,7 +104,9 @@ def page_(
 
 @app.command("test")
 def run_tests(
-    folder: Annotated[Path | None, argument("[DIR]", "Folder with rule packs; default: the shipped ones.")] = None,
+    folder: Annotated[
+        Path | None, argument("[DIR]", "Folder with rule packs, or the file of one rule; default: the shipped ones.")
+    ] = None,
     only: Annotated[Texts, option("--rules", "SEL", "Rule id or glob. Repeatable. Default: all.")] = None,
     mutate: Annotated[
         bool, option("--mutate", None, "Break each rule in many ways, and ask whether some case notices.")

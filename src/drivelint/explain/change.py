@@ -24,6 +24,9 @@ SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 _NEAR_FACTORS: Final = 3
 """So many of them are judged first: most verdicts that change do so there."""
 _HALVINGS: Final = 8
+_MOST_HALVINGS: Final = 12
+_EXACT: Final = 0.005
+"""In parts of the value: the stretch between two verdicts is halved until it is so short, and a shorter number is not farther off."""
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
@@ -152,7 +155,9 @@ def _edge(
 ) -> Generator[Sequence[float], dict[float, str], tuple[float, bool]]:
     """Return the nearest value on one side that changes the verdict, and whether those further away agree."""
     near, far = (values[at - 1] if at else number.now), values[at]
-    for _ in range(_HALVINGS // number.halvings):
+    for n in range(0, _MOST_HALVINGS, number.halvings):
+        if n >= _HALVINGS and abs(far - near) <= _EXACT * abs(far):
+            break
         halved = yield list(_middles(near, far, number.halvings))
         for _ in range(number.halvings):
             middle = (near + far) / 2
@@ -186,6 +191,6 @@ def _short_values(number: _Number, far: float) -> list[float]:
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(0.05 * abs(far - number.now), 1e-9):
+        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _EXACT * abs(far)), 1e-9):
             found.append(value)
     return found

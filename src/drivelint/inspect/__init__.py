@@ -124,6 +124,7 @@ def _drive(
         quality=quality,
         rules=[rule.id for rule in rules],
         selection=list(selection),
+        drafts=[] if request.rules else [rule.id for rule in rules if rule.status != "stable"],
     )
 
 

@@ -195,6 +195,9 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
     quality: Annotated[list[Quality], described("errors first")]
     rules: Annotated[list[str], described("the rules that were asked about")]
     selection: Annotated[list[str], described("as they were selected")]
+    drafts: Annotated[
+        list[str], described("of them, rules that check runs only if --rules names them; empty: it did")
+    ] = []
 
 
 class Inspection(msgspec.Struct, frozen=True, kw_only=True):

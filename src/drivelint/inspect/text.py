@@ -28,6 +28,7 @@ MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
 _NAMED: Final = 6
 """Egos that a line names before it says how many more there are."""
+_DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _TOLD: Final = "read through"
 """Reader notes that begin with this repeat what the content section says, and are left out."""
@@ -266,15 +267,24 @@ def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[Renderab
     elif len(drive.egos) > 1:
         who = f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _NAMED)}"
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
-    parts: list[RenderableType] = [
-        Text(f"{log} can decide {len(ego.can)} of {n} rules ({selection}){who}.", style=style)
-    ]
+    parts: list[RenderableType] = [Text(f"{log} can decide {_how_many(ego, drive, selection)}{who}.", style=style)]
     if ego.can:
-        parts.append(Text(f"It can: {', '.join(_short(rule, drive) for rule in ego.can)}.", style="dim"))
+        told = (f"{_short(rule, drive)}{_DRAFT if rule in drive.drafts else ''}" for rule in ego.can)
+        parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
     if ego.missing:
         parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
-        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego)]
+        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego, drive.drafts)]
     return parts
+
+
+def _how_many(ego: model.Ego, drive: model.Drive, selection: str) -> str:
+    """Return how many rules can be decided; those that `check` runs by itself are counted apart from drafts."""
+    n, n_drafts = len(drive.rules), len(drive.drafts)
+    if not n_drafts:
+        return f"{len(ego.can)} of {n} rules ({selection})"
+    can = len(set(ego.can) & set(drive.drafts))
+    run = f"{len(ego.can) - can} of the {n - n_drafts} rules that check runs ({selection})"
+    return f"{run}, and {can} of {n_drafts} drafts (--rules {selection})"
 
 
 def _short(rule_id: str, drive: model.Drive) -> str:
@@ -296,11 +306,14 @@ def _by_signal(ego: model.Ego) -> Table:
     return grid
 
 
-def _by_rule(ego: model.Ego) -> Table:
+def _by_rule(ego: model.Ego, drafts: Sequence[str]) -> Table:
     """Return the undecidable rules, those that lack the same signals in one row."""
     grid = _grid("yellow", overflow="fold")
     waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
-        ids = (f"{rule.rule_id}{' (can be broken, not kept)' if rule.breach_only else ''}" for rule in rules)
+        ids = (
+            f"{rule.rule_id}{_DRAFT if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"
+            for rule in rules
+        )
         grid.add_row(" + ".join(missing), Text(", ".join(ids)))
     return grid

@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 from lxml import etree
 
 from drivelint.gate import descriptions
+from drivelint.report.worst_first import when
 from drivelint.report.xml import add, document, replace_non_xml
 from drivelint.result import counts
 from drivelint.result.model import failures_without_finding, gating_gone, gating_unknowns, off_map_reason
@@ -109,13 +110,14 @@ def _cases(result: Result) -> dict[str, list[Case]]:
         else:
             lines.stopping.append(text)
 
+    starts = result.start_times
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
     for row in _reasons(result.verdicts):
         lines = told[_key(row)]  # a case of each, in the order of the verdicts
         if row["verdict"] in of_verdict:
             getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
     for row in result.findings.to_pylist():
-        add_failed(row, line(row, result.start_times.get(row["drive_id"])))
+        add_failed(row, line(row, when(row, rules, starts.get(row["drive_id"]))))
     for row in _reasons(failures_without_finding(result)):
         add_failed(row, with_count(row["reason"], row["count_all"]))
     required = set(_keys(gating_unknowns(result)))

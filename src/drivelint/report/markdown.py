@@ -14,6 +14,7 @@ from drivelint.phrases import inert_line, plural, shown
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import headline
+from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status
@@ -94,6 +95,8 @@ def _parts(template: str, **values: Any) -> list[str]:
         "since_baseline": descriptions.since_baseline,
         "short": _short,
         "utc_at": utc_at,
+        "moment_ns": moment_ns,
+        "when": when,
     }
     text = text_template(__file__, template, **filters).render(
         most=MAX_ROWS, end_part=_END_PART, anchor=anchor, **values

@@ -31,6 +31,7 @@ LABELS: Final = {
     ExitCode.INTERRUPTED: "PARTIAL",
 }
 _MOSTLY: Final = "MOSTLY UNKNOWN"
+_NOT_APPLICABLE: Final = "NOT APPLICABLE"
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
 
@@ -43,7 +44,7 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """What a run comes to. `label`: the word; `kind`: fail, unknown or pass; `parts`: the sentence."""
+    """What a run comes to. `label`: the word; `kind`: fail, unknown, not_applicable or pass; `parts`: the sentence."""
 
     label: str
     kind: str
@@ -56,12 +57,15 @@ class Headline(NamedTuple):
 
 
 class RuleCounts(NamedTuple):
-    """How many rules were judged somewhere, of these not everywhere, how many could be judged nowhere, and how many never applied."""
+    """How many rules were judged somewhere, and of these not everywhere. The others by their verdicts: all of them unknown or errors
+    (`never`), all not applicable (`idle`), or both (`open`).
+    """
 
     judged: int
     partly: int
     never: int
     idle: int
+    open: int
 
 
 def headline(result: Result) -> Headline:
@@ -73,7 +77,7 @@ def headline(result: Result) -> Headline:
     told = counts.total(result.verdicts)
     whole = not told["unknown"] + told["error"] and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
-    kind = "pass" if label == LABELS[ExitCode.OK] and whole and not rows else "unknown"
+    kind = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable"}.get(label, "unknown")
     if not rows:
         parts = [Part(_without_findings(result, told, label, whole=whole))]
     else:
@@ -106,9 +110,11 @@ def rule_counts(result: Result) -> RuleCounts:
     by_rule = counts.verdicts_by(result.verdicts, "rule_id")
     rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
     judged = [n for n in rules if n["pass"] + n["fail"]]
-    never = sum(not n["pass"] + n["fail"] and bool(n["unknown"] + n["error"]) for n in rules)
+    others = [n for n in rules if not n["pass"] + n["fail"]]
+    undecided = [n for n in others if n["unknown"] + n["error"]]
+    never = sum(not n["not_applicable"] for n in undecided)
     partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
-    return RuleCounts(len(judged), partly, never, len(rules) - len(judged) - never)
+    return RuleCounts(len(judged), partly, never, len(others) - len(undecided), len(undecided) - never)
 
 
 def _label(result: Result, has_findings: bool) -> str:
@@ -119,7 +125,7 @@ def _label(result: Result, has_findings: bool) -> str:
     if has_findings:
         return "FINDINGS"
     if not told["pass"] + told["fail"]:
-        return "UNKNOWN"
+        return "UNKNOWN" if told["unknown"] + told["error"] or not told["not_applicable"] else _NOT_APPLICABLE
     return _MOSTLY if _is_mostly_open(result) else LABELS[code]
 
 
@@ -138,6 +144,8 @@ def _without_findings(result: Result, told: Mapping[str, int], label: str, *, wh
         return "nothing was judged"
     if not told["pass"] + told["fail"] and told["unknown"] + told["error"]:
         return "no findings, as nothing could be decided"
+    if not told["pass"] + told["fail"]:
+        return "no findings, as no rule applied: what they are about did not happen"
     if label == _MOSTLY:
         return "no findings, but most could not be judged"
     return "no findings" if whole else "no findings, as far as it could be judged"

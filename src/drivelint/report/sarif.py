@@ -13,10 +13,11 @@ from urllib.parse import quote
 
 from drivelint import __version__
 from drivelint.gate import descriptions
+from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
 from drivelint.result.certainty import certainty, doubt
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, finite, number, rule_name, seconds, subject, utc_at, with_count
+from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -52,6 +53,7 @@ class _Run:
         self._rules = result.rules.to_pylist()
         self._logs = result.drives.to_pylist()
         self._drives = {row["drive_id"]: row for row in self._logs}
+        self._rule_by_id = {rule["rule_id"]: rule for rule in self._rules}
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
 
@@ -89,7 +91,7 @@ class _Run:
         start_ns = drive["t_start_ns"]
         measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
-        who = f"{subject(row)}{profile}, {seconds(row['t_worst_ns'], start_ns)}"
+        who = f"{subject(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
         said = [f"{rule['title']}: {row['reason']}", measured, who, f"({doubt(row)})" if doubt(row) else ""]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
@@ -105,7 +107,7 @@ class _Run:
                 "start_s": _since(row["t_start_ns"], start_ns),
                 "end_s": _since(row["t_end_ns"], start_ns),
                 "worst_s": _since(row["t_worst_ns"], start_ns),
-                "t_utc": utc_at(row["t_worst_ns"], drive),
+                "t_utc": utc_at(moment_ns(row, self._rule_by_id), drive),
                 **{name: row[name] for name in ("observed", "required", "margin", "unit")},
                 **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
                 **{name: row[name] for name in ("n_copies", "n_stays")},
@@ -138,7 +140,7 @@ class _Run:
                     if name is not None
                 ),
             ]
-            at = f"{seconds(row['t_worst_ns'], drive['t_start_ns'])} into {drive['file_name']}"
+            at = f"{when(row, self._rule_by_id, drive['t_start_ns'])} into {drive['file_name']}"
             if row["x_m"] is not None and row["y_m"] is not None:
                 at += f", ego at x {number(row['x_m'], 'm')}, y {number(row['y_m'], 'm')}"
             place["message"] = {"text": at}

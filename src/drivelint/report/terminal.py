@@ -14,6 +14,7 @@ from rich.text import Text
 
 from drivelint.phrases import listed
 from drivelint.report import terminal_summary
+from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
@@ -52,13 +53,12 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
     if not verbose:
         return terminal_summary.render(result, out, width)
     wide = width >= NARROW_WIDTH
-    starts = result.start_times
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
         _drives(result, wide=wide),
         _rules(result, wide=wide),
-        *_findings(result, starts, wide=wide),
-        _measured("Near misses: kept, but only just", near, starts, "yellow", wide=wide),
+        *_findings(result, wide=wide),
+        _measured(result, "Near misses: kept, but only just", near, "yellow", wide=wide),
         _open(result),
         _quality(result),
         _assumptions(result),
@@ -103,24 +103,22 @@ def _rules(result: Result, *, wide: bool) -> Table:
     return table
 
 
-def _findings(result: Result, starts: dict[str, int | None], *, wide: bool) -> list[Table | None]:
+def _findings(result: Result, *, wide: bool) -> list[Table | None]:
     """Return the findings; where a gate lets some through, those that it stops come first."""
     gate, rows = result.gate, result.findings
     if gate is None:
-        return [_measured("Findings", rows, starts, "red", wide=wide)]
+        return [_measured(result, "Findings", rows, "red", wide=wide)]
     stops = pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
     title = "New findings" if gate.baseline is not None else "Findings"
     return [
-        _measured(title, rows.filter(stops), starts, "red", wide=wide),
+        _measured(result, title, rows.filter(stops), "red", wide=wide),
         _measured(
-            "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), starts, "dim", wide=wide
+            result, "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), "dim", wide=wide
         ),
     ]
 
 
-def _measured(
-    title: str, rows: pa.Table, starts: dict[str, int | None], style: str, *, wide: bool = True
-) -> Table | None:
+def _measured(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
     """Return findings or near misses with what was measured; None for none. The drive is named where it changes.
 
     In a narrow terminal what was measured stands below the rule, so that no number and no name is torn apart.
@@ -135,13 +133,14 @@ def _measured(
         table.add_column("object", overflow="fold")
         _number_columns(table, ["observed", "required", "margin"])
     egos = len(pc.unique(rows["ego_id"])) > 1
-    previous = None
+    previous, starts = None, result.start_times
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     for row in rows.slice(0, MAX_ROWS).to_pylist():
         where = f"{row['drive_id']}, ego {row['ego_id']}" if egos else row["drive_id"]
         if where != previous:
             table.add_row("", Text(where, style="bold"))
             previous = where
-        when, rule = seconds(row["t_worst_ns"], starts.get(row["drive_id"])), Text(rule_name(row))
+        when, rule = seconds(moment_ns(row, rules), starts.get(row["drive_id"])), Text(rule_name(row))
         if doubt(row):
             rule.append(f" ({doubt(row)})", style="yellow")
         if wide:

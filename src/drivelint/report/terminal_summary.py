@@ -17,7 +17,7 @@ from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
-from drivelint.report.worst_first import is_contact, worst_first
+from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
@@ -153,7 +153,10 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
 def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
     if off_map_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
-    return Text("no finding", "dim") if verdicts["pass"] else Text("nothing was judged", "yellow")
+    if verdicts["pass"]:
+        return Text("no finding", "dim")
+    applied = verdicts["unknown"] + verdicts["error"] or not verdicts["not_applicable"]
+    return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
 def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
@@ -187,7 +190,9 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
         # a title says what is so when the rule is kept: alone it would say the opposite
         parts.append(rules[row["rule_id"]]["title"] if parts else f"not kept: {rules[row['rule_id']]['title']}")
     parts += who
-    when = f"{seconds(row['t_worst_ns'], start_ns):>8} "
+    if later := worst_later(row, rules, start_ns):
+        parts.append(later)
+    when = f"{seconds(moment_ns(row, rules), start_ns):>8} "
     what = "possible contact " if doubt(row) else "CONTACT "
     if doubt(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
@@ -213,7 +218,7 @@ def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
     n = rule_counts(result)
     said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
-    said.append(f"{n.idle} never applied" if n.idle else "")
+    said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
     first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
     if near:

@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 from drivelint.catalogue.header import CONTACT
 from drivelint.result.certainty import POSSIBLE, SURE, certainty
 from drivelint.result.counts import SEVERITIES
+from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,6 +47,32 @@ def sureness(row: Row) -> int:
 def _copies(rows: pa.Table) -> list[Row]:
     told = rows.select([name for name in ("n_copies", "n_stays") if name in rows.column_names])
     return told.to_pylist() if told.num_columns else [{}] * rows.num_rows
+
+
+def moment_ns(row: Row, rules: Mapping[str, Row]) -> int | None:
+    """Return the time by which a finding is told: of a contact when it began, else when it was worst."""
+    moment: int | None = row["t_start_ns"] if _began_before(row, rules) else row["t_worst_ns"]
+    return moment
+
+
+def when(row: Row, rules: Mapping[str, Row], start_ns: int | None) -> str:
+    """Return in words when a finding was; of a contact when it began, and when it was worst, if that was later."""
+    later = worst_later(row, rules, start_ns)
+    return f"{seconds(moment_ns(row, rules), start_ns)}{f' ({later})' if later else ''}"
+
+
+def worst_later(row: Row, rules: Mapping[str, Row], start_ns: int | None) -> str:
+    """Return in words when a contact was deepest, if that was after it began; '' for any other finding."""
+    if not _began_before(row, rules):
+        return ""
+    return f"{'deepest' if row['unit'] == 'm' else 'worst'} at {seconds(row['t_worst_ns'], start_ns)}"
+
+
+def _began_before(row: Row, rules: Mapping[str, Row]) -> bool:
+    """Whether this is a finding of a contact that began before its worst step; a verdict's stretch is no contact."""
+    if "finding_id" not in row or row["rule_id"] not in rules or not is_contact(row, rules):
+        return False
+    return row["t_start_ns"] is not None and row["t_start_ns"] != row["t_worst_ns"]
 
 
 def is_contact(row: Row, rules: Mapping[str, Row]) -> bool:

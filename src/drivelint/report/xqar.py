@@ -15,9 +15,10 @@ from lxml import etree
 
 from drivelint import __version__
 from drivelint.gate import descriptions
+from drivelint.report.worst_first import when
 from drivelint.report.xml import add, document, replace_non_xml
 from drivelint.result import counts
-from drivelint.result.text import line, seconds, subject, with_count
+from drivelint.result.text import line, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -109,13 +110,14 @@ def _finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None,
     waiver = gate.waiver(row["finding_id"]) if gate else None
     stable = rule["status"] == "stable"
     profile = "" if row["profile"] is None else f"profile {row['profile']}: "
-    text = profile + line(row, start_ns)
+    moment = when(row, {rule["rule_id"]: rule}, start_ns)
+    text = profile + line(row, moment)
     notes = [] if stable else [f"{rule['status']}, does not gate"]
     notes += [descriptions.waiver_reason(waiver)] if waiver else []
     notes += ["known: the baseline has it"] if gate and gate.in_baseline(row["finding_id"]) else []
     level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
     issue = _issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)
-    where = f"{subject(row)}, {seconds(row['t_worst_ns'], start_ns)} into the drive; map metres"
+    where = f"{subject(row)}, {moment} into the drive; map metres"
     place = add(issue, "Locations", description=where)
     if row["x_m"] is not None and row["y_m"] is not None:
         add(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")

@@ -79,10 +79,10 @@ def comparison(row: Row) -> str:
     return text if row["margin"] is None else f"{text}, margin {number(row['margin'], unit)}"
 
 
-def line(row: Row, start_ns: int | None) -> str:
-    """Return a verdict or finding in one line: when, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
+def line(row: Row, when: str) -> str:
+    """Return a verdict or finding in one line: `when`, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
     measured = "" if row["reason_measures"] else comparison(row)
-    parts = [f"{seconds(row['t_worst_ns'], start_ns)}: {subject(row)}", measured, row["reason"], doubt(row)]
+    parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt(row)]
     return "; ".join(part for part in parts if part)
 
 

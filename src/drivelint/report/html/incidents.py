@@ -14,6 +14,7 @@ from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.svg import num
 from drivelint.report.same_contact import as_others_say
+from drivelint.report.worst_first import moment_ns, when
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.text import measure, non_breaking, number, seconds, utc_at
@@ -35,7 +36,10 @@ MAX_INCIDENTS_IN_SUMMARY: Final = 6
 
 
 class FindingLine(NamedTuple):
-    """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident."""
+    """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident.
+
+    `time`: of its picture, when it was worst; `when`: by what it is told, see `worst_first.when`.
+    """
 
     row: Row
     rule: Row
@@ -44,6 +48,7 @@ class FindingLine(NamedTuple):
     href: str
     keys: str
     time: str
+    when: str
     stretch: str
     required: str
     gauge: dict[str, str] | None
@@ -76,6 +81,8 @@ def finding_line(
     sure = how_sure(row, same) if kind == "fail" else None
     found = [status.filter_key] if status else []
     found += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
+    moment = moment_ns(row, {rule["rule_id"]: rule})
+    first_contact = "" if moment == row["t_worst_ns"] else f"; first contact at {seconds(moment, start_ns)}"
     place = anchor("finding", row["finding_id"]) if linked and kind == "fail" else ""
     return FindingLine(
         row,
@@ -85,10 +92,11 @@ def finding_line(
         href=f"#{place or anchor('moment', *incident_key(row))}" if linked else "",
         keys=" ".join((kind, row["severity"], rule["pack"], *found)),
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
+        when=non_breaking(when(row, {rule["rule_id"]: rule}, start_ns)),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
         required=required,
         gauge=_gauge(row["observed"], row["required"]),
-        told=_told(row, rule, required) if sense else row["reason"],
+        told=(_told(row, rule, required) if sense else row["reason"]) + first_contact,
         course=None if steps is None else margin_series(steps, row["t_worst_ns"], unit, start_ns),
         standing=status,
         sure=sure,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import pyarrow.compute as pc
 
 from drivelint.report.outcome import headline
-from drivelint.report.worst_first import is_contact, sureness
+from drivelint.report.worst_first import is_contact, moment_ns, sureness, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.text import closing, measure, non_breaking, seconds
@@ -26,7 +26,7 @@ _STORY_PARTIES: Final = 6
 
 
 def page_headline(result: Result) -> tuple[str, str, str]:
-    """Return the outcome (fail, unknown or pass), the word for it, and the sentence at the top of the page."""
+    """Return the outcome (fail, unknown, not_applicable or pass), the word for it, and the sentence at the top of the page."""
     told = headline(result)
     return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
@@ -47,11 +47,15 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
         first = min(found, key=sureness)
         who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
-        depths = [-row["observed"] for row in found if row["unit"] == "m" and row["observed"] is not None]
-        deep = f", {measure(max(depths), 'm')} deep" if depths else ""
+        measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
+        worst = min(measured, key=lambda row: row["observed"], default=None)
+        later = "" if worst is None else worst_later(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
+        deep = "" if worst is None else f", {measure(-worst['observed'], 'm')} deep{non_breaking(later)}"
         speed = "" if first["closing_mps"] is None else f", {closing(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
-        said = f"{who} at {non_breaking(seconds(first['t_worst_ns'], starts[first['drive_id']]))}{speed}{deep}{where}"
+        said = (
+            f"{who} at {non_breaking(seconds(moment_ns(first, rules), starts[first['drive_id']]))}{speed}{deep}{where}"
+        )
         doubt = certainty(first) == POSSIBLE
         named.append((f"possibly {said}" if doubt else said, hrefs.get(first["finding_id"], ""), doubt))
     if not named:

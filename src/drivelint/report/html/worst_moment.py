@@ -37,7 +37,7 @@ def worst_moment(
     """Return the worst moment with everything that the page shows of it; None: there is none.
 
     `lines`: sorted worst first, findings before near misses. What a baseline or a waiver lets through is only shown if all is let through.
-    `is_new`: others are worse and let through.
+    `is_new`: others are worse and let through; `let_through`: so is this one.
     """
     if not lines:
         return None
@@ -52,6 +52,7 @@ def worst_moment(
     return {
         "line": line,
         "is_new": line is not lines[0],
+        "let_through": line.standing is not None and not line.standing.is_gating,
         "drive": drive,
         "t": centiseconds(row["t_worst_ns"], start_ns),
         "t_utc": utc_at(row["t_worst_ns"], drive),

@@ -1,0 +1,39 @@
+"""The value that is named as the nearest with another verdict is the nearest, however far from the value as it is."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.explain.change import _Number, _search
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def nearest(now: float, turns_at: float) -> tuple[float, int]:
+    """Return what is found where the verdict changes at and below `turns_at`, and how many values were judged."""
+    judged: list[float] = []
+
+    def judge(asked: Sequence[tuple[_Number, float]]) -> list[str]:
+        judged.extend(value for _, value in asked)
+        return ["not_applicable" if value <= turns_at else "fail" for _, value in asked]
+
+    (change,) = _search([_Number("near_m", "nearer than this", "m", now, math.inf, None, 2)], "fail", judge)
+    assert change.beyond
+    assert change.found is not None
+    return change.found, len(judged)
+
+
+@pytest.mark.parametrize("now", [2.31, 2.5, 3.0, 5.0, 20.0, 400.0])
+def test_the_nearest_value_is_named(now: float) -> None:
+    found, judged = nearest(now, 2.3)
+    assert 0.99 * 2.3 <= found <= 2.3
+    assert judged < 40
+
+
+def test_the_named_value_is_short() -> None:
+    assert nearest(20.0, 2.3)[0] == 2.29
+    assert nearest(1.0, 0.0)[0] == 0.0

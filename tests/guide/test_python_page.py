@@ -1,0 +1,37 @@
+"""The programs of the page about Python draw what the page says."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drivelint import demo
+from drivelint.guide import FOLDER
+from tests.guide.blocks import blocks
+
+pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
+
+
+@pytest.fixture
+def ran(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Return what the program about the room for an overtake has when it has run."""
+    (code,) = (block.body for block in blocks(FOLDER / "python.md") if block.argument == "room.py")
+    demo.write(tmp_path / "demo")
+    (tmp_path / "room.py").write_text(code, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    return runpy.run_path("room.py")
+
+
+def test_the_gap_around_a_moment_is_that_of_the_finding_at_it(ran: dict[str, Any]) -> None:
+    found, steps = list(ran["checked"].findings), ran["steps"]
+    assert [(row["profile"], row["t_worst_s"]) for row in found] == [("nominal", 7.7), ("observed", 7.7)]
+    assert [len(row["t_ns"]) for row in ran["checked"].courses if row["finding_id"]] == [1, 1], "as the page says"
+    at = dict(zip(steps["t_s"], steps["gap_m"], strict=True))
+    assert at[7.7] == pytest.approx(found[0]["observed"], abs=0.3), "along the straight line"
+    assert len(at) == len(steps) > 50, "each time once, though there are two findings"
+    assert (min(at), max(at)) == pytest.approx((2.7, 12.7), abs=0.2)
+    assert Path("room.png").stat().st_size > 5000
