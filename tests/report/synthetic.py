@@ -48,9 +48,10 @@ def recorded(*actors: str, start_s: float = 100.0, end_s: float = 125.0) -> list
 
 def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:
     """Return the row of a judged drive of 25 s, with four actors, whose clock starts at 100 s."""
+    sha256 = "ab" * 32 if drive_id == "d1" else f"{drive_id.encode().hex():0>64}"
     start_s = over.get("t_start_ns", 100 * SECOND) / SECOND
     return {
-        "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": "ab" * 32 if drive_id == "d1" else f"{drive_id.encode().hex():0>64}", "format": "canonical-csv",
+        "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": sha256, "format": "canonical-csv",
         "environment_id": "road-1@lht", "map_name": "road.xodr", "map_sha256": "cd" * 32, "handedness": "lht",
         "handedness_source": "attribute", "t_start_ns": 100 * SECOND, "duration_s": 25.0, "km": 0.12, "n_states": 750,
         "n_steps": 250, "n_egos": 1, "status": "judged", "lossy": False, "conditions": [], "exposure": [], "occasions": [], "quality": [],
