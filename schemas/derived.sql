@@ -776,3 +776,11 @@ CREATE TABLE exposure (
     engaged_hours DOUBLE NOT NULL,    -- the same time
     n_steps BIGINT NOT NULL           -- ego steps
 );
+
+-- lifetime: run
+CREATE TABLE recorded (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- an actor of the log
+    t_from_ns BIGINT NOT NULL,        -- its place is known from here
+    t_to_ns BIGINT NOT NULL           -- to here, without a hole and without a lost time
+);

@@ -27,7 +27,8 @@ CREATE TABLE drive (
     exposure STRUCT(ego_id VARCHAR, km DOUBLE, hours DOUBLE, engaged_km DOUBLE, engaged_hours DOUBLE, n_steps BIGINT)[] NOT NULL, -- per ego: way, time without holes, both with the automated driver, steps
     occasions STRUCT(rule_id VARCHAR, profile VARCHAR, n BIGINT, n_judged BIGINT)[] NOT NULL, -- per rule and profile: how often it applied or may have (verdict rows but not_applicable), and how often of these it passed or failed
     quality STRUCT(check_id VARCHAR, severity VARCHAR, actor_id VARCHAR, n BIGINT, t_first_ns BIGINT, message VARCHAR)[] NOT NULL, -- data-quality findings of the log and its map
-    not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason_code VARCHAR, reason VARCHAR)[] NOT NULL -- signals that the log and map do not give: rules that require them are unknown
+    not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason_code VARCHAR, reason VARCHAR)[] NOT NULL, -- signals that the log and map do not give: rules that require them are unknown
+    recorded STRUCT(actor_id VARCHAR, t_from_ns BIGINT, t_to_ns BIGINT)[] NOT NULL -- per actor of the log, in time order: the stretches in which its place is known, without a hole and without a lost time; what lies outside was not looked at
 );
 
 -- lifetime: run

@@ -252,6 +252,20 @@ def test_a_log_of_another_content_is_matched_by_its_name(results: dict[str, Path
     assert entry["finding_id"] != entry["base_id"]
 
 
+def test_a_collision_is_not_fixed_by_a_log_in_which_the_other_car_ends_before_it(ran: Ran) -> None:
+    header, *rows = Path(COLLISION).read_text(encoding="utf-8").splitlines()
+    Path("cut").mkdir()
+    kept = [row for row in rows if not (row.split(",")[1] == "oncoming" and float(row.split(",")[0]) > 6)]
+    Path("cut/collision.csv").write_text("\n".join([header, *kept, ""]), encoding="utf-8")
+    rules = ["--rules", "ukhc.no-collision", "--rules", "ukhc.contact-signature", "--no-annotate", "--no-robustness"]
+    assert ran("check", COLLISION, *ON_ROAD, *rules, "--out", "base")[0] == 1
+    code, out, _ = ran("check", "cut/collision.csv", *ON_ROAD, *rules, "--baseline", "base", "--out", "new")
+    assert code == 4, out
+    assert "0 fixed (0 now pass, 0 now not applicable); gone but not fixed: 2 unknown now" in " ".join(out.split())
+    entries = json.loads(Path("new/gate.json").read_text(encoding="utf-8"))["gate"]["baseline"]["entries"]
+    assert {entry["why"] for entry in entries} == {"object oncoming is recorded from 0.00 s to 6.00 s only"}
+
+
 def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], ran: Ran, tmp_path: Path) -> None:
     folder = tmp_path / "copy"
     folder.mkdir()

@@ -1,4 +1,5 @@
--- One row per log in the database, or per log in $only: map, distance, conditions, occasions judged, quality, and what could not be judged.
+-- One row per log in the database, or per log in $only: map, distance, conditions, occasions judged, quality, what could not be judged, and when who was
+-- recorded.
 WITH
     exposure_of_egos AS (
         SELECT drive_id,
@@ -34,7 +35,10 @@ WITH
         SELECT drive_id,
             list({'ego_id': ego_id, 'signal': signal, 'reason_code': cause_code, 'reason': words} ORDER BY ego_id, signal) AS not_judged
         FROM capability JOIN _worded ON cause = reason
-        WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
+        WHERE NOT available AND coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id),
+    recorded_of_drive AS (
+        SELECT drive_id, list({'actor_id': actor_id, 't_from_ns': t_from_ns, 't_to_ns': t_to_ns} ORDER BY actor_id, t_from_ns) AS recorded
+        FROM recorded WHERE coalesce(list_contains($only::VARCHAR[], drive_id), true) GROUP BY drive_id)
 SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS map_name, e.sha256 AS map_sha256,
     e.handedness, e.handedness_source, l.utc_start_ns, l.t_start_ns, (l.t_end_ns - l.t_start_ns) / 1e9 AS duration_s,
     l.lon, l.lat,
@@ -43,7 +47,7 @@ SELECT l.drive_id, l.file_name, l.sha256, l.format, l.environment_id, e.name AS 
     'judged' AS status, NULL::VARCHAR AS status_reason, coalesce(d.lossy, false) AS lossy,
     coalesce(c.conditions, []) AS conditions,
     coalesce(w.exposure, []) AS exposure, coalesce(o.occasions, []) AS occasions, coalesce(d.quality, []) AS quality,
-    coalesce(g.not_judged, []) AS not_judged
+    coalesce(g.not_judged, []) AS not_judged, coalesce(r.recorded, []) AS recorded
 FROM data_log l
 LEFT JOIN environment e USING (environment_id)
 LEFT JOIN exposure_of_egos w USING (drive_id)
@@ -51,5 +55,6 @@ LEFT JOIN occasion o USING (drive_id)
 LEFT JOIN defects d USING (drive_id)
 LEFT JOIN conditions_of_drive c USING (drive_id)
 LEFT JOIN missing_signals g USING (drive_id)
+LEFT JOIN recorded_of_drive r USING (drive_id)
 WHERE coalesce(list_contains($only::VARCHAR[], l.drive_id), true)
 ORDER BY l.drive_id

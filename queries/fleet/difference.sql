@@ -1,4 +1,4 @@
--- One row per finding of either audit: new, fixed, changed, unchanged, unknown or lost, and what else differs between the two audits there.
+-- One row per finding of either audit: new, fixed, changed, unchanged, elsewhere, unknown or lost, and what else differs between the two audits there.
 CREATE OR REPLACE TEMP TABLE difference AS
 WITH kept AS (
     SELECT p.drive, n.no AS new_no, b.no AS base_no, CASE WHEN n.severity <> b.severity
@@ -23,7 +23,7 @@ WITH kept AS (
         margin, unit, there, why
     FROM new_only
     UNION ALL BY NAME
-    SELECT CASE WHEN there IN ('pass', 'not_applicable') THEN 'fixed' WHEN there = 'none' THEN 'lost' ELSE 'unknown' END AS standing,
+    SELECT CASE WHEN there IN ('pass', 'not_applicable') THEN 'fixed' WHEN there = 'none' THEN 'lost' WHEN there = 'fail' THEN 'elsewhere' ELSE 'unknown' END AS standing,
         finding_id, finding_id AS base_id, new_key, key AS base_key, drive_id, ego_id, rule_id, profile, object_id, severity, worst_s AS t_s,
         margin, margin AS base_margin, unit, there, why
     FROM base_only

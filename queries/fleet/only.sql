@@ -11,14 +11,32 @@ WITH lone AS (
     SELECT DISTINCT key, ego_id FROM said
 ), objects AS (
     SELECT DISTINCT key, object_id FROM said
+), stretch AS (
+    -- where the ego or the object of a finding is recorded there, as in `drivelint.gate.match.is_recorded`
+    SELECT l.key, l.no, r.actor_id, l.from_s, l.to_s, l.worst_s, (r.t_from_ns - coalesce(d.t_start_ns, 0)) / 1e9 AS seen_from_s,
+        (r.t_to_ns - coalesce(d.t_start_ns, 0)) / 1e9 AS seen_to_s
+    FROM lone l
+    JOIN {of}drives d ON d.key = l.there_key
+    JOIN (SELECT key, unnest(recorded, recursive := true) FROM {of}drives) r ON r.key = d.key AND r.actor_id IN (l.ego_id, l.object_id)
+), gap AS (
+    SELECT key, no, actor_id, from_s, to_s, worst_s BETWEEN seen_from_s AND seen_to_s AS at_worst, seen_to_s >= from_s AND seen_from_s <= to_s AS inside,
+        seen_to_s, seen_from_s - lag(seen_to_s, 1, from_s) OVER (PARTITION BY key, no, actor_id, inside ORDER BY seen_from_s) AS missing_s
+    FROM stretch
+), actor_there AS (
+    SELECT key, no, actor_id, coalesce(bool_or(at_worst) AND max(missing_s) FILTER (inside) <= {near_s}
+        AND any_value(to_s) - max(seen_to_s) FILTER (inside) <= {near_s}, false) AS whole
+    FROM gap GROUP BY key, no, actor_id
 ), placed AS (
-    SELECT l.*, d.key IS NOT NULL AS checked, d.status, d.duration_s, coalesce(d.t_start_ns, 0) AS began_ns,
+    SELECT l.*, ea.actor_id IS NOT NULL AS ego_known, coalesce(ea.whole, false) AS ego_whole,
+        l.object_id IS NULL OR oa.actor_id IS NOT NULL AS object_known, l.object_id IS NULL OR coalesce(oa.whole, false) AS object_whole, d.key IS NOT NULL AS checked, d.status, d.duration_s, coalesce(d.t_start_ns, 0) AS began_ns,
         r.rule_id IS NOT NULL AS has_rule, coalesce(l.profile IS NULL OR list_contains(r.profiles, l.profile), false) AS has_profile,
         e.key IS NOT NULL AS has_ego, o.key IS NOT NULL AS has_object
     FROM lone l
     LEFT JOIN {of}drives d ON d.key = l.there_key
     LEFT JOIN rule_there r ON r.rule_id = l.rule_id
     LEFT JOIN egos e ON e.key = l.there_key AND e.ego_id = l.ego_id
+    LEFT JOIN actor_there ea ON ea.key = l.key AND ea.no = l.no AND ea.actor_id = l.ego_id
+    LEFT JOIN actor_there oa ON oa.key = l.key AND oa.no = l.no AND oa.actor_id = l.object_id
     LEFT JOIN objects o ON o.key = l.there_key AND o.object_id IS NOT DISTINCT FROM l.object_id
 ), near AS (
     -- those where the other audit has such a finding close by, though it is taken or differs in place
@@ -45,8 +63,10 @@ WITH lone AS (
     SELECT p.*, CASE WHEN NOT p.checked THEN ['none', 'drive_not_checked'] WHEN p.status = 'not_judged' THEN ['unknown', 'drive_not_judged']
         WHEN NOT p.has_rule THEN ['none', 'rule_not_run'] WHEN NOT p.has_profile THEN ['none', 'profile_not_run']
         WHEN NOT p.has_ego THEN ['none', 'ego_not_judged'] WHEN p.worst_s > p.duration_s + {near_s} THEN ['none', 'log_ends_before']
-        WHEN w.key IS NULL THEN ['none', 'no_verdict'] WHEN w.weight IS NOT NULL THEN [['error', 'fail', 'unknown', 'pass'][w.weight], 'judged']
-        WHEN NOT p.same_log AND NOT p.has_object THEN ['none', 'object_not_there'] ELSE ['not_applicable', 'not_applicable'] END AS answer
+        WHEN w.key IS NULL THEN ['none', 'no_verdict'] WHEN w.weight < 4 THEN [['error', 'fail', 'unknown'][w.weight], 'judged']
+        WHEN NOT p.ego_known THEN ['none', 'ego_not_there'] WHEN NOT p.ego_whole THEN ['unknown', 'ego_not_recorded']
+        WHEN NOT p.object_known THEN ['none', 'object_not_there'] WHEN NOT p.object_whole THEN ['unknown', 'object_not_recorded']
+        WHEN w.weight = 4 THEN ['pass', 'judged'] ELSE ['not_applicable', 'not_applicable'] END AS answer
     FROM placed p LEFT JOIN weighed w ON w.key = p.key AND w.no = p.no
 )
 SELECT * EXCLUDE (answer), answer[1] AS there, answer[2] AS why FROM answered

@@ -1,7 +1,7 @@
 -- The gravest findings of one standing, and the logs that they are in.
 SELECT e.*, coalesce(n.log, b.log) AS log
 FROM (
-    SELECT d.*, CASE WHEN d.standing IN ('fixed', 'unknown', 'lost') THEN d.rule_id IN (SELECT rule_id FROM {base}rules WHERE status = 'stable')
+    SELECT d.*, CASE WHEN d.standing IN ('fixed', 'elsewhere', 'unknown', 'lost') THEN d.rule_id IN (SELECT rule_id FROM {base}rules WHERE status = 'stable')
         ELSE d.rule_id IN (SELECT rule_id FROM {new}rules WHERE status = 'stable') END AS stable
     FROM difference d WHERE d.standing = $standing
     ORDER BY list_position(['critical', 'major', 'minor'], d.severity), d.drive_id, d.t_s, d.rule_id, d.profile NULLS FIRST,

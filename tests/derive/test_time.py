@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from tests.report.synthetic import table
 from tests.scenes import Actor, derived, drive, moving, road, rows, seconds, standing, times
 
 
@@ -128,3 +129,18 @@ def test_a_standing_vehicle_makes_no_way() -> None:
     way = road()
     con = derived(drive([standing("ego", way, times(5.0), 50, way.own)], None), tables=["exposure"])
     assert rows(con, "FROM exposure")[0]["km"] == 0
+
+
+def test_an_actor_is_recorded_in_stretches_without_a_hole() -> None:
+    """A hole of the log, a lost time and places that are not known end a stretch, whichever actor's they are."""
+    t = times(5.0)
+    ego, other = straight(t), straight(t, actor_id="x").lost((t > 2.95) & (t < 3.45)).keep((t < 1.05) | (t > 1.45))
+    seen = drive([ego, other, straight(t, actor_id="never").lost(t >= 0)], None)
+    lost = {"drive_id": "d", "check_id": "lost_time", "severity": "warning", "n": 1, "message": ""}
+    lost |= {"t_first_ns": 4_000_000_000, "t_last_ns": 4_100_000_000}
+    seen = replace(seen, trace=replace(seen.trace, tables={**seen.trace.tables, "quality": table("quality", [lost])}))
+    found = rows(derived(seen, tables=["recorded"]), "FROM recorded ORDER BY actor_id, t_from_ns")
+    assert [(row["actor_id"], row["t_from_ns"] / 1e9, row["t_to_ns"] / 1e9) for row in found] == [
+        ("ego", 0.0, 4.0), ("ego", 4.1, 5.0),
+        ("x", 0.0, 1.0), ("x", 1.5, 2.9), ("x", 3.5, 4.0), ("x", 4.1, 5.0),
+    ]  # fmt: skip

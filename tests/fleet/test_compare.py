@@ -86,6 +86,21 @@ def test_its_rules_of_matching_are_the_gates() -> None:
     )
 
 
+def random_stretches(rng: np.random.Generator, start: int) -> list[dict[str, Any]]:
+    """Return when actors are recorded: mostly all the time, else in stretches; sometimes one is not there at all."""
+    ends = (
+        [(0, 25 * SECOND)]
+        if rng.random() < 0.6
+        else np.sort(rng.integers(0, 50, (3, 2)).ravel()).reshape(3, 2) * SECOND // 2
+    )
+    return [
+        {"actor_id": actor, "t_from_ns": start + int(a), "t_to_ns": start + int(b)}
+        for actor in "1234"
+        if rng.random() < 0.9
+        for a, b in ends
+    ]
+
+
 def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
     """Return drives with crowded findings and verdicts of all kinds, so that every rule of matching decides something."""
     drives: list[dict[str, Any]] = []
@@ -104,6 +119,7 @@ def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
                 sha256=sha,
                 t_start_ns=start,
                 duration_s=duration,
+                recorded=random_stretches(rng, start),
                 status="not_judged" if lost else "judged",
             )
         )
@@ -145,7 +161,15 @@ def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
     base, new = random_result(rng, 800, "a"), random_result(rng, 800, "b")
     found = by_sql(base, new)
     assert found == by_gate(base, new)
-    assert {standing for standing, *_ in found} == {"new", "fixed", "changed", "unchanged", "unknown", "lost"}
+    assert {standing for standing, *_ in found} == {
+        "new",
+        "fixed",
+        "changed",
+        "unchanged",
+        "elsewhere",
+        "unknown",
+        "lost",
+    }
 
 
 def test_an_audit_against_itself_has_nothing(checked: Checked) -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+from datetime import date
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.gate import compare_results, descriptions, diff
+from drivelint.gate import GateInputs, compare_results, descriptions, diff
 from drivelint.result import gate as store
-from drivelint.result.gate import DIFF_STATUSES, ComparedFinding, Gate, Waiver
+from drivelint.result import model
+from drivelint.result.gate import DIFF_STATUSES, NOT_FIXED, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
-from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
+from tests.report.synthetic import SECOND, drive, finding, recorded, result, rule, verdict
 
 SPEED = "ukhc.r124.speed-limit"
 RULES = [rule(), rule(SPEED, kind="invariant", unit="m/s", profiles=[])]
@@ -91,15 +93,15 @@ def test_in_another_log_of_the_same_name_the_place_must_agree_too(moved: dict[st
     new = run([at(8, **(again | moved))], said("fail", **again_only(again)), drives=[again_drive()])
     counted = diff.compare(base, new).counts()
     assert counted["new"] == (0 if same else 1)
-    assert sum(counted[gone] for gone in ("fixed", "unknown", "lost")) == (0 if same else 1)
+    assert sum(counted[gone] for gone in ("fixed", *NOT_FIXED)) == (0 if same else 1)
 
 
 def again_only(row: dict[str, Any]) -> dict[str, Any]:
     return {"drive_id": row["drive_id"], "n_expected": 9, "n_judged": 9}
 
 
-def again_drive() -> dict[str, Any]:
-    return drive("d1-again", file_name="d1.csv", sha256="ef" * 32)
+def again_drive(**over: Any) -> dict[str, Any]:
+    return drive("d1-again", file_name="d1.csv", sha256="ef" * 32, **over)
 
 
 def test_in_another_log_a_long_stretch_is_the_same_by_its_time() -> None:
@@ -120,6 +122,14 @@ def test_times_are_those_since_the_log_began() -> None:
     times = dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), 908 * SECOND)
     new = run([at(8, drive_id="d1-again", **times)], said("fail", drive_id="d1-again"), drives=[late])
     assert only(run([at(8)]), new).standing == "unchanged"
+
+
+def test_the_same_log_under_another_name_is_the_same_drive() -> None:
+    same = drive("renamed", file_name="renamed.csv", sha256="ab" * 32)
+    found = diff.compare(run([at(8)]), run([at(8, drive_id="renamed")], drives=[same]))
+    assert ([e.standing for e in found.entries], found.base_only, found.new_only) == (["unchanged"], (), ())
+    twins = [same, same | {"drive_id": "again"}]
+    assert diff.compare(run([at(8)]), run([], drives=twins)).new_only == ("renamed",)
 
 
 def test_a_file_stem_that_two_drives_have_names_neither() -> None:
@@ -148,6 +158,28 @@ def test_a_file_stem_that_two_drives_have_names_neither() -> None:
 def test_changed_is_more_than_can_be_overlooked(over: dict[str, Any], why: str) -> None:
     entry = only(run([at(8)]), run([at(8, **over)]))
     assert (entry.standing, entry.why) == ("changed" if why else "unchanged", why)
+
+
+@pytest.mark.parametrize(
+    ("margin", "worse"), [(-6.7, True), (-6.009, False), (-5.0, False), (None, False), (float("-inf"), True)]
+)
+def test_worse_is_more_than_can_be_overlooked(margin: float | None, worse: bool) -> None:
+    found = diff.compare(run([at(8, 10)]), run([at(8, 12, margin=margin)]))
+    assert [entry.worse for entry in found.entries] == [worse]
+    assert f"1 changed ({int(worse)} worse)" in descriptions.headline(found)
+
+
+def test_what_still_fails_at_another_step_is_a_class_of_its_own() -> None:
+    """Of two findings close together one is left, another step of it the worst."""
+    base, new = run([at(8), at(8.5, finding_id="second")]), run([at(8.2)])
+    entry = next(e for e in diff.compare(base, new).entries if e.standing == "elsewhere")
+    assert (entry.base_id, entry.there) == ("second", "fail")
+    told = descriptions.difference_text(diff.compare(base, new), [], "critical")
+    assert "gone but not fixed: 0 unknown now, 0 not looked at, 1 still failing elsewhere" in told
+    assert "Not fixed: the rule still fails, at another step or place (1)" in told
+    assert "cannot be told" not in told
+    gone = model.exit_status(GateInputs(date(2026, 11, 26), base).apply_to(new))
+    assert (gone.code, gone.why[-31:]) == (4, "not fixed: 1 still failing elsewhere"[-31:])
 
 
 def test_a_stretch_that_falls_apart_is_nothing_new() -> None:
@@ -216,7 +248,7 @@ def test_an_unknown_of_another_object_does_not_open_what_is_judged() -> None:
 
 def test_an_object_that_is_not_in_another_log_is_not_fixed() -> None:
     again = {"drive_id": "d1-again"}
-    new = result([verdict("pass", object_id="4", **again)], drives=[again_drive()])
+    new = result([verdict("pass", object_id="4", **again)], drives=[again_drive(recorded=recorded("1", "4"))])
     entry = only(result([verdict("fail")], [finding()]), new)
     assert (entry.standing, entry.why) == ("lost", "object 3 is not in this log, or has another id")
     assert entry.drive_id == "d1-again"
@@ -259,7 +291,15 @@ def test_only_new_findings_of_stable_rules_at_or_above_the_severity_gate() -> No
 def test_json_holds_every_entry_and_the_counts() -> None:
     found = diff.compare(run([at(8), at(12, finding_id="x")]), run([at(8, margin=-20.0), at(15, finding_id="n")]))
     told = json.loads(descriptions.to_json(found, found.with_diff_status("new"), "critical"))
-    assert told["counts"] == {"new": 1, "changed": 1, "unchanged": 0, "fixed": 1, "unknown": 0, "lost": 0}
+    assert told["counts"] == {
+        "new": 1,
+        "changed": 1,
+        "unchanged": 0,
+        "fixed": 1,
+        "elsewhere": 0,
+        "unknown": 0,
+        "lost": 0,
+    }
     assert told["gating"] == ["n"]
     assert told["exit"] == {"code": 1, "why": "1 new finding at or above severity critical"}
     assert [entry["standing"] for entry in told["entries"]] == ["changed", "new", "fixed"]

@@ -40,14 +40,22 @@ def finding(**over: Any) -> dict[str, Any]:
     return {key: row[key] for key in arrow_schemas()["finding"].names if key in row}
 
 
+def recorded(*actors: str, start_s: float = 100.0, end_s: float = 125.0) -> list[dict[str, Any]]:
+    """Return what a drive says of actors that are recorded from one time of the log's clock to another."""
+    times = {"t_from_ns": round(start_s * SECOND), "t_to_ns": round(end_s * SECOND)}
+    return [{"actor_id": actor} | times for actor in actors]
+
+
 def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:
-    """Return the row of a judged drive of 25 s whose clock starts at 100 s."""
+    """Return the row of a judged drive of 25 s, with four actors, whose clock starts at 100 s."""
+    sha256 = "ab" * 32 if drive_id == "d1" else f"{drive_id.encode().hex():0>64}"
+    start_s = over.get("t_start_ns", 100 * SECOND) / SECOND
     return {
-        "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": "ab" * 32, "format": "canonical-csv",
+        "drive_id": drive_id, "file_name": f"{drive_id}.csv", "sha256": sha256, "format": "canonical-csv",
         "environment_id": "road-1@lht", "map_name": "road.xodr", "map_sha256": "cd" * 32, "handedness": "lht",
         "handedness_source": "attribute", "t_start_ns": 100 * SECOND, "duration_s": 25.0, "km": 0.12, "n_states": 750,
         "n_steps": 250, "n_egos": 1, "status": "judged", "lossy": False, "conditions": [], "exposure": [], "occasions": [], "quality": [],
-        "not_judged": [],
+        "not_judged": [], "recorded": recorded(*"1234", start_s=start_s, end_s=start_s + 25),
     } | over  # fmt: skip
 
 

@@ -88,6 +88,14 @@ def test_what_is_gone_but_not_fixed_is_told() -> None:
     assert "1 more verdict is unknown than in main" in text
 
 
+def test_the_baselines_verdict_on_a_new_finding_is_called_the_one_before() -> None:
+    kept = result([verdict("pass", reason="Distance ahead: kept by 1.7 m.")])
+    now = GateInputs(TODAY, kept, "main").apply_to(result([verdict("fail")], [finding(margin=-1.92)]))
+    text = Parsed(page(now)).text
+    assert "before: pass: Distance ahead: kept by 1.7 m." in text
+    assert text.count("kept by 1.7 m") == text.count("before: pass: Distance ahead: kept by 1.7 m")
+
+
 def test_without_an_earlier_result_and_waivers_the_page_says_nothing_of_them() -> None:
     text = page(result([verdict("fail")], [finding()]))
     assert 'class="stands' not in text

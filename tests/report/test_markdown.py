@@ -168,6 +168,20 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     assert "### Waivers to look at\n\n* w.toml:9: expired 2026-01-31 (al): it waives nothing; no finding" in text
 
 
+def test_new_findings_that_do_not_gate_are_called_new_and_worse_ones_worse() -> None:
+    minor = finding(
+        finding_id="m", severity="minor", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND
+    )
+    late = finding(finding_id="l", t_start_ns=120 * SECOND, t_end_ns=120 * SECOND, t_worst_ns=120 * SECOND)
+    text = told(gated([finding(margin=-14.07)], [finding(margin=-26.07), minor, late]))
+    assert "### New findings (1); 1 more new ones below do not gate" in text
+    assert "Findings that do not gate (2): 1 new" in text
+    assert [row[-1] for row in tables(text)[2][1:]] == [
+        "known: the baseline has it; worse now: margin -26.07 m, was -14.07 m", "new, below --fail-on critical",
+    ]  # fmt: skip
+    assert "1 known finding is worse" in text
+
+
 def test_a_flood_is_cut_and_says_so() -> None:
     many = [finding(finding_id=f"f{n}", occurrence=n) for n in range(500)]
     text = told(result([verdict("fail")], many))

@@ -172,6 +172,22 @@ def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: s
     assert str(case.xpath("string(error/@message)")).startswith("gone, not fixed: critical: d1 at 8.00 s")
 
 
+def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_report() -> None:
+    base = run([crash(drive_id="d2")], verdict("pass"))
+    now = [crash(drive_id="d2") | {"margin": -0.5}]
+    head = (
+        "pass no new finding; 1 known in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); judged less than the "
+        "baseline: 1 verdict unknown that had been pass or fail (1 critical), 1 drive of it not checked, 1 rule of it not selected"
+    )
+    less = run(now, verdict("unknown"), drives=[drive(), drive("d2")], rules=[rule(), CONTACT])
+    assert heads(against(base, less)) == [head] * 3
+    dropped = against(run([], verdict("pass")), run([], drives=[drive("d3")]))
+    assert headline(dropped).sentence.startswith(
+        "no findings, as far as it could be judged; judged less than the baseline: 2 drives"
+    )
+    assert headline(dropped).kind == "unknown"
+
+
 def test_what_is_gone_gates_only_where_it_would_have() -> None:
     unknown = [verdict("unknown", t_start_ns=None)]
     for before, least in ((finding(severity="minor"), "critical"), (finding(), "never")):

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from drivelint.api.check_result import CheckResult
 from drivelint.api.notebook import block_html
 from drivelint.api.options import FailOn, one_of
-from drivelint.errors import ExitCode
 from drivelint.gate import compare_results, descriptions
 from drivelint.result.load import load_result
 
@@ -29,8 +28,8 @@ class Comparison:
 
     @property
     def exit_code(self) -> int:
-        """1: a new finding of a stable rule is at or above `fail_on`; 0: none is."""
-        return int(ExitCode.FAILED if self._failing else ExitCode.OK)
+        """That of the command line. 1: a new finding that gates; 4: none, but an earlier one that is gone and not fixed."""
+        return int(descriptions.exit_code(self._found, self._failing, self._least))
 
     @property
     def text(self) -> str:
@@ -38,7 +37,7 @@ class Comparison:
         return descriptions.difference_text(self._found, self._failing, self._least, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:
-        """Return every finding of both; `standing`: new, changed, unchanged, fixed, unknown or lost."""
+        """Return every finding of both; `standing`: new, changed, unchanged, fixed, elsewhere, unknown or lost."""
         return [asdict(entry) for entry in self._found.entries]
 
     def data(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Compares two audits of any size: which findings are new, fixed, changed, unchanged, unknown now or lost.
+"""Compares two audits of any size: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown now or lost.
 
 The words and the rules of matching are those of `drivelint.gate`, which compares two results in memory; here all of it is SQL. Only
 drives are matched otherwise: by the content of the log first, since in a fleet many logs have the same name.
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from drivelint.errors import UsageError
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -63,9 +64,14 @@ def compare(
 ) -> Comparison:
     """Return the difference of two audits; `base`, `new`: what the names of their views begin with.
 
+    Errors: `UsageError` for an audit whose tables do not say when actors were recorded.
     `tools`: the versions of drivelint that made them; None: not known. Makes the temporary table `difference`: the columns of
     `drivelint.result.gate.ComparedFinding` but `stable`, the keys of both drives, and `causes` and `causes_not_known`.
     """
+    if any("recorded" not in con.table(f"{of}drives").columns for of in (base, new)):
+        raise UsageError(
+            "an audit was made by an earlier drivelint, which did not keep when each actor was recorded: audit the drives again"
+        )
     numbers = {"near_s": f"{NEAR_S!r}", "near_m": f"{NEAR_M!r}"}
     con.execute(statement("fleet/same_drive", base=base, new=new))
     for side, of in (("base", base), ("new", new)):

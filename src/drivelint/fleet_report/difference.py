@@ -38,6 +38,9 @@ _WHY: Final = {
     "ego_not_judged": "the ego was not judged",
     "log_ends_before": "the log ends before it",
     "no_verdict": "there is no verdict of this rule",
+    "ego_not_there": "the ego is not in this log, or has another id",
+    "ego_not_recorded": "the ego is not recorded there all the time",
+    "object_not_recorded": "the object is not recorded there all the time",
     "object_not_there": "the object is not in this log, or has another id",
     "not_applicable": "the rule does not apply there",
 }

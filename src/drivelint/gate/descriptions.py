@@ -11,6 +11,7 @@ import msgspec
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.result import counts
+from drivelint.result.gate import NOT_FIXED
 from drivelint.result.text import number
 from drivelint.result.text_templates import text_template
 
@@ -30,6 +31,7 @@ DIFF_SCHEMA: Final = 1
 DIFF_STATUS_TITLES: Final = {
     "new": "New",
     "changed": "Changed: known, but not as it was",
+    "elsewhere": "Not fixed: the rule still fails, at another step or place",
     "unknown": "Not fixed: it cannot be told any more",
     "lost": "Not fixed: not looked at any more",
     "fixed": "Fixed",
@@ -60,9 +62,7 @@ def since_baseline(difference: Difference) -> str:
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
     there = (kept["pass"], kept["not_applicable"])
-    margins = [(entry.margin, entry.base_margin) for entry in difference.with_diff_status("changed")]
-    worse = sum(now is not None and was is not None and now < was for now, was in margins)
-    return counts_sentence(n, worse, there)
+    return counts_sentence(n, sum(entry.worse for entry in difference.entries), there)
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
@@ -72,9 +72,23 @@ def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) ->
     """
     text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
     text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
-    if n["unknown"] or n["lost"]:
-        text += f"; gone but not fixed: {n['unknown']} unknown now, {n['lost']} not looked at"
+    if any(n[status] for status in NOT_FIXED):
+        told = (f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status] or status != "elsewhere")
+        text += f"; gone but not fixed: {', '.join(told)}"
     return text
+
+
+def judged_less(difference: Difference) -> str:
+    """Return what the newer result did not judge and the earlier one did, in words; '' for nothing."""
+    n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
+    more = f" ({critical} critical)" if critical else ""
+    parts = [f"{plural(n, 'verdict')} unknown that had been pass or fail{more}"] if n else []
+    for noun, names, done in (
+        ("drive", difference.base_only, "checked"),
+        ("rule", difference.rules_not_run, "selected"),
+    ):
+        parts += [f"{plural(len(names), noun)} of it not {done}"] if names else []
+    return f"judged less than the baseline: {', '.join(parts)}" if parts else ""
 
 
 def difference_text(
@@ -85,6 +99,7 @@ def difference_text(
         diff=difference,
         verdicts=counts.VERDICTS,
         headline=headline(difference),
+        less=judged_less(difference),
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
         groups=group_by_reason(difference.opened),
@@ -111,8 +126,7 @@ def not_looked_at(difference: Difference, fail_on: str) -> str:
     if fail_on == "never":
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
-    gone = [*difference.with_diff_status("unknown"), *difference.with_diff_status("lost")]
-    n = sum(entry.stable and entry.severity in severe for entry in gone)
+    n = sum(entry.stable and entry.severity in severe for entry in difference.not_fixed())
     said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
     said += ["the newer run was interrupted"] if difference.is_partial else []
     return " and ".join(said)
@@ -159,8 +173,12 @@ def finding_line(entry: ComparedFinding) -> str:
 def _there(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
-    said = {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
-    return f" ({'the base says' if entry.standing == 'new' else 'now'} {said}: {entry.why})"
+    return f" ({'the base says' if entry.standing == 'new' else 'now'} {verdict_there(entry)}: {entry.why})"
+
+
+def verdict_there(entry: ComparedFinding) -> str:
+    """Return the verdict of the other result where a finding is, in words."""
+    return {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
 
 
 def waiver_warnings(gate: Gate) -> Iterator[str]:
@@ -192,8 +210,9 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
         return waiver_reason(waiver)
-    if gate and gate.in_baseline(finding_id):
-        return "known: the baseline has it"
+    entry = gate.compared(finding_id) if gate else None
+    if entry is not None and entry.standing != "new":
+        return "known: the baseline has it" + (f"; worse now: {entry.why}" if entry.worse else "")
     if gate and gate.is_possible(finding_id):
         return f"possible: less than {100 * (gate.confidence or 0.0):g} % of its copies with recording errors keep it"
     return ""
@@ -203,10 +222,12 @@ def excuse(result: Result, row: Row, rule: Row | None) -> str:
     """Return why a finding, or a failed verdict, does not gate; '' where it does. `rule`: its row of the table `rule`."""
     if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
         return reason
+    is_new = "finding_id" in row and result.gate is not None and result.gate.standing(row["finding_id"]) == "new"
+    new = "new, " if is_new else ""
     if rule is None or rule["status"] != "stable":
-        return "draft" if rule is None else str(rule["status"])
+        return new + ("draft" if rule is None else str(rule["status"]))
     severe = () if result.fail_on == "never" else counts.SEVERITIES[: counts.SEVERITIES.index(result.fail_on) + 1]
-    return "" if row["severity"] in severe else f"below --fail-on {result.fail_on}"
+    return "" if row["severity"] in severe else f"{new}below --fail-on {result.fail_on}"
 
 
 def gate_counts(gate: Gate) -> dict[str, Any]:

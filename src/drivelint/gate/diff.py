@@ -1,8 +1,8 @@
-"""Compares two results: which findings are new, fixed, changed, unchanged, unknown now or lost."""
+"""Compares two results: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown now or lost."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -27,12 +27,14 @@ INTERVAL_TOLERANCE_S: Final = 0.1
 
 _WEIGHT = ("error", "fail", "unknown", "pass")
 """Of several verdicts at one moment the first of these is what is said."""
+_WHERE = ("drive_id", "ego_id", "rule_id", "profile")
+_KEPT = ("pass", "not_applicable")
 
 
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
     """Return the difference of two results; names are for the reader.
 
-    Drives are the same by `drive_id`, else by their file's stem. NEW's findings come in their order, then what BASE had.
+    Drives are the same by `match.match_drives`. NEW's findings come in their order, then what BASE had.
     """
     had, has = ResultLookup(base), ResultLookup(new)
     same = match.match_drives(list(had.drives.values()), list(has.drives.values()))
@@ -45,7 +47,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     known = set(same.values())
     for drive_id, stretches in had.findings.items():
         if drive_id not in known:
-            gone += [_gone(each, drive_id, has.verdict_at(None, each, same_log=False), had) for each in stretches]
+            gone += [_gone(each, drive_id, has.verdict_at(None, each), had) for each in stretches]
     return Difference(
         entries=(*entries, *gone),
         opened=tuple(_opened(base, new, same, has)),
@@ -55,6 +57,9 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         new_only=tuple(sorted(drive for drive in has.drives if drive not in same)),
         base_name=base_name,
         name=name,
+        undecided=_undecided(base, new, same, had),
+        rules_not_run=tuple(sorted(had.rules.keys() - has.rules.keys())),
+        n_both=len(same),
     )
 
 
@@ -77,7 +82,7 @@ def _drive(
             said = LookupResult("fail", f"a part of {was.row['finding_id']}, which was one")
             entries.append(_entry("changed", now, was, has, said))
         else:
-            said = had.verdict_at(base_id, now, same_log=same_log)
+            said = had.verdict_at(base_id, now)
             entries.append(_entry("new", now, None, has, _noting_rule(said, now, had, has)))
     gone: list[ComparedFinding] = []
     for was in (each for j, each in enumerate(theirs) if j not in told):
@@ -86,7 +91,7 @@ def _drive(
             said = LookupResult("fail", f"{was.row['finding_id']} is a part of it now")
             gone.append(_entry("changed", ours[wholes[0]], was, has, said))
         else:
-            said = _noting_rule(has.verdict_at(drive_id, was, same_log=same_log), was, had, has)
+            said = _noting_rule(has.verdict_at(drive_id, was), was, had, has)
             gone.append(_gone(was, drive_id, said, had))
     return entries, gone
 
@@ -121,9 +126,15 @@ def _differs(now: Row, was: Row) -> bool:
     return not abs(a - b) <= allowed
 
 
+def _is_less(now: float | None, was: float | None) -> bool:
+    return now is not None and was is not None and now < was
+
+
 def _gone(was: TimedFinding, drive_id: str, said: LookupResult, had: ResultLookup) -> ComparedFinding:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
-    standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost"}.get(said.verdict, "unknown")
+    standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost", "fail": "elsewhere"}.get(
+        said.verdict, "unknown"
+    )
     return replace(_entry(standing, was, was, had, said), drive_id=drive_id)
 
 
@@ -140,15 +151,18 @@ def _entry(
         base_margin=None if was is None else was.row["margin"],
         there=said.verdict,
         why=said.why,
+        worse=was is not None and _is_less(at.row["margin"], was.row["margin"]) and _differs(at.row, was.row),
     )
 
 
 def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
-    """Return where more verdicts are unknown or in error than were."""
+    """Return where more verdicts of a drive that both have are unknown or in error than were."""
     was, now = _unknown(base), _unknown(new)
     found = []
     for (drive_id, ego_id, rule_id, profile), (n, reason) in now.items():
-        before, _ = was.get((same.get(drive_id, ""), ego_id, rule_id, profile), (0, ""))
+        if drive_id not in same:
+            continue
+        before, _ = was.get((same[drive_id], ego_id, rule_id, profile), (0, ""))
         if n > before:
             found.append(NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reason))
     return sorted(found, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
@@ -156,12 +170,31 @@ def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLooku
 
 def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
     """Return (drive, ego, rule, profile) -> rows that are unknown or in error, and the reason given most often."""
-    columns = ["drive_id", "ego_id", "rule_id", "profile"]
-    rows = counts.distinct_rows(counts.undecided(result.verdicts), [*columns, "reason"])
+    rows = counts.distinct_rows(counts.undecided(result.verdicts), [*_WHERE, "reason"])
     return {
         at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
-        for at, told in counts.grouped(rows, itemgetter(*columns)).items()
+        for at, told in counts.grouped(rows, itemgetter(*_WHERE)).items()
     }
+
+
+def _undecided(base: Result, new: Result, same: Mapping[str, str], had: ResultLookup) -> dict[str, int]:
+    """Return severity -> verdicts that were pass or fail and are unknown or in error now, in drives that both have."""
+    was, now = _counted(base), _counted(new)
+    found: Counter[str] = Counter()
+    for (drive_id, ego_id, rule_id, profile), here in now.items():
+        before = was.get((same.get(drive_id), ego_id, rule_id, profile), Counter[str]())
+        opened = here["unknown"] + here["error"] - before["unknown"] - before["error"]
+        gone = before["pass"] + before["fail"] - here["pass"] - here["fail"]
+        if min(opened, gone) > 0:
+            found[had.rules[rule_id]["severity"]] += min(opened, gone)
+    return {severity: found[severity] for severity in counts.SEVERITIES if found[severity]}
+
+
+def _counted(result: Result) -> dict[Any, Counter[str]]:
+    """Return (drive, ego, rule, profile) -> verdict -> number of rows."""
+    rows = counts.distinct_rows(result.verdicts, [*_WHERE, "verdict"])
+    groups = counts.grouped(rows, itemgetter(*_WHERE))
+    return {at: Counter({row["verdict"]: row["count_all"] for row in told}) for at, told in groups.items()}
 
 
 class LookupResult(NamedTuple):
@@ -182,6 +215,11 @@ class ResultLookup:
         self._rows: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
         self._egos: dict[str, set[str]] = defaultdict(set)
         self._objects: dict[str, set[str]] = defaultdict(set)
+        self._recorded: dict[tuple[str, str], list[tuple[float, float]]] = defaultdict(list)
+        for drive in self.drives.values():
+            for each in drive["recorded"] or ():
+                start, end = (match.seconds_since_start(each[name], drive) for name in ("t_from_ns", "t_to_ns"))
+                self._recorded[drive["drive_id"], each["actor_id"]].append((start, end))
         columns = (
             "drive_id", "ego_id", "rule_id", "profile", "object_id", "verdict", "reason",
             "t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns", "n_expected", "n_judged",
@@ -200,8 +238,11 @@ class ResultLookup:
         """Return whether this result's rule of that id is stable."""
         return rule_id in self.rules and self.rules[rule_id]["status"] == "stable"
 
-    def verdict_at(self, drive_id: str | None, at: TimedFinding, *, same_log: bool) -> LookupResult:
-        """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result."""
+    def verdict_at(self, drive_id: str | None, at: TimedFinding) -> LookupResult:
+        """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result.
+
+        That the rule is kept, or does not apply, counts only where ego and object are recorded.
+        """
         row = at.row
         if gap := self._not_looked(drive_id, row):
             return gap
@@ -215,11 +256,27 @@ class ResultLookup:
             return LookupResult("none", "there is no verdict of this rule")
         there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
         said = [judged for each in there if (judged := self._judged(each, at)).verdict in _WEIGHT]
-        if said:
-            return min(said, key=lambda each: _WEIGHT.index(each.verdict))
-        if not same_log and row["object_id"] not in self._objects[drive_id]:
-            return LookupResult("none", f"object {row['object_id']} is not in this log, or has another id")
-        return LookupResult("not_applicable", there[0]["reason"] if there else "The rule does not apply there.")
+        not_applicable = LookupResult(
+            "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
+        )
+        found = min(said, key=lambda each: _WEIGHT.index(each.verdict), default=not_applicable)
+        if found.verdict in _KEPT and (missing := self._not_recorded(drive_id, at)):
+            return missing
+        return found
+
+    def _not_recorded(self, drive_id: str, at: TimedFinding) -> LookupResult | None:
+        """Return who of a finding, ego or object, is not recorded where it is; None: both are."""
+        for what in ("ego", "object"):
+            actor = at.row[f"{what}_id"]
+            stretches = self._recorded.get((drive_id, actor), ())
+            if actor is None or match.is_recorded(stretches, at):
+                continue
+            if not stretches:
+                return LookupResult("none", f"{what} {actor} is not in this log, or has another id")
+            times = ", ".join(f"{start:.2f} s to {end:.2f} s" for start, end in stretches[:3])
+            more = f" and {len(stretches) - 3} more times" if len(stretches) > 3 else ""
+            return LookupResult("unknown", f"{what} {actor} is recorded from {times}{more} only")
+        return None
 
     def _judged(self, each: Row, at: TimedFinding) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""

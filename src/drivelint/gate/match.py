@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.result import counts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     Row = Mapping[str, Any]
 
@@ -39,20 +39,27 @@ def seconds_since_start(t_ns: int, drive: Row) -> float:
 
 
 def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
-    """Return drive_id in NEW -> drive_id in BASE: the same id, else the only one on both sides with that file stem."""
+    """Return drive_id in NEW -> drive_id in BASE: the same id, else the same content, else the only one of both with that file stem.
+
+    Of several drives with one content, the first is the same as the first, and so on.
+    """
     ids = {row["drive_id"] for row in base}
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
-    left, right = (
-        counts.grouped(
-            (row for row in rows if row["drive_id"] not in same), lambda row: PurePath(row["file_name"]).stem
-        )
-        for rows in (base, new)
-    )
-    for stem, mine in right.items():
-        others = left.get(stem, [])
-        if len(mine) == len(others) == 1:
-            same[mine[0]["drive_id"]] = others[0]["drive_id"]
+    for content in ("sha256", None):
+        known = {*same.values()}
+        left = _grouped((row for row in base if row["drive_id"] not in known), content)
+        right = _grouped((row for row in new if row["drive_id"] not in same), content)
+        for key, mine in right.items():
+            others = left.get(key, [])
+            if content is not None or len(mine) == len(others) == 1:
+                same |= zip(mine, others, strict=False)
     return same
+
+
+def _grouped(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
+    """Return value of a column, or file stem -> ids of the drives that have it, sorted."""
+    found = counts.grouped(drives, lambda row: row[column] if column else PurePath(row["file_name"]).stem)
+    return {key: sorted(row["drive_id"] for row in rows) for key, rows in found.items() if key is not None}
 
 
 def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:
@@ -100,6 +107,21 @@ def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bo
     slack = NEAR_S if same_log else 0.0
     longer = finding_key(part.row) == finding_key(whole.row) and part.end - part.start < whole.end - whole.start
     return longer and part.start >= whole.start - slack and part.end <= whole.end + slack
+
+
+def is_recorded(stretches: Iterable[tuple[float, float]], at: TimedFinding) -> bool:
+    """Return whether an actor is recorded where a finding is: at its worst step, and nowhere in it missing for more than `NEAR_S`.
+
+    `stretches`: in seconds, in time order.
+    """
+    seen_to, at_worst = at.start, False
+    for start, end in stretches:
+        at_worst |= start <= at.worst <= end
+        if end >= at.start and start <= at.end:
+            if start - seen_to > NEAR_S:
+                return False
+            seen_to = end
+    return at_worst and at.end - seen_to <= NEAR_S
 
 
 def gap_s(a: TimedFinding, b: TimedFinding) -> float:

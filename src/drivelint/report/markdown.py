@@ -60,6 +60,9 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         gate=gate,
         stopping=[item for item in findings if not item[1]],
         excused=[item for item in findings if item[1]],
+        n_new_excused=sum(
+            gate is not None and bool(why) and gate.standing(row["finding_id"]) == "new" for row, why in findings
+        ),
         rules=rules,
         starts=result.start_times,
         drives={row["drive_id"]: row for row in result.drives.to_pylist()},
@@ -92,6 +95,7 @@ def _parts(template: str, **values: Any) -> list[str]:
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,
         "difference_headline": descriptions.headline,
+        "judged_less": descriptions.judged_less,
         "since_baseline": descriptions.since_baseline,
         "short": _short,
         "utc_at": utc_at,

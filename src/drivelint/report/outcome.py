@@ -8,6 +8,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
+from drivelint.gate import descriptions
 from drivelint.phrases import plural
 from drivelint.report.inputs import rules_without_map
 from drivelint.report.worst_first import is_contact
@@ -77,15 +78,20 @@ def headline(result: Result) -> Headline:
     told = counts.total(result.verdicts)
     whole = not told["unknown"] + told["error"] and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
-    kind = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable"}.get(label, "unknown")
+    before = None if result.gate is None else result.gate.baseline
+    less = "" if before is None else descriptions.judged_less(before)
+    whole = whole and not less
+    kind = "unknown" if less else {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable"}.get(label, "unknown")
     if not rows:
         parts = [Part(_without_findings(result, told, label, whole=whole))]
     else:
-        parts = [Part(_findings(result, rows)), *_contacts(result, rows, rules)]
+        parts = [Part(_findings(result, rows)), *_worse(result.gate), *_contacts(result, rows, rules)]
         doubtful = sum(bool(doubt(row)) for row in rows)
         if doubtful and (result.gate is None or result.gate.confidence is None):
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
             parts.append(Part(f"{some}only possible"))
+    if less:
+        parts.append(Part(less, "warning"))
     if n := rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
@@ -169,6 +175,13 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
     if gate.baseline is not None and "new" not in groups:
         return f"no new finding; {', '.join(said)}{where}"
     return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
+
+
+def _worse(gate: Gate | None) -> list[Part]:
+    """Return how many known findings have a worse margin than in the baseline."""
+    entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
+    n = len({e.finding_id for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known"})
+    return [Part("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")] if n else []
 
 
 def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:

@@ -50,7 +50,7 @@ def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | Non
     """Return the row of the table `drive` for a log that could not be judged at all, and why."""
     schema = arrow_schemas()["drive"]
     row = dict.fromkeys(schema.names)
-    row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged")}
+    row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged", "recorded")}
     row |= dict.fromkeys(("n_states", "n_steps", "n_egos"), 0)
     said = {"drive_id": drive_id, "file_name": file_name, "status_reason": reason}
     row |= {

@@ -17,9 +17,11 @@ from drivelint.errors import UsageError
 if TYPE_CHECKING:
     from pathlib import Path
 
-DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "unknown", "lost")
-"""Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), unknown
-(NEW cannot tell), lost (NEW did not look there). Neither of the last two is fixed."""
+DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
+"""Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), elsewhere (the rule
+fails there at another step or place), unknown (NEW cannot tell), lost (NEW did not look there). None of the last three is fixed."""
+NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not looked at", "elsewhere": "still failing elsewhere"}
+"""Status of a finding that is gone but not fixed -> words."""
 FILE: Final = "gate.json"
 GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or goes."""
@@ -30,7 +32,8 @@ class ComparedFinding:
     """One finding as compared between two results.
 
     `finding_id`, place in time and margin are those of NEW, where it has the finding, else those of BASE; `base_id` is
-    None for a new one. `there`: what the other result says there (verdict, or none). `stable`: its rule gates.
+    None for a new one. `there`: what the other result says there (verdict, or none). `stable`: its rule gates. `worse`: its margin
+    is less than it was, by more than can be overlooked.
     """
 
     standing: str
@@ -49,6 +52,7 @@ class ComparedFinding:
     unit: str | None
     there: str
     why: str
+    worse: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,7 @@ class Difference:
     """Two results side by side: every finding of both is one entry, NEW's first.
 
     `base_verdicts`, `verdicts`: verdict -> rows, zeros included. `base_only`, `new_only`: drives that the other has not.
+    `undecided`: severity -> verdicts that were pass or fail in BASE and are unknown in NEW. `rules_not_run`: rules of BASE only.
     """
 
     entries: tuple[ComparedFinding, ...]
@@ -82,6 +87,10 @@ class Difference:
     name: str = "new"
     is_partial: bool = False
     """The newer run was interrupted."""
+    undecided: dict[str, int] = field(default_factory=dict)
+    rules_not_run: tuple[str, ...] = ()
+    n_both: int | None = None
+    """Drives that both have."""
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
@@ -91,6 +100,10 @@ class Difference:
     def with_diff_status(self, status: str) -> list[ComparedFinding]:
         """Return the findings of one status."""
         return [entry for entry in self.entries if entry.standing == status]
+
+    def not_fixed(self) -> list[ComparedFinding]:
+        """Return BASE's findings that NEW has not, and that are not fixed."""
+        return [entry for status in NOT_FIXED for entry in self.with_diff_status(status)]
 
 
 @dataclass(frozen=True)

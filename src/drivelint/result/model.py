@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -11,6 +12,7 @@ import pyarrow.compute as pc
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import SEVERITIES
+from drivelint.result.gate import NOT_FIXED
 from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 
 if TYPE_CHECKING:
@@ -140,7 +142,7 @@ def gating_findings(result: Result) -> pa.Table:
 def gating_gone(result: Result) -> list[ComparedFinding]:
     """Return the baseline's findings that make exit code 4: of stable rules, severe enough, gone and yet not known to be fixed."""
     before = None if result.gate is None else result.gate.baseline
-    gone = [] if before is None else [*before.with_diff_status("unknown"), *before.with_diff_status("lost")]
+    gone = [] if before is None else before.not_fixed()
     return [entry for entry in gone if entry.stable and entry.severity in _severities(result)]
 
 
@@ -218,9 +220,8 @@ def _let_through(result: Result) -> str:
 
 def _gone_sentence(result: Result, gone: Sequence[ComparedFinding]) -> str:
     """Return how many of the baseline's severe findings are gone without being fixed, and why."""
-    unknown = sum(entry.standing == "unknown" for entry in gone)
-    why = [f"{unknown} unknown now"] if unknown else []
-    why += [f"{len(gone) - unknown} not looked at"] if len(gone) > unknown else []
+    told = Counter(entry.standing for entry in gone)
+    why = [f"{told[status]} {words}" for status, words in NOT_FIXED.items() if told[status]]
     verb = "is" if len(gone) == 1 else "are"
     said = f"{plural(len(gone), 'finding')} of the baseline at or above severity {result.fail_on}"
     return f"{said} {verb} gone but not fixed: {', '.join(why)}"

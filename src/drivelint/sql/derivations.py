@@ -23,7 +23,7 @@ _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
 ALWAYS_NEEDED = (
     *("clock", "step", "ego_state", "pair", "lost_object"),
-    *("ego_condition", "capability", "registration", "exposure"),
+    *("ego_condition", "capability", "registration", "exposure", "recorded"),
 )
 
 

@@ -6,13 +6,14 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.gate import descriptions
+from drivelint.result.gate import NOT_FIXED
 
 if TYPE_CHECKING:
     from drivelint.result.gate import Gate
 
 MAX_LISTED: Final = 40
 """Findings of the earlier result that are listed of each kind."""
-_GONE: Final = ("changed", "unknown", "lost", "fixed")
+_GONE: Final = ("changed", *NOT_FIXED, "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
 """State of a waiver -> words, those that need somebody to act first."""
 _LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
@@ -47,7 +48,9 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
         why = f"{descriptions.waiver_reason(waiver)} ({waiver.where})"
     elif kind == "possible":
         why = descriptions.reason_not_gating(gate, finding_id)
-    elif entry is not None and entry.standing in {"new", "changed"}:
+    elif entry is not None and entry.standing == "new":
+        why = f"before: {descriptions.verdict_there(entry)}: {entry.why}"
+    elif entry is not None and entry.standing == "changed":
         why = entry.why
     return BaselineStatus(kind, _label(gate, kind), why)
 
