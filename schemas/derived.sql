@@ -353,7 +353,7 @@ CREATE TABLE ego_state (
     yaw_rad DOUBLE,                   -- heading
     speed_mps DOUBLE,                 -- speed
     accel_mps2 DOUBLE,                -- see state_dynamics
-    fastest_3s_mps DOUBLE,            -- highest speed of this step and of those in the 3 s before it
+    fastest_3s_mps DOUBLE,            -- highest speed of this step and of those in the 3 s before it; NULL: they show an ego that stands, and not all of the 3 s is recorded
     travel_m DOUBLE,                  -- way made since the first step
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
@@ -437,8 +437,8 @@ CREATE TABLE lost_object (
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
     t_from_ns BIGINT NOT NULL,        -- unknown from here
-    t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds, when it would have been recorded again
-    code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range
+    t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds and its track ended near the ego, when it would have been recorded again
+    code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range, lost_on_road (further away, but it may have touched the ego later)
 );
 
 -- lifetime: part
@@ -626,7 +626,7 @@ CREATE TABLE overtake (
     l_av_m DOUBLE,                    -- ego's length
     l_vbp_m DOUBLE,                   -- VBP's length
     lane_width_m DOUBLE,              -- w_L, width of the running lane at t0
-    vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor
+    vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor; negative: the VBP is beside the ego then
     span_m DOUBLE,                    -- from the rear of the first vehicle passed in this go to the front of this one, at t0: L_VBP if it is alone
     t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2
     t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3
@@ -661,7 +661,7 @@ CREATE TABLE overtake_sda (
     passing_m DOUBLE,                 -- of sda_m: what it drives beside the vehicle being passed; NULL: as pull_out_m
     cut_in_m DOUBLE,                  -- of sda_m: what it drives to cut in; NULL: as pull_out_m
     oncoming_m DOUBLE,                -- of sda_m: what the OV drives meanwhile; NULL: as pull_out_m
-    covered_m DOUBLE,                 -- of sda_m: what the ego and the OV covered while the ego was out; NULL: sda_m is no more than the formula's, or undefined
+    covered_m DOUBLE,                 -- of sda_m: what the ego and the OV covered while the ego was out, until both stand; NULL: sda_m is no more than the formula's, or undefined
     stopping_m DOUBLE                 -- of sda_m: the OV's stopping distance; NULL: undefined
 );
 

@@ -6,7 +6,7 @@ WITH overtaking_excursion AS (
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
-    LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = x.t_back_ns
+    LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = coalesce(x.t_back_ns, x.t_end_ns)
     -- Only excursions from the chain that is the running one at t0. From a chain that the ego enters later, it is outside all the time
     -- before, which is no excursion.
     WHERE x.overtaking AND e.chain_id = x.chain_id
@@ -73,7 +73,7 @@ late_candidate AS (
     HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
 overtaken_candidate AS (
-    SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, chain_id, t0_ns ORDER BY coalesce(near_m, 0.0), object_id) AS rank
+    SELECT *
     FROM (
         SELECT * FROM ahead
         UNION ALL
@@ -97,9 +97,13 @@ overtaken_vehicle AS (
     FROM overtaken_candidate c
     JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
-    WHERE coalesce(a.passed, false)
-        OR (c.rank = 1 AND coalesce(c.near_m, 0.0) <= 100
-            AND (g.centre_over OR NOT g.begin_seen OR g.t_back_ns IS NULL OR coalesce(a.n_seen, 0) < g.n_steps))
+    CROSS JOIN LATERAL (SELECT coalesce(a.n_seen, 0) >= g.n_steps AS is_seen) n
+    -- Beside the ego from t0 on and never passed: the ego is over the line beside it, as in a queue.
+    CROSS JOIN LATERAL (SELECT coalesce(NOT a.passed AND c.near_m < 0 AND n.is_seen, false) AND g.begin_seen AND NOT g.centre_over AS is_beside) w
+    QUALIFY coalesce(a.passed, false)
+        OR row_number() OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id, c.t0_ns ORDER BY w.is_beside, coalesce(c.near_m, 0.0), c.object_id) = 1
+            AND NOT w.is_beside AND coalesce(c.near_m, 0.0) <= 100
+            AND (g.centre_over OR NOT g.begin_seen OR g.t_back_ns IS NULL OR NOT n.is_seen)
 ),
 later_gap AS (
     SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, p.ego_rear_m - p.front_s_m AS gap_m, p.speed_mps

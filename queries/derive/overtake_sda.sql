@@ -10,12 +10,27 @@ WITH ov_candidate AS (
     UNION ALL
     SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
-ov_closed_distance AS (
-    SELECT v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m - min(n.da_m) AS closed_m
+-- The ego and the OV at each step of the overtake. A standing vehicle drives no further, however long it is filmed.
+step_with_ov AS (
+    SELECT
+        v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m, e.t_ns, coalesce(n.da_m, p.rear_s_m - e.front_s_m) AS now_m, now_m IS NOT NULL AS is_seen,
+        (e.speed_mps <= standing_mps()) IS NOT true AS ego_moves, (p.speed_mps <= standing_mps()) IS NOT true AS ov_moves
     FROM overtake o
     JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
-    JOIN oncoming_vehicle n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.object_id = v.ov_id AND n.t_ns >= o.t0_ns AND n.t_ns <= o.t_end_ns
-    GROUP BY v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m
+    JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
+    LEFT JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns AND p.object_id = v.ov_id
+    -- A vehicle from another lane still has to drive round the corner; one that was met is in pair only.
+    LEFT JOIN oncoming_vehicle n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.t_ns = e.t_ns AND n.object_id = v.ov_id
+),
+-- How far the two have come towards each other until both stand, the last step that shows it, and the last step at which the ego moves.
+closed_distance AS (
+    SELECT s.drive_id, s.ego_id, s.occurrence, s.ov_id, s.da_m - min(s.now_m) AS closed_m, max(s.t_ns) FILTER (s.is_seen) AS t_seen_ns, any_value(m.t_ego_ns) AS t_ego_ns
+    FROM step_with_ov s
+    JOIN (
+        SELECT drive_id, ego_id, occurrence, ov_id, max(t_ns) FILTER (ego_moves) AS t_ego_ns, max(t_ns) FILTER (ego_moves OR is_seen AND ov_moves) AS t_both_ns FROM step_with_ov GROUP BY ALL
+    ) m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.occurrence = s.occurrence AND m.ov_id IS NOT DISTINCT FROM s.ov_id
+    WHERE s.t_ns <= m.t_both_ns
+    GROUP BY s.drive_id, s.ego_id, s.occurrence, s.ov_id, s.da_m
 ),
 top_speed AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, max(e.speed_mps) AS v_top_mps
@@ -24,20 +39,21 @@ top_speed AS (
     WHERE o.status = 'truncated'
     GROUP BY ALL
 ),
--- The distance that the ego and the OV covered while the ego was out (the OV at its speed at t0, or faster if it was), plus the OV's
--- stopping distance. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
+-- The distance that the ego and the OV covered while the ego was out, plus the OV's stopping distance. While the OV is not seen, its speed
+-- at t0 counts. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
 driven_distance AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_top_mps, (o.t_end_ns - o.t0_ns) / 1e9 AS out_s,
+        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_top_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
         CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
-        greatest(b.front_s_m - a.front_s_m + v.v_ov_mps * (o.t_end_ns - o.t0_ns) / 1e9, c.closed_m) + stopping_distance_m(v.v_ov_mps) AS driven_m
+        coalesce(c.closed_m, 0.0) + greatest(0.0, b.front_s_m - a.front_s_m) + v.v_ov_mps * greatest(0, h.t_ns - h.t_seen_ns) / 1e9 + stopping_distance_m(v.v_ov_mps) AS driven_m
     FROM overtake o
     JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
-    LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = o.t0_ns
-    LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = o.t_end_ns
+    LEFT JOIN closed_distance c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id IS NOT DISTINCT FROM v.ov_id
+    CROSS JOIN LATERAL (SELECT coalesce(c.t_ego_ns, o.t0_ns) AS t_ns, coalesce(c.t_seen_ns, o.t0_ns) AS t_seen_ns) h
+    LEFT JOIN ego_corridor a ON a.drive_id = o.drive_id AND a.ego_id = o.ego_id AND a.chain_id = o.chain_id AND a.t_ns = h.t_seen_ns
+    LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = h.t_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN ov_closed_distance c ON c.drive_id = o.drive_id AND c.ego_id = o.ego_id AND c.occurrence = o.occurrence AND c.ov_id = v.ov_id
     LEFT JOIN top_speed m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 formula_input AS (
@@ -46,7 +62,7 @@ formula_input AS (
             CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps,
             d.ov_id AS ov_id, d.da_m AS da_m, d.v_ov_mps AS v_ov_mps
         ),
-        o.ov_id AS nearest_id, d.out_s, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
+        o.ov_id AS nearest_id, d.out_s, d.stands, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta_rad,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta_rad,
@@ -109,7 +125,7 @@ SELECT
         WHEN n_unplaced > 0 AND da_m > sda_m THEN why('record_actor_unbroken', {'lack': unplaced_reason})
         WHEN ov_id IS NULL AND da_m <= sda_m THEN why(CASE free_reason WHEN 'sensor_range' THEN 'short_sight_sensors' ELSE 'short_sight_map' END, {'free_m': da_m})
         WHEN ov_id IS NULL THEN why('no_oncoming', {'free_m': da_m})
-        WHEN da_m <= sda_m AND sda_m = driven_m THEN why('out_of_lane', {'out_s': out_s})
+        WHEN da_m <= sda_m AND sda_m = driven_m THEN why(CASE WHEN stands THEN 'out_of_lane_until_it_stood' ELSE 'out_of_lane' END, {'out_s': out_s})
         WHEN ov_id <> nearest_id THEN why('later_oncoming_worse', {'object_id': ov_id, 'nearest_id': nearest_id, 'da_m': da_m, 'sda_m': sda_m})
     END AS reason,
     CASE WHEN sda_m IS NOT NULL AND NOT is_driven THEN lane_width_m / tan(beta_rad) END AS pull_out_m,

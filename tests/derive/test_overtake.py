@@ -16,7 +16,7 @@ from shapely.geometry import box
 
 from drivelint.reasons.reason_text import sentence
 from tests import scenes
-from tests.derive.overtake_scene import scene
+from tests.derive.overtake_scene import crash, scene
 from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, standing, swing, times
 
 MPH = 0.44704
@@ -615,29 +615,6 @@ def test_the_rules_agree_with_the_tables(rules: tuple[str, ...]) -> None:
 
 
 SDA = "ukhc.r162.safe-distance-ahead"
-
-
-def crash(way: Road, then: str, start: float = 0.0) -> list[Actor]:
-    """Out at 10 s well behind the car ahead, past it at 22 m/s in 9.2 s, and into the oncoming car, which comes at 25 m/s.
-
-    `then`: the log ends there, both stand there, or the ego is drawn back into its lane. `start`: metres that the ego starts
-    nearer to the car ahead, so that it has passed it by then.
-    """
-    t = times(26.0)
-    s = 50 + 22 * t
-    out = 50 + 22 * 10.0
-    met = out + 22 * 9.2
-    d = swing(way, s, out, met + 5 if then == "back" else None)
-    ego = moving("ego", way, t, s, d)
-    vbp = moving("vbp", way, t, out + 45 - start + 17 * (t - 10), way.own)
-    ov = moving("ov", way, t, met + 3 + 25 * (19.2 - t), way.other)
-    if then == "end":
-        return [a.keep(t < 19.25) for a in (ego, vbp, ov)]
-    if then == "stand":
-        stopped = np.minimum(t, 19.2)
-        ego = moving("ego", way, t, 50 + 22 * stopped, swing(way, 50 + 22 * stopped, out, None))
-        ov = moving("ov", way, t, met + 3 + 25 * (19.2 - stopped), way.other)
-    return [ego, vbp, ov]
 
 
 @pytest.mark.parametrize("then", ["end", "stand", "back"])

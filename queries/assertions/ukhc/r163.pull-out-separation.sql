@@ -16,6 +16,8 @@
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
 FROM overtake
+-- A vehicle that is beside the ego when the ego leaves its lane is not ahead: the ego is close to it across the lane, not behind it.
+WHERE NOT begin_seen OR coalesce(vbp_gap_m >= 0, true)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, stopping_distance_m(o.v_av_mps) AS required,
