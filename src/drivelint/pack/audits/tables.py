@@ -16,8 +16,9 @@ import pyarrow.parquet as pq
 from drivelint.audit import JudgeSettings
 from drivelint.audit.compact import chunk_name, chunks
 from drivelint.audit.driver import empty_rows
-from drivelint.audit.run import AUDIT_FILE, RULES_FILE, SUMMARY_FILE
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE
 from drivelint.audit.summary import summed
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, said_of_rows
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError

@@ -13,8 +13,9 @@ import pyarrow.parquet as pq
 
 from drivelint import __version__
 from drivelint.audit.identity import run_id, versions
-from drivelint.audit.run import RULES_FILE, SUMMARY_FILE
+from drivelint.audit.run import RULES_FILE
 from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, rows_sha256, with_key
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.fleet_report.opened import opened

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow.parquet as pq
 
-from drivelint.audit.run import RULES_FILE, SUMMARY_FILE
+from drivelint.audit.run import RULES_FILE
 from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import UsageError
 from drivelint.fleet_report.opened import opened
 from drivelint.pack import again, contents
