@@ -1,9 +1,9 @@
--- New findings of stable rules by severity; changed ones that are worse; of the fixed ones those that pass now and those that do not apply.
+-- New findings of stable rules by severity; known ones that are worse; of the fixed ones those that pass now and those that do not apply.
 SELECT
     count(*) FILTER (standing = 'new' AND stable AND severity = 'critical') AS critical,
     count(*) FILTER (standing = 'new' AND stable AND severity = 'major') AS major,
     count(*) FILTER (standing = 'new' AND stable AND severity = 'minor') AS minor,
-    count(*) FILTER (standing = 'changed' AND margin < base_margin) AS worse,
+    count(*) FILTER (worse) AS worse,
     count(*) FILTER (standing = 'fixed' AND there = 'pass') AS passes,
     count(*) FILTER (standing = 'fixed' AND there = 'not_applicable') AS not_applicable
 FROM (SELECT *, rule_id IN (SELECT rule_id FROM {new}rules WHERE status = 'stable') AS stable FROM difference)
