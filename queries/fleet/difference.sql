@@ -1,31 +1,32 @@
--- One row per finding of either audit: new, fixed, changed, unchanged, elsewhere, unknown or lost, and what else differs between the two audits there.
+-- One row per finding of either audit: new, fixed, changed, unchanged, elsewhere, unknown or lost, and what else differs between
+-- the two audits there.
 CREATE OR REPLACE TEMP TABLE difference AS
-WITH kept AS (
-    SELECT p.drive, n.no AS new_no, b.no AS base_no, CASE WHEN n.severity <> b.severity
-        OR CASE WHEN n.margin IS NULL OR b.margin IS NULL THEN n.margin IS DISTINCT FROM b.margin WHEN n.margin = b.margin THEN false
+WITH known AS (
+    SELECT drive, new_no, base_no, false AS is_part FROM pair UNION ALL SELECT drive, new_no, base_no, true FROM part
+), both_sides AS (
+    SELECT n.finding_id, b.finding_id AS base_id, n.key AS new_key, b.key AS base_key, n.drive_id, n.ego_id, n.rule_id, n.profile, n.object_id,
+        n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why, b.severity AS base_severity,
+        n.from_s, n.to_s, b.from_s AS base_from_s, b.to_s AS base_to_s, k.is_part,
+        CASE WHEN n.margin IS NULL OR b.margin IS NULL THEN n.margin IS DISTINCT FROM b.margin WHEN n.margin = b.margin THEN false
             ELSE coalesce(abs(n.margin - b.margin) > greatest({margin_tolerance},
-                {margin_tolerance} * greatest(abs(coalesce(n.required, 0)), abs(coalesce(b.required, 0)))), true) END
-        OR greatest(abs(n.from_s - b.from_s), abs(n.to_s - b.to_s)) > {interval_tolerance_s} THEN 'changed' ELSE 'unchanged' END AS standing
-    FROM pair p
-    JOIN new_finding n ON n.new_key = p.drive AND n.no = p.new_no
-    JOIN base_finding b ON b.new_key = p.drive AND b.no = p.base_no
-), known AS (
-    FROM kept UNION ALL BY NAME SELECT drive, new_no, base_no, 'changed' AS standing, true AS is_part FROM part
-), told AS (
-    SELECT k.standing, n.finding_id, b.finding_id AS base_id, n.key AS new_key, b.key AS base_key, n.drive_id, n.ego_id, n.rule_id, n.profile,
-        n.object_id, n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why,
-        b.severity AS base_severity, n.from_s, n.to_s, b.from_s AS base_from_s, b.to_s AS base_to_s, coalesce(k.is_part, false) AS is_part
+                {margin_tolerance} * greatest(abs(coalesce(n.required, 0)), abs(coalesce(b.required, 0)))), true) END AS margin_differs
     FROM known k
     JOIN new_finding n ON n.new_key = k.drive AND n.no = k.new_no
     JOIN base_finding b ON b.new_key = k.drive AND b.no = k.base_no
+), told AS (
+    SELECT CASE WHEN is_part OR severity <> base_severity OR margin_differs
+            OR greatest(abs(from_s - base_from_s), abs(to_s - base_to_s)) > {interval_tolerance_s} THEN 'changed' ELSE 'unchanged' END AS standing,
+        * EXCLUDE (margin_differs), coalesce(margin_differs AND margin < base_margin, false) AS worse
+    FROM both_sides
     UNION ALL BY NAME
     SELECT 'new' AS standing, finding_id, key AS new_key, base_key, drive_id, ego_id, rule_id, profile, object_id, severity, worst_s AS t_s,
-        margin, unit, there, why
+        margin, unit, there, why, false AS worse
     FROM new_only
     UNION ALL BY NAME
-    SELECT CASE WHEN there IN ('pass', 'not_applicable') THEN 'fixed' WHEN there = 'none' THEN 'lost' WHEN there = 'fail' THEN 'elsewhere' ELSE 'unknown' END AS standing,
+    SELECT CASE WHEN there IN ('pass', 'not_applicable') THEN 'fixed' WHEN there = 'none' THEN 'lost'
+            WHEN there = 'fail' THEN 'elsewhere' ELSE 'unknown' END AS standing,
         finding_id, finding_id AS base_id, new_key, key AS base_key, drive_id, ego_id, rule_id, profile, object_id, severity, worst_s AS t_s,
-        margin, margin AS base_margin, unit, there, why
+        margin, margin AS base_margin, unit, there, why, false AS worse
     FROM base_only
 ), base_rule AS (
     -- a rule that an audit has in several versions, or with several parameters, has no known one

@@ -1,9 +1,9 @@
--- New findings of stable rules by severity; those of drives that the base does not have; changed ones that are worse; of the fixed ones those that pass now and those that do not apply.
+-- New findings of stable rules by severity; those of drives that the base does not have; known ones that are worse; of the fixed ones those that pass now and those that do not apply.
 SELECT
     count(*) FILTER (standing = 'new' AND stable AND severity = 'critical') AS critical,
     count(*) FILTER (standing = 'new' AND stable AND severity = 'major') AS major,
     count(*) FILTER (standing = 'new' AND stable AND severity = 'minor') AS minor,
-    count(*) FILTER (standing = 'changed' AND margin < base_margin) AS worse,
+    count(*) FILTER (worse) AS worse,
     count(*) FILTER (standing = 'new' AND why = 'drive_not_checked') AS of_new_drives,
     count(*) FILTER (standing = 'fixed' AND there = 'pass') AS passes,
     count(*) FILTER (standing = 'fixed' AND there = 'not_applicable') AS not_applicable

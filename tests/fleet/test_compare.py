@@ -11,6 +11,7 @@ import pyarrow as pa
 import pytest
 from scipy.stats import poisson
 
+from drivelint.errors import UsageError
 from drivelint.fleet import compare as compare_module
 from drivelint.fleet import intervals
 from drivelint.fleet.compare import Comparison, compare
@@ -39,6 +40,16 @@ def by_sql(base: Result, new: Result) -> Told:
         add(con, new, "other_")
         compare(con)
         return Counter(con.execute("SELECT standing, finding_id, base_id, there FROM difference").fetchall())
+
+
+def worse(base: Result, new: Result) -> tuple[Counter[str], Counter[str]]:
+    """Return the findings that are worse, by SQL and by the gate."""
+    with duckdb.connect() as con:
+        add(con, base)
+        add(con, new, "other_")
+        compare(con)
+        told = con.execute("SELECT finding_id FROM difference WHERE worse").fetchall()
+    return Counter(name for (name,) in told), Counter(e.finding_id for e in diff.compare(base, new).entries if e.worse)
 
 
 def by_gate(base: Result, new: Result) -> Told:
@@ -161,6 +172,8 @@ def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
     base, new = random_result(rng, 800, "a"), random_result(rng, 800, "b")
     found = by_sql(base, new)
     assert found == by_gate(base, new)
+    by_sql_, by_gate_ = worse(base, new)
+    assert by_sql_ == by_gate_ != Counter()
     assert {standing for standing, *_ in found} == {
         "new",
         "fixed",
@@ -207,6 +220,15 @@ def test_planted_changes_and_only_they(checked: Checked) -> None:
     assert Counter(e[:2] for e in told.elements() if e[0] != "unchanged") == Counter([
         ("fixed", gone["finding_id"]), ("changed", better["finding_id"]), ("new", "planted"),
     ])  # fmt: skip
+
+
+def test_an_audit_that_does_not_say_when_actors_were_recorded_is_refused() -> None:
+    with duckdb.connect() as con:
+        add(con, result([]))
+        add(con, result([]), "other_")
+        con.execute("ALTER TABLE other_drives DROP recorded")
+        with pytest.raises(UsageError, match="audit the drives again"):
+            compare(con)
 
 
 def test_causes_stand_apart(checked: Checked) -> None:

@@ -192,7 +192,7 @@ def _entries(con: duckdb.DuckDBPyConnection, standing: str, most: int) -> list[E
 def _finding(row: Row) -> ComparedFinding:
     same = (
         "standing", "finding_id", "base_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "stable", "margin",
-        "base_margin", "unit", "there",
+        "base_margin", "unit", "there", "worse",
     )  # fmt: skip
     return ComparedFinding(**{name: row[name] for name in same}, t_s=round(row["t_s"], 3), why=_why(row))
 
