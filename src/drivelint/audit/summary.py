@@ -28,10 +28,11 @@ MOST_REASONS: Final = 3
 class AuditSummary:
     """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
-    `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings. `n_asked`: drives of the sources, `n_absent`:
-    results of others, from earlier runs. `missing_parts`: shards that have not come to their end. `copies`: drives whose logs have the
-    content of another one's. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one.
-    In `findings`, a touch of two egos counts once; `possible`: those that are only possible.
+    `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
+    `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
+    their end. `copies`: drives whose logs have the content of another one's. `contacts`: drives with a contact that is sure or was not
+    examined; `contacts_possible`: the others with one. In `findings`, a touch of two egos counts once; `possible`: those that are only
+    possible.
     """
 
     n_drives: int = 0
