@@ -237,6 +237,19 @@ def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_pa
     assert judged(drives, tmp_path / "out", shard=(2, 3)).reused > 0
 
 
+def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 4)
+    assert judged(few, tmp_path / "whole").exit_code("never", strict=False) == ExitCode.OK
+    log = few.manifest.parent / "logs" / "drive-00001.parquet"
+    states = pq.read_table(log, partitioning=None)
+    beside = pc.if_else(states["is_ego"], pc.add(states["y_m"], 60.0), states["y_m"])
+    pq.write_table(states.set_column(states.schema.get_field_index("y_m"), "y_m", beside), log)
+    told = judged(few, tmp_path / "out")
+    assert (told.judged, told.off_map) == (4, 1)
+    assert told.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
+    assert "4 judged, 1 off their map" in summary_text(told, "out", ExitCode.NOT_JUDGED)
+
+
 def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     (tmp_path / "fleet" / "logs" / "drive-00001.parquet").write_bytes(b"PAR1")

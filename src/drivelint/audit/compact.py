@@ -37,6 +37,7 @@ RECEIPT_SCHEMA: Final = pa.schema(
         ("size", pa.int64()),
         *((name, pa.string()) for name in ("stamp", "drive_id", "log_sha256", "map_sha256", "reason")),
         ("lossy", pa.bool_()),
+        ("off_map", pa.bool_()),
         ("rows_sha256", pa.string()),
         ("km", pa.float64()),
         ("duration_s", pa.float64()),

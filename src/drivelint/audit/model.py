@@ -80,8 +80,9 @@ class Receipt:
 
     `key`: hash of log, map, options, rules, parameters, and versions. `batch`: the file of each table that has its rows, beside those
     of `n_in_batch` drives in all.
-    `rows_sha256`: hash of these rows, whatever other drives are in the file. `counts`: verdict -> rows; `failed`: severity ->
-    failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules. `options`: those of the drive, as JSON.
+    `off_map`: the map does not fit it. `rows_sha256`: hash of these rows, whatever other drives are in the file.
+    `counts`: verdict -> rows; `failed`: severity -> failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules.
+    `options`: those of the drive, as JSON.
     """
 
     key: str
@@ -96,6 +97,7 @@ class Receipt:
     map_sha256: str | None
     reason: str | None = None
     lossy: bool = False
+    off_map: bool = False
     rows_sha256: str = ""
     km: float = 0.0
     duration_s: float = 0.0

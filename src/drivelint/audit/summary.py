@@ -28,16 +28,18 @@ MOST_REASONS: Final = 3
 class AuditSummary:
     """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
-    `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings. `n_asked`: drives of the sources, `n_absent`:
-    results of others, from earlier runs. `missing_parts`: shards that have not come to their end. `copies`: drives whose logs have the
-    content of another one's. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one.
-    In `findings`, a touch of two egos counts once; `possible`: those that are only possible.
+    `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
+    `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
+    their end. `copies`: drives whose logs have the content of another one's. `contacts`: drives with a contact that is sure or was not
+    examined; `contacts_possible`: the others with one. In `findings`, a touch of two egos counts once; `possible`: those that are only
+    possible.
     """
 
     n_drives: int = 0
     judged: int = 0
     reused: int = 0
     lossy: int = 0
+    off_map: int = 0
     refused: int = 0
     quarantined: int = 0
     km: float = 0.0
@@ -68,6 +70,7 @@ class AuditSummary:
         self.refused += receipt.status == "refused"
         self.quarantined += receipt.status == "quarantined"
         self.lossy += receipt.lossy
+        self.off_map += receipt.off_map
         self.km += receipt.km
         self.hours += receipt.duration_s / 3600
         self.failed = dict(Counter(self.failed) + Counter(receipt.failed))
@@ -76,7 +79,7 @@ class AuditSummary:
 
     def plus(self, other: AuditSummary) -> AuditSummary:
         """Return what both come to together, but for what is only told of a whole audit."""
-        names = ("n_drives", "judged", "lossy", "refused", "quarantined", "km", "hours", "unknown", "errors")
+        names = ("n_drives", "judged", "lossy", "off_map", "refused", "quarantined", "km", "hours", "unknown", "errors")
         both = {name: getattr(self, name) + getattr(other, name) for name in names}
         return replace(self, **both, failed=dict(Counter(self.failed) + Counter(other.failed)))
 
@@ -88,7 +91,14 @@ class AuditSummary:
         if any(self.failed.get(severity) for severity in gating):
             return ExitCode.FAILED
         nothing = not self.n_drives and self.digest is not None  # of shards and claims, others may have had all
-        if self.refused or self.quarantined or self.missing_parts or nothing or (strict and self.unknown):
+        if (
+            self.refused
+            or self.quarantined
+            or self.off_map
+            or self.missing_parts
+            or nothing
+            or (strict and self.unknown)
+        ):
             return ExitCode.NOT_JUDGED
         return ExitCode.LOSSY if self.lossy else ExitCode.OK
 

@@ -26,6 +26,7 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
         f"{counted.refused} refused" if counted.refused else "",
         f"{counted.quarantined} quarantined" if counted.quarantined else "",
         f"{counted.lossy} lossy" if counted.lossy else "",
+        f"{counted.off_map} off their map" if counted.off_map else "",
         f"{counted.copies} with the content of another one, counted again" if counted.copies else "",
         f"{counted.reused} had a result already" if counted.reused else "",
     )

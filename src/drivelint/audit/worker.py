@@ -31,6 +31,7 @@ from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
+from drivelint.result.model import off_map_reason
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -219,6 +220,7 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
         "map_sha256": about["map_sha256"],
         "reason": about["status_reason"],
         "lossy": about["lossy"],
+        "off_map": off_map_reason(about) is not None,
         "rows_sha256": rows_sha256(rows),
         "km": about["km"],
         "duration_s": about["duration_s"] or 0.0,
