@@ -80,6 +80,21 @@ def test_they_gate_on_nothing_and_are_no_pass_unless_asked(disjoint: AuditDiffer
     assert json.loads(difference_text.to_json(disjoint, None))["exit"]["code"] == 4
 
 
+def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
+    with duckdb.connect() as con:
+        fleet(con, "base_", "r1", ("shared",))
+        audits.add_rows(con, [ego_drive("shared")], [said("shared", "pass")], [], RULES)
+        sides = [Audit(name, LocalFolder(Path(name)), {}, Standing("d")) for name in ("new", "base")]
+        told = difference(con, sides[0], sides[1], 50)
+    assert told.counts["lost"] == 2
+    assert difference_text.exit_code(told, "critical") == ExitCode.NOT_JUDGED
+    assert (
+        "exit 4: no new finding at or above severity critical, but 2 earlier findings gone"
+        in difference_text.to_text(told, "critical")
+    )
+    assert difference_text.exit_code(told, "never") == ExitCode.OK
+
+
 def test_findings_of_added_drives_are_told_apart() -> None:
     told = compared(base_also=("shared",), new_also=("shared",))
     assert told.headline.startswith("17 new (17 in drives that the base does not have), ")

@@ -55,3 +55,37 @@ def test_bars_lie_where_their_rates_are(opened: Page) -> None:
     )
     assert len(told) > 10
     assert [x for _, x in sorted(told)] == sorted(x for _, x in told)
+
+
+def test_every_column_of_the_rates_is_seen(opened: Page) -> None:
+    assert opened.value(
+        "[...document.querySelectorAll('.rate-table, .by-tag')].every(e => e.scrollWidth <= e.clientWidth)"
+    )
+
+
+def test_rates_without_findings_are_folded(opened: Page) -> None:
+    seen = "[...document.querySelectorAll('.rate-table .idle')].filter(e => e.offsetHeight).length"
+    assert opened.value("document.querySelectorAll('.rate-table .idle').length") > 10
+    assert opened.value(seen) == 0
+    opened.value("document.querySelector('.idle-switch summary').click()")
+    assert opened.value(seen) == opened.value("document.querySelectorAll('.rate-table .idle').length")
+    opened.value("document.querySelector('.idle-switch summary').click()")
+
+
+def test_no_list_of_the_page_is_a_box_that_scrolls(opened: Page) -> None:
+    boxes = ".rate-table, .changes"
+    scrolling = f"[...document.querySelectorAll('{boxes}')].filter(e => e.scrollHeight > e.clientHeight + 1).length"
+    assert opened.value(scrolling) == 0
+
+
+def test_folded_lists_are_open_on_paper_and_tables_are_not_cut(opened: Page) -> None:
+    folds = "[...document.querySelectorAll('.on-paper')]"
+    opened.value(f"{folds}.forEach(e => {{ e.open = false; }})")
+    opened.value("dispatchEvent(new Event('beforeprint'))")
+    opened.call("Emulation.setEmulatedMedia", media="print")
+    assert opened.value(f"{folds}.length && {folds}.every(e => e.open)")
+    assert opened.value("getComputedStyle(document.querySelector('.by-tag')).display") == "block"
+    assert opened.value("getComputedStyle(document.querySelector('.by-tag table')).breakInside") == "avoid"
+    opened.call("Emulation.setEmulatedMedia", media="")
+    opened.value("dispatchEvent(new Event('afterprint'))")
+    assert opened.value(f"{folds}.every(e => !e.open)")

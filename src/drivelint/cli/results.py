@@ -119,7 +119,8 @@ def diff(
     Of two audits it also says what else differs (software, rules, parameters, data, map, tool), and which rates do.
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error; 4 there is none so far, but
-    findings of BASE are unknown or not looked at in NEW, or a run has not ended.
+    findings of BASE are unknown or not looked at in NEW, a run has not ended, or two audits have no drive in common (and --fail-on is
+    not given).
     """
     from drivelint.fleet_report.opened import destination, is_audit
     from drivelint.gate import compare_results, descriptions

@@ -79,6 +79,7 @@ class AuditDifference:
     """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
 
     `of_new_drives`: new findings of drives that the base does not have. `gating`: severity -> new findings of stable rules.
+    `gone`: the same of findings of the base that the newer audit did not look at or cannot tell.
     `causes`: what else differs -> standing -> number of findings.
     `base_only`, `new_only`: at most `most` logs that the other has not.
     """
@@ -90,6 +91,7 @@ class AuditDifference:
     of_new_drives: int
     fixed: tuple[int, int]
     gating: dict[str, int]
+    gone: dict[str, int]
     verdicts: tuple[dict[str, int], dict[str, int]]
     entries: dict[str, list[Entry]]
     causes: dict[tuple[str, ...], Counter[str]]
@@ -116,8 +118,11 @@ class AuditDifference:
 
     def n_failing(self, fail_on: str) -> int:
         """Return how many new findings of stable rules are at or above a severity."""
-        severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
-        return sum(self.gating[severity] for severity in severe)
+        return _at_or_above(self.gating, fail_on)
+
+    def n_gone(self, fail_on: str) -> int:
+        """Return how many such findings of the base are gone but not fixed."""
+        return _at_or_above(self.gone, fail_on)
 
     @property
     def called(self) -> list[RateChange]:
@@ -136,11 +141,16 @@ class AuditDifference:
         return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
 
 
+def _at_or_above(counted: dict[str, int], least: str) -> int:
+    severe = () if least == "never" else SEVERITIES[: SEVERITIES.index(least) + 1]
+    return sum(counted[severity] for severity in severe)
+
+
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: int) -> AuditDifference:
     """Return the difference of the audits of `opened`, with at most `most` findings of each standing."""
     found = compare(con, base=BASE, new="", tools=(base.version, new.version))
     sides = {"base": BASE, "new": ""}
-    (gating,) = _rows(con, "gating", new="")
+    (gating,) = _rows(con, "gating", base=BASE, new="")
     only = [_rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
@@ -157,6 +167,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         of_new_drives=gating["of_new_drives"],
         fixed=(gating["passes"], gating["not_applicable"]),
         gating={severity: gating[severity] for severity in SEVERITIES},
+        gone={severity: gating[f"gone_{severity}"] for severity in SEVERITIES},
         verdicts=(verdict_counts(con, BASE), verdict_counts(con, "")),
         entries={standing: _entries(con, standing, most) for standing in DIFF_STATUS_TITLES},
         causes=dict(sorted(causes.items(), key=lambda item: (-item[1].total(), item[0]))),

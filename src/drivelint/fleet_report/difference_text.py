@@ -11,7 +11,7 @@ from drivelint.errors import ExitCode
 from drivelint.fleet_report.difference import NOTHING_IN_COMMON
 from drivelint.fleet_report.figures import figure, interval, share
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
-from drivelint.phrases import one_line
+from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import code, escaped
 from drivelint.result.counts import VERDICTS
 from drivelint.result.text import finite
@@ -39,12 +39,12 @@ def least_severity(found: AuditDifference, asked: str | None) -> str | None:
 
 
 def exit_code(found: AuditDifference, fail_on: str | None) -> ExitCode:
-    """FAILED for new findings that gate; NOT_JUDGED where more may come, or where findings of no drive can be matched."""
+    """FAILED for new findings that gate; NOT_JUDGED where more may come, or findings are gone but not fixed, or none can be matched."""
     if fail_on is None:
         return ExitCode.NOT_JUDGED
     if found.n_failing(fail_on):
         return ExitCode.FAILED
-    return ExitCode.NOT_JUDGED if _warnings(found) else ExitCode.OK
+    return ExitCode.NOT_JUDGED if found.n_gone(fail_on) or _warnings(found) else ExitCode.OK
 
 
 def _warnings(found: AuditDifference) -> list[str]:
@@ -55,9 +55,12 @@ def _exit(found: AuditDifference, fail_on: str | None) -> str:
     """Return the exit code and its reason, in one line."""
     if fail_on is None:
         return f"exit 4: {NOTHING_IN_COMMON}; --fail-on SEVERITY gates on all of the newer audit"
-    if exit_code(found, fail_on) == ExitCode.NOT_JUDGED:
+    if exit_code(found, fail_on) == ExitCode.NOT_JUDGED and _warnings(found):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(found)[0]}"
-    return exit_sentence(found.n_failing(fail_on), fail_on)
+    n = found.n_gone(fail_on)
+    return exit_sentence(
+        found.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
+    )
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:

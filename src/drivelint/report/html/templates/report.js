@@ -88,6 +88,7 @@ reveal();
     const moments = drives.length > 3 ? 1 : 6;
     document.body.classList.toggle("compact", drives.length > 3);
     const inside = drives.flatMap((d) => [...d.querySelectorAll(".ego.telling, .moment.leading")]);
+    inside.push(...document.querySelectorAll(".on-paper"));
     opened = [...drives, ...inside, ...(document.querySelectorAll(".overtake").length > 4 ? [] : document.querySelectorAll(".overtake"))]
       .filter((e) => !e.open && !(Number(e.dataset.rank) >= moments));
     for (const e of opened) e.open = true;
