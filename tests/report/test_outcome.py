@@ -247,6 +247,11 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
     text = " ".join(re.sub(r"<[^>]+>", "", page(of)).split())
     assert "2 of the rules could be judged nowhere, 1 not everywhere." in text
     assert "3 of the rules did not apply in some places and could not be judged in the others. 1 never applied." in text
+    off = {"reason_code": "missing_registration", "reason": "off the map"}
+    folds = [row | off if row["verdict"] == "unknown" else row for row in rows]
+    text = " ".join(re.sub(r"<[^>]+>", " ", page(result(folds, rules=rules)).partition('id="rules"')[2]).split())
+    found = re.findall(r"(\d) (never applied|not judged|not applicable or not judged):", text)
+    assert found == [("1", "never applied"), ("3", "not applicable or not judged"), ("2", "not judged")]
 
 
 def test_a_run_in_which_no_rule_applied_says_so() -> None:

@@ -22,7 +22,7 @@
 -- [params.restore_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time to restore the distance without harsh braking after a cut-in or while and after the vehicle ahead brakes"
+-- why = "our default: time to restore the distance without harsh braking after a cut-in or while and after the vehicle ahead brakes; a vehicle that was ahead already, or whose coming was not seen, has not cut in"
 --
 -- [params.lead_brakes_mps2]
 -- default = 1.0

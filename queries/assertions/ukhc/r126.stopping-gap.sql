@@ -17,7 +17,7 @@
 -- [params.settle_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second; weather that is not known counts as dry: too close in the dry is too close in any weather"
+-- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second; a vehicle that was ahead already, or whose coming was not seen (at the log's begin, say), counts as settled; weather that is not known counts as dry: too close in the dry is too close in any weather"
 --
 -- # Draft: in the dry the two seconds of the same rule 126 are less than the stopping distance above 40 mph: which of the two a driver keeps
 -- # is a judgement.

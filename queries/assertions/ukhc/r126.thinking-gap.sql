@@ -17,7 +17,7 @@
 -- [params.settle_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second"
+-- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second; a vehicle that was ahead already, or whose coming was not seen (at the log's begin, say), counts as settled"
 
 -- @applies
 -- A vehicle that is not seen is at least free_m away: if that is enough, the rule does not apply.

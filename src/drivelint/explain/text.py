@@ -138,8 +138,9 @@ def _cells(found: Explanation, table: str, row: Row) -> list[str]:
         column for column in row if column == asked or table == "capability" or re.search(rf"\b{column}\b", sql)
     ] or list(row)
     wide, comments = max(map(len, named)), store.column_comments().get(table, {})
+    start_ns = found.drive["t_start_ns"] or 0
     return [
-        f"{column:<{wide}}  {_cell(column, row[column], found.drive['t_start_ns'] or 0):<12}  {_comment(comments.get(column, ''))}"
+        f"{column:<{wide}}  {_cell(column, row[column], start_ns):<12}  {_comment(comments.get(column, ''), row[column])}"
         for column in named
     ]
 
@@ -152,7 +153,10 @@ def _cell(column: str, value: Any, start_ns: int) -> str:
     return seconds(value, start_ns) if is_time else _value(value)
 
 
-def _comment(text: str) -> str:
+def _comment(text: str, value: Any) -> str:
+    """Return what a column means, cut; of a NULL what that means, where it is said."""
+    _, null, meaning = text.partition("NULL: ")
+    text = null + meaning if value is None and null else text
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 

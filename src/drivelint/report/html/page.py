@@ -279,20 +279,30 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     groups = []
     for pack, mine in grouped(_rules(result, rules), lambda rule: rule["pack"]).items():
         idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
-        folds = grouped(idle, lambda item: (item[0], item[1].kind))
-        weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), item[0][1]))
+        folds = grouped(idle, lambda item: (item[0], item[1].kind, _said_of_idle(item[2]["verdicts"])))
+        weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), *item[0][1:]))
         groups.append(
             {
                 "pack": pack,
                 "about": mine[0]["pack_title"],
                 "rules": [rule for rule in mine if rule["rule_id"] not in why],
                 "folds": [
-                    ((verdict, summarise_reasons(reason for _, reason, _ in folded)), [rule for *_, rule in folded])
-                    for (verdict, _), folded in weightiest
+                    (
+                        (verdict, said, summarise_reasons(reason for _, reason, _ in folded)),
+                        [rule for *_, rule in folded],
+                    )
+                    for (verdict, _, said), folded in weightiest
                 ],
             }
         )
     return groups
+
+
+def _said_of_idle(told: Mapping[str, int]) -> str:
+    """Return what is said of a rule that was judged nowhere: for some egos it may not have applied, and be unknown for others."""
+    if not told["unknown"]:
+        return "never applied"
+    return "not applicable or not judged" if told["not_applicable"] else "not judged"
 
 
 def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:

@@ -22,6 +22,8 @@ _HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the words over it, of
 _HOLE_NS: Final = 1_000_000_000
 _LEAST: Final = 3
 """Fewer values are not worth a strip."""
+_CHAR: Final = 6.6
+"""No letter of the words over a strip is wider on average, in any font that the page names."""
 
 
 class Series(NamedTuple):
@@ -111,18 +113,23 @@ def _strip(
     inside = [v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _in(x, t)]
     inside = inside or [v for line in lines for v in line.values if v is not None]
     y, cut = axis_that_decides(inside, _deciding(lines, course, worst_ns), top + _HEIGHT, top)
+    cut_off = f"cut: goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
+    at_worst = _at_worst(lines, worst_ns)
+    words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
+    beside = len(words) * _CHAR <= RIGHT - LEFT
     return {
         "title": title,
         "unit": unit,
         "top": num(top),
         "label_y": num(top - 5),
+        "value_y": num(top - 5 if beside else top + 11),  # else it would lie over the title
         "height": num(_HEIGHT),
         "bottom": num(top + _HEIGHT),
         "zero": num(y.at(0.0)) if y.low < 0 < y.high else "",
         "ticks": y.ticks(4),
         "lines": [(line.kind, _path(line, x, y)) for line in lines],
-        "at_worst": _at_worst(lines, worst_ns),
-        "cut": f"cut: goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else "",
+        "at_worst": at_worst,
+        "cut": cut_off,
         "range": f"from {number(min(inside), unit)} to {number(max(inside), unit)}",
         "spans": [] if course is None else _failing(course, x),
     }

@@ -1,0 +1,17 @@
+"""A value that is NULL is told with what that means, however long the comment of its column is before."""
+
+from __future__ import annotations
+
+from drivelint.explain.text import _comment
+from drivelint.sql import store
+
+
+def test_a_null_says_what_it_means() -> None:
+    text = store.column_comments()["following"]["joined_ns"]
+    assert _comment(text, None) == "NULL: it was ahead before, or how it came was not seen"
+    assert _comment(text, 7_000_000_000).startswith("see vehicle_ahead; since when the gap is new")
+    assert len(_comment(text, 7_000_000_000)) <= 70
+
+
+def test_a_comment_that_says_nothing_of_null_stays() -> None:
+    assert _comment("the step", None) == "the step"
