@@ -37,7 +37,8 @@ def test_each_rule_has_one_standing() -> None:
 def test_a_log_that_is_there_twice_is_one_drive() -> None:
     words = [verdict("fail", drive_id=name, profile=None) for name in ("a", "b")]
     with duckdb.connect() as con:
-        audits.add_rows(con, [drive("a"), drive("b")], words, [], [rule(profiles=[])])
+        twice = [drive("a", sha256="same"), drive("b", sha256="same")]
+        audits.add_rows(con, twice, words, [], [rule(profiles=[])])
         (found,) = coverage(con).rules
     assert (found.drives, found.drives_failed) == (1, 1)
 
