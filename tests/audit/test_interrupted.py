@@ -64,7 +64,7 @@ def test_report_and_diff_show_what_is_there(interrupted: tuple[Path, int], tmp_p
     out, n = interrupted
     name, audit = page.write(str(out), "markdown", (), None)
     text = (out / name).read_text(encoding="utf-8")
-    assert f"{n} of {n} drives were judged" in text
+    assert f"{n} of {n} drives were judged, of {N_DRIVES} that were asked for" in text
     assert f"{n} of {N_DRIVES} drives have a result" in text
     assert audit.warning
     with opened_both(str(out), str(out)) as (con, earlier, later):

@@ -198,7 +198,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
         text = page.markdown(content_.content(con, audit, None, ())).decode()
-    assert "decides nothing alone, 1 judgements with other signals" in text
+    assert "decides nothing alone, 1 judgement with other signals" in text
     assert "at most 0" not in text
 
 
