@@ -95,8 +95,9 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
 def test_workers_do_not_hear_a_ctrl_c_while_they_begin() -> None:
     """What multiprocessing starts first took the block off again, and each worker printed a traceback."""
     code = (
-        "import signal; from drivelint.audit.executors.local import LocalPool; LocalPool(1)\n"
-        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, []))"
+        "import signal; from drivelint.audit.executors.local import LocalPool; pool = LocalPool(1)\n"
+        "pool._pool.schedule(int).result()\n"
+        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])); pool.close()"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "True"
