@@ -32,7 +32,7 @@ class Watched(InThisProcess):
 
 
 def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drives = fleet.write(tmp_path / "fleet", 20)
+    drives = fleet.write(tmp_path / "fleet", 12)
     whole = judged(drives, tmp_path / "whole")
     here: list[bool] = []
 
@@ -50,7 +50,7 @@ def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_its_errors_keep_their_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drives = fleet.write(tmp_path / "fleet", 20)
+    drives = fleet.write(tmp_path / "fleet", 12)
     monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
     with pytest.raises(UsageError, match="not a receipt of drivelint"):
         judged(drives, tmp_path / "out", Watched(tmp_path / "out", spoiled=True))

@@ -64,7 +64,7 @@ def test_report_and_diff_show_what_is_there(interrupted: tuple[Path, int], tmp_p
     out, n = interrupted
     name, audit = page.write(str(out), "markdown", (), None)
     text = (out / name).read_text(encoding="utf-8")
-    assert f"{n} of {n} drives were judged" in text
+    assert f"{n} of {n} drives were judged, of {N_DRIVES} that were asked for" in text
     assert f"{n} of {N_DRIVES} drives have a result" in text
     assert audit.warning
     with opened_both(str(out), str(out)) as (con, earlier, later):
@@ -95,8 +95,9 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
 def test_workers_do_not_hear_a_ctrl_c_while_they_begin() -> None:
     """What multiprocessing starts first took the block off again, and each worker printed a traceback."""
     code = (
-        "import signal; from drivelint.audit.executors.local import LocalPool; LocalPool(1)\n"
-        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, []))"
+        "import signal; from drivelint.audit.executors.local import LocalPool; pool = LocalPool(1)\n"
+        "pool._pool.schedule(int).result()\n"
+        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])); pool.close()"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "True"

@@ -20,6 +20,7 @@ from tests.audit.here import InThisProcess, judged
 def written(home: Path, *lines: str) -> str:
     (home / "logs").mkdir(exist_ok=True)
     (home / "logs" / "a").mkdir(exist_ok=True)
+    (home / "logs" / "a.mcap").touch()
     file = home / "fleet.csv"
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return str(file)
@@ -62,7 +63,7 @@ def test_nothing_is_judged_by_such_a_manifest(tmp_path: Path) -> None:
     assert not list((tmp_path / "out").rglob("receipts/*"))
 
 
-@pytest.mark.parametrize("log", ["logs/a.mcap", "logs/a"])
+@pytest.mark.parametrize("log", ["logs/a.mcap", "logs/a", "s3://fleet/a.mcap"])
 def test_a_manifest_without_a_column_log_is_no_drive(tmp_path: Path, log: str) -> None:
     source = written(tmp_path, "path,release", f"{log},r1")
     with pytest.raises(UsageError, match="a manifest needs a column log: its column 'path' names logs"):
@@ -70,5 +71,6 @@ def test_a_manifest_without_a_column_log_is_no_drive(tmp_path: Path, log: str) -
 
 
 def test_a_table_of_states_is_a_drive(tmp_path: Path) -> None:
-    source = written(tmp_path, "time,actor,x", "0.0,1,2.0")
+    """Also one that names the recording it was made from, which is not there."""
+    source = written(tmp_path, "time,actor,x,made_of", "0.0,1,2.0,run/7.mcap")
     assert [each.log for each in drives([source], DriveInput())] == [source]

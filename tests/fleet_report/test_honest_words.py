@@ -103,6 +103,7 @@ def test_the_header_names_contacts_and_how_sure_they_are() -> None:
     said_ = "CONTACT in 1 drive; possible contact in 1 drive; how sure the findings are was examined: 1 only possible"
     assert said_ in told.header
     assert said_ in told.markdown
+    assert "| 2 (1 possible) |" in told.markdown
     told = Told(drives, verdicts, [touched("a"), touched("b")], robustness=False)
     assert "CONTACT in 2 drives; how sure the findings are was not examined: audit --robustness" in told.header
 
@@ -198,7 +199,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
         text = page.markdown(content_.content(con, audit, None, ())).decode()
-    assert "decides nothing alone, 1 judgements with other signals" in text
+    assert "decides nothing alone, 1 judgement with other signals" in text
     assert "at most 0" not in text
 
 

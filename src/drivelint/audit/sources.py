@@ -89,14 +89,21 @@ def _is_manifest(path: Path) -> bool:
     if "log" in names:
         return True
     first = _first_row(path) if path.suffix.lower() == ".parquet" else dict(zip(names, cells, strict=False))
-    for name, value in first.items():  # a table of states has numbers and actors, but no names of logs
+    for name, value in first.items():  # a table of states has numbers and actors, but no places of logs
         text = str(value)
-        is_log = text.lower().endswith(tuple(TRACE_SUFFIXES)) or ("/" in text and (path.parent / text).exists())
-        if is_log and name not in OPTION_COLUMNS:
+        is_name = "/" in text or text.lower().endswith(tuple(TRACE_SUFFIXES))
+        if is_name and name not in OPTION_COLUMNS and (is_url(text) or _exists(path.parent / text)):
             raise UsageError(
                 f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
             )
     return False
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # no name of a file
+        return False
 
 
 def _first_row(path: Path) -> dict[str, Any]:

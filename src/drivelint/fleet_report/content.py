@@ -92,7 +92,8 @@ class FleetContent:
             if self.audit.settings.get("robustness")
             else "not examined: audit --robustness does it"
         )
-        return "; ".join([*touched, f"how sure the findings are was {looked}"])
+        said = "; ".join([*touched, f"how sure the findings are was {looked}"])
+        return said[0].upper() + said[1:]
 
     @property
     def is_all_decided(self) -> bool:
