@@ -82,3 +82,13 @@ def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
     assert "not examined" in content(replace(case, others=None))["parties"][1]["lane"]
+
+
+def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    said = "cut from collision.csv, SHA-256 0123abcd: 0.00 s to 9.00 s of it"
+    check = {"check_id": "clip", "severity": "info", "message": said}
+    drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
+    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    assert said in page
+    assert "Warnings on the log" not in page  # it is none

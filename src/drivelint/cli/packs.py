@@ -73,6 +73,8 @@ def pack(
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
             typer.echo(inert_line(why))
+    if sheets := [name for name in told["left_out"] if name.startswith("incidents/")]:
+        typer.echo(inert_line(f"  not in it, so sign and keep them beside it: {', '.join(sheets)}"))
 
 
 def verify(

@@ -9,6 +9,7 @@ from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT
+from drivelint.convert import CLIP
 from drivelint.engine.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
@@ -64,6 +65,7 @@ def content(case: Case) -> dict[str, Any]:
         "what": _what(finding),
         "story": story(motion, at, slowed, did=overtaking(case, at), closing_mps=row["closing_mps"], offset_s=offset_s),
         "clip_of": _clip_of(finding.drive["file_name"]),
+        "cut_from": [check["message"] for check in finding.drive["quality"] if check["check_id"] == CLIP],
         "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
         "profile": profile(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
@@ -74,6 +76,7 @@ def content(case: Case) -> dict[str, Any]:
         "utc": utc_at(finding.moment_ns, finding.drive),
         "road_id": _road_of(case),
         "contact": finding.is_contact,
+        "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
         "parties": [party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
         "closing": closing(row["closing_mps"]),

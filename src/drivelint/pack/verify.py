@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
@@ -28,6 +28,12 @@ if TYPE_CHECKING:
     from drivelint.pack.consistency import Stated
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
+
+_OUTCOMES: Final = {
+    "PASSED": "every rule that applied was kept",
+    "WARNED": "no rule was broken, but not everything was judged and kept with room",
+    "FAILED": "the drives broke rules",
+}
 
 
 @dataclass(frozen=True)
@@ -66,7 +72,7 @@ def verify(request: VerifyRequest) -> Verification:
         wrong, stated = consistency.of_statement(request.folder)
         if stated is not None and not wrong:
             judging, wrong, notes = _of_contents(request, stated)
-            outcome = f"; it states {stated.outcome}"
+            outcome = f"; it states that {_OUTCOMES[stated.outcome]} ({stated.outcome})"
     elif any(problem.kind != "not signed" for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())

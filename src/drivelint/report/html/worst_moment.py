@@ -11,7 +11,7 @@ from drivelint.report.html.contact import before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.strips import strips
-from drivelint.result.text import utc_at
+from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,9 +65,21 @@ def worst_moment(
             (how, list(dict.fromkeys(each.rule["title"] for each in along if each.kind == kind))[:_ALSO])
             for kind, how in (("fail", "not kept"), ("near", "only just kept"))
         ],
-        "explain": ["drivelint explain", shlex.quote(_name(row)), "--in ."],
+        "contact_times": _contact_times(row, start_ns) if touched else "",
+        "commands": [
+            ["drivelint explain", shlex.quote(_name(row)), "--in ."],
+            *([["drivelint report .", f"--incident {row['finding_id']}"]] if "finding_id" in row else []),
+        ],
         "files": _files(row, folder),
     }
+
+
+def _contact_times(row: Row, start_ns: int) -> str:
+    """Return when a contact begins and when it is worst, in words; '' where that is one step."""
+    if row["t_start_ns"] == row["t_worst_ns"]:
+        return ""
+    peak = "deepest" if row["unit"] == "m" else "hardest"
+    return f"first contact {seconds(row['t_start_ns'], start_ns)}, {peak} {seconds(row['t_worst_ns'], start_ns)}"
 
 
 def finding_key(row: Row) -> tuple[Any, ...]:
