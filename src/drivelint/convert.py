@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 import pyarrow as pa
 
 from drivelint.drive.cut import cut_trace
-from drivelint.drive.trace import DriveInput
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import DriveInput, QualityFinding
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
 from drivelint.formats import expand_traces, read_trace
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 MAP_FILE: Final = "map.xodr"
+CLIP: Final = "clip"
+"""Check of the data quality, information only, that says what log a clip was cut from."""
 _MARK: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
 _HEAD_BYTES: Final = 64
@@ -66,6 +69,8 @@ class ConvertedTrace:
     map_name: str | None
     has_ego: bool
     notes: tuple[str, ...]
+    check_options: tuple[str, ...] = ()
+    """Options of a check that judges it as the log was judged; none: as anybody would."""
 
 
 def convert(request: ConvertRequest) -> ConvertedTrace:
@@ -89,17 +94,18 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     trace = read_trace(path, options)
     if request.clip is not None:
-        trace = cut_trace(trace, request.clip.from_ns, request.clip.to_ns)
+        told = QualityFinding(CLIP, "info", _cut_from(trace, request.clip))
+        trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), told)
     if request.map_offset is not None:
         x, y = request.map_offset
         trace = replace(_with_log(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
-    road, trace, told = _road(request, trace)
+    road, trace, of_road = _road(request, trace)
     if trace.geo_reference is not None:
         x, y, yaw = trace.geo_offset
         trace = _with_log(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
     prepare_folder(request.out)
     files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
-    notes = [*trace.notes, *told, *_of_a_check(request)]
+    notes = [*trace.notes, *of_road, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
         notes.append(
@@ -114,6 +120,13 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         has_ego=has_ego,
         notes=tuple(notes),
     )
+
+
+def _cut_from(trace: Trace, clip: Clip) -> str:
+    """Return what log a clip is cut from, and when of it, in one sentence."""
+    (log,) = trace.tables["data_log"].to_pylist()
+    from_s, to_s = ((t_ns - (log["t_start_ns"] or 0)) / 1e9 for t_ns in (clip.from_ns, clip.to_ns))
+    return f"cut from {log['file_name']}, SHA-256 {log['sha256']}: {from_s:.2f} s to {to_s:.2f} s of it"
 
 
 def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
@@ -228,7 +241,8 @@ def summary_text(written: ConvertedTrace) -> str:
     road = f", the map {written.map_name} with it" if written.map_name else ", no map"
     ego = "" if written.has_ego else " --ego ID"
     command = (
-        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'} --out results"
+        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'}"
+        f"{''.join(f' {shlex.quote(word)}' for word in written.check_options)} --out results"
     )
     said = f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}"
     return f"{one_line(said)}\n{one_line(f'check it, without a mapping, with: {command}')}"

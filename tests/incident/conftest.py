@@ -14,7 +14,7 @@ from tests.explain.checked import check
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.incident.sheet import Case
+    from drivelint.incident.case import Case
 
 CaseOf = Callable[[str], "Case"]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint import cli, demo
-from drivelint.convert import ConvertRequest
+from drivelint.convert import ConvertRequest, summary_text
 from drivelint.drive.cut import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import UsageError
@@ -152,6 +154,20 @@ def test_what_holds_at_the_start_stays() -> None:
     assert about["n_states"] == short["actor_state"].num_rows
     with pytest.raises(ValueError, match="no state"):
         cut_trace(trace, 10**15, 10**16)
+
+
+@pytest.mark.parametrize("to", ["mcap", "parquet"])
+def test_a_clip_names_the_log_that_it_was_cut_from(
+    folder: Path, tmp_path: Path, to: Literal["mcap", "parquet"]
+) -> None:
+    log = OVERTAKE / "collision.csv"
+    written = clip.write_clip(ConvertRequest(str(log), to, tmp_path), "no-collision@collision", folder, None)
+    rows = read_trace(written.path, IngestOptions()).tables["quality"].to_pylist()
+    (said,) = [row for row in rows if row["check_id"] == "clip"]
+    assert said["severity"] == "info"
+    digest = hashlib.sha256(log.read_bytes()).hexdigest()
+    assert re.fullmatch(rf"cut from collision\.csv, SHA-256 {digest}: [\d.]+ s to [\d.]+ s of it", said["message"])
+    assert "--profile relaxed --profile nominal --out results" in summary_text(written)  # as that check had them
 
 
 def test_the_same_clip_has_the_same_bytes(folder: Path, tmp_path: Path) -> None:

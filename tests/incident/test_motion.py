@@ -9,6 +9,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.incident.motion import Motion, second_by_second, slowing_known, slowings
+from drivelint.incident.parties import against_each_other
 
 STEP_S = 0.1
 
@@ -94,3 +95,34 @@ def test_unknown_is_no_number() -> None:
     assert math.isnan(motion.speed[0][50])
     assert math.isnan(motion.acceleration(0, 55, 1.0))
     assert not math.isnan(motion.acceleration(0, 65, 1.0))
+
+
+def test_speed_lost_in_an_impact_is_no_braking() -> None:
+    """A walker at 1.6 m/s stands from one step to the next: no mean of half a second tells how hard that was."""
+    v = np.where(np.arange(101) * STEP_S < 9.85, 1.6, 0.0)
+    motion = Motion.of_steps(steps(v, np.arange(101) * 0.16, 300.0), 10_000_000_000)
+    (lost,) = slowings(motion, 0, 0.0)
+    assert lost.sudden
+    assert (lost.start_s, lost.end_s) == pytest.approx((-0.2, -0.1))
+    last = second_by_second(motion, -0.1)[-1]
+    assert last["impact"] == [True, False]
+    assert last["hardest"][0] == 0.0  # what is left of that second: nobody braked
+
+
+def test_hardest_braking_of_a_second_that_its_mean_hides() -> None:
+    motion = braking(at_s=7.0, mps2=4.0, lasts_s=0.5)
+    (row,) = [row for row in second_by_second(motion, None) if row["t"] == -2.0]
+    assert row["hardest"][0] == pytest.approx(4.0)
+    assert row["accel"][0] == pytest.approx(-2.0)
+
+
+def test_relative_speed_of_ways_that_cross() -> None:
+    """Boxes side by side do not come nearer however fast they pass each other."""
+    table = steps(np.full(101, 5.0), np.full(101, 300.0), 300.0, -5.0)
+    motion = Motion.of_steps(table, 0)
+    assert motion.relative[0] == pytest.approx(10.0)
+    assert motion.closing[0] == pytest.approx(0.0, abs=1e-9)
+    assert "relative speed 10.0 m/s" in against_each_other(10.0, 3.8)
+    assert "near at 3.8 m/s" in against_each_other(10.0, 3.8)
+    assert "near" not in against_each_other(10.0, 9.9)
+    assert against_each_other(math.nan, 3.8) == "relative speed not known"

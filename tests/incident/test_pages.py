@@ -14,7 +14,7 @@ from tests.report.browser import CHROMIUM, Page
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.incident.sheet import Case
+    from drivelint.incident.case import Case
     from tests.incident.conftest import CaseOf
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")

@@ -129,7 +129,9 @@ def test_an_untouched_pack_is_said_to_be_so_in_one_line(
     assert ended.value.code == 0
     (line,) = capsys.readouterr().out.splitlines()
     assert "untouched since it was signed" in line
-    assert f"2 of {N_DRIVES} drives judged again: the same bytes; it states FAILED" in line
+    assert (
+        f"2 of {N_DRIVES} drives judged again: the same bytes; it states that the drives broke rules (FAILED)" in line
+    )
     found = script(packed.pack, packed.public, tmp_path)
     assert (found.returncode, found.stdout.strip()) == (0, "untouched since it was signed")
 
@@ -137,7 +139,7 @@ def test_an_untouched_pack_is_said_to_be_so_in_one_line(
 def test_without_the_logs_the_sql_is_run_and_the_note_says_so(packed: PackedAudit, without_logs: Path) -> None:
     found = verify(VerifyRequest(without_logs, packed.public))
     assert not found.problems
-    assert "not judged again; it states FAILED" in found.sentence
+    assert "not judged again; it states that the drives broke rules (FAILED)" in found.sentence
     assert found.notes[0].startswith("2 drives without a log: judged again only with --trace and --map; 2 findings")
     rest = "2 drives without a finding in the pack: not judged again; their rows have the hashes in the receipts"
     assert rest in found.notes

@@ -43,7 +43,7 @@ def test_what_is_the_packs_own_is_said(packed: Packed, tmp_path: Path) -> None:
         "not judged when it was checked, nor now: empty.csv",
         "baseline and waivers are as the pack says: they are not held against anything again",
     ]
-    assert "1 drive judged again: the same bytes; it states FAILED" in found.sentence
+    assert "1 drive judged again: the same bytes; it states that the drives broke rules (FAILED)" in found.sentence
     # a rule that is added to those of the pack is named, whoever signs
     shutil.copy(own / "touch.sql", pack / "data/rules/ukhc.sql")
     sign_anew(pack, packed.key)

@@ -209,6 +209,16 @@ def test_commands(
     assert run_cli(monkeypatch, "pack", packed.result, "--out", out, "--overwrite", "--date", "26.11.") == 2
 
 
+def test_incident_sheets_that_stay_out_are_named(
+    packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = {"findings": [], "left_out": ["annotated/d.mcap", "incidents/abc.html"]}
+    monkeypatch.setattr("drivelint.pack.write_pack", lambda _request: told)
+    assert run_cli(monkeypatch, "pack", packed.result, "--out", tmp_path / "pack") == 0
+    (_, line) = capsys.readouterr().out.splitlines()
+    assert line.endswith("not in it, so sign and keep them beside it: incidents/abc.html")
+
+
 def test_logs_that_were_moved_are_known_by_their_hash(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack", packed.key)
     moved = Path(shutil.copy(OVERTAKE / "collision.csv", tmp_path / "elsewhere.csv"))

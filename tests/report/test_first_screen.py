@@ -219,6 +219,15 @@ def test_what_lies_beside_the_page_is_linked_only_if_it_is_there(tmp_path: Path)
     assert "drivelint explain abc --in ." in plain(section((tmp_path / "report.html").read_text(), "worst"))
 
 
+def test_a_contact_names_the_command_of_its_sheet_and_both_its_times() -> None:
+    times = {"t_start_ns": 111 * SECOND, "t_worst_ns": 112 * SECOND, "t_end_ns": 113 * SECOND}
+    touch = finding(rule_id="ukhc.no-collision", profile=None, finding_id="abc", unit="m", **times)
+    run = result([verdict("fail")], [touch], rules=[rule(), CONTACT])
+    shown = plain(section(page(run), "worst"))
+    assert "drivelint report . --incident abc" in shown
+    assert "11.00 s (deepest at 12.00 s)" in shown
+
+
 def test_a_safe_distance_without_end_is_no_number(overtakes: Result) -> None:
     rows = overtakes.overtakes.to_pylist()
     far = {"sda_m": 265062.45, "spare_m": 30.0 - 265062.45}

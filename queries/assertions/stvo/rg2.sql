@@ -11,6 +11,7 @@
 -- unit = "m/s2"
 -- observes = "acceleration"
 -- near_margin = 0.2
+-- tags = ["excuses"]
 -- reads = ["clock", "ego_mode", "ego_motion", "ego_state", "in_way", "lead"]
 -- requires = ["map", "registration", "ego_size"]
 --

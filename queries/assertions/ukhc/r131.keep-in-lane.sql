@@ -10,6 +10,7 @@
 -- unit = "s"
 -- observes = "time astride a lane line"
 -- merge_gap_s = 2.0
+-- tags = ["excuses"]
 -- reads = ["ego_state", "line_step", "step"]
 -- requires = ["map", "registration", "markings", "ego_size"]
 --

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 5.0
+-- tags = ["excuses"]
 -- reads = ["data_log", "ego_aside", "ego_condition", "ego_motion", "ego_state", "excursion", "hidden", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --

@@ -8,6 +8,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
+-- tags = ["excuses"]
 -- reads = ["crossing_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --

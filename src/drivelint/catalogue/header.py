@@ -65,6 +65,8 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+EXCUSES: Final = "excuses"
+"""Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
 OTHERS: Final = "road_users"
 """The signal that every rule needs that looks at others than the ego: whoever was around the ego was recorded."""
 

@@ -120,6 +120,8 @@ def _write(request: PackRequest, *, err: bool = False) -> None:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
             typer.echo(inert_line(why), err=err)
+    if sheets := [name for name in told["left_out"] if name.startswith("incidents/")]:
+        typer.echo(inert_line(f"  not in it, so sign and keep them beside it: {', '.join(sheets)}"), err=err)
 
 
 def verify(

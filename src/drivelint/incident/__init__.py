@@ -14,9 +14,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
+from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.explain.source import open_drive
 from drivelint.incident import pdf, sheet
+from drivelint.incident.case import Case
 from drivelint.incident.finding import named_finding
 from drivelint.incident.judge import Judge, Judged
 from drivelint.report import html as report_page
@@ -66,13 +68,13 @@ def write_incident(request: IncidentRequest) -> list[Path]:
     return [request.folder / FOLDER / name for name in contents]
 
 
-def render(case: sheet.Case) -> bytes:
+def render(case: Case) -> bytes:
     """Return the sheet as one HTML page that opens offline; the same case gives the same bytes."""
     text = _environment().get_template("sheet.html.j2").render(sheet.content(case))
     return text.encode("utf-8", "replace")
 
 
-def open_case(request: IncidentRequest) -> sheet.Case:
+def open_case(request: IncidentRequest) -> Case:
     """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
 
     Errors: `UsageError` for a finding, log or map that is not there.
@@ -92,7 +94,7 @@ def open_case(request: IncidentRequest) -> sheet.Case:
         map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
-    return sheet.Case(result, asked, finding, drive, again, _other_party(request, result, finding, judge), source)
+    return Case(result, asked, finding, drive, again, _other_party(request, result, finding, judge), source)
 
 
 def _other_party(request: IncidentRequest, result: Result, finding: NamedFinding, judge: Judge) -> Judged | str | None:
@@ -113,7 +115,8 @@ def _other_party(request: IncidentRequest, result: Result, finding: NamedFinding
     kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
     if kinds.get(other) in _NO_VEHICLES:
         return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."
-    return judge.judge(drive, other, finding.row["ego_id"])
+    examined = any(row["n_copies"] is not None for row in result.findings.to_pylist())
+    return judge.judge(drive, other, finding.row["ego_id"], MeasurementErrors() if examined else None)
 
 
 def _log(request: IncidentRequest, asked: RunRequest, finding: NamedFinding) -> Path | None:

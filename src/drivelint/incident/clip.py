@@ -14,6 +14,7 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.files import identify
+from drivelint.incident.command import of_rules
 from drivelint.incident.finding import named_finding
 from drivelint.incident.judge import Judge, same_finding
 from drivelint.result import request as run_request
@@ -39,7 +40,8 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     Errors: `UsageError` for a finding that is not there, for another log, or if not even the whole log gives the finding again;
     else as `convert`.
     """
-    finding = named_finding(load_result(folder), name)
+    result = load_result(folder)
+    finding = named_finding(result, name)
     asked = run_request.load(folder)
     request = _as_asked(request, asked, finding)
     judge = Judge.of_run(asked, [finding.row["rule_id"]], memory)
@@ -49,7 +51,9 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
             same = _gives(tried.path, asked, finding, judge)
         if same:
             written = convert(replace(request, clip=clip))
-            return replace(written, notes=(*written.notes, _told(finding, clip, before_s, after_s)))
+            notes = (*written.notes, _told(finding, clip, before_s, after_s))
+            options = of_rules(asked, result.rules["rule_id"].to_pylist())
+            return replace(written, notes=notes, check_options=tuple(options))
     raise UsageError(
         f"finding {finding.row['finding_id']}: not even the whole log, judged again, gives it: the tool, the rule or an option "
         "has changed: check the drive again"
@@ -110,5 +114,5 @@ def _told(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: fl
             span += f", as {SPANS_S[0][0]} s and {SPANS_S[0][1]} s do not give it"
     return (
         f"the clip is {from_s:.2f} s to {to_s:.2f} s of the drive ({span}); judged alone it gives the same finding of "
-        f"{row['rule_id']}"
+        f"{row['rule_id']}; its other findings, and all ids, may differ: drivelint docs convert says why"
     )

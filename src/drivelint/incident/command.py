@@ -27,15 +27,21 @@ def commands(asked: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) 
     words += _options(asked)
     if row["ego_id"]:
         words += ["--ego", row["ego_id"] if len(drive["exposure"]) == 1 else "all"]
-    words += _rules(asked, rule_ids)
+    words += of_rules(asked, rule_ids)
+    name = row["finding_id"]
+    return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
+
+
+def of_rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:
+    """Return the options of a run that say by which rules, profiles and parameters it judged. Folders are named without their folders."""
+    words = _rules(asked, rule_ids)
     for profile in asked.profiles if tuple(asked.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
     for setting in asked.params:
         words += ["--param", setting]
     for folder in asked.rules_dirs:
         words += ["--rules-dir", folder.name]
-    name = row["finding_id"]
-    return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
+    return words
 
 
 def _rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:

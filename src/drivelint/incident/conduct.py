@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.catalogue.header import CONTACT
-from drivelint.incident.words import how_sure, measured, profile
-from drivelint.phrases import listed
+from drivelint.catalogue.header import CONTACT, EXCUSES
+from drivelint.incident.breaches import broken_line, kept_line, quoted, without_advice
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
 from drivelint.result.counts import SEVERITIES, grouped
-from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -18,13 +15,13 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _UNDECIDED: Final = frozenset({"unknown", "error"})
-_ROOM: Final = {"broken": 820, "kept": 240, "near": 80, "reasons": 330}
+_ROOM: Final = {"broken": 820, "kept": 300, "excused": 80, "reasons": 350}
 """Characters that each part has on the page at least; the number of what is left out is told."""
-_WASTE: Final = 12
-"""Characters that the end of a text's last line leaves empty."""
-_ALL_ROOM: Final = 1680
-"""Characters of all parts: what one does not use, the others may."""
-_SECOND_ROOM: Final = 45
+_WASTE: Final = {"broken": 30}
+"""Characters that the end of a text's last line leaves empty, where each text begins a line."""
+_ALL_ROOM: Final = 3300
+"""Characters of all parts of both parties: what one does not use, the others may."""
+_SECOND_ROOM: Final = 110
 """Characters that fit where the table second by second has a row less than its most."""
 
 
@@ -35,14 +32,14 @@ def conduct(
     span: tuple[int, int],
     start_ns: int,
     *,
-    seconds_left: int = 0,
+    touched: bool = False,
 ) -> dict[str, Any]:
     """Return what the verdicts and findings of one ego say about a span of the drive.
 
     A rule counts once, by its worst verdict there: broken, not decided (or in error), kept, or never asked; `elsewhere`: broken, but
-    only outside the span. `near`: of the rules that are kept,
-    those with a near miss. A verdict without a time is about the whole drive. `seconds_left`: rows that the table second by second
-    does not fill. `only_hit`: nothing but a contact was found.
+    only outside the span. `beside`: what rules of contacts measured that found none where another did: none of them counts as kept
+    (`touched`: the sheet is about a contact). A verdict without a time is about the
+    whole drive. `excused`: not broken by a rule that may excuse what its title forbids. `only_hit`: nothing but a contact was found.
     """
     told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
     by_rule = grouped(told["v"], lambda row: row["rule_id"])
@@ -59,25 +56,29 @@ def conduct(
         for rule, rows in rest.items()
         if rule not in undecided and rule not in elsewhere and any(row["verdict"] == "pass" for row in rows)
     ]
+    touched |= any(CONTACT in rules[rule]["tags"] for rule in broken)
+    beside = [rule for rule in kept if touched and CONTACT in rules[rule]["tags"]]
+    kept = [rule for rule in kept if rule not in beside]
+    passed = {rule: [row for row in rest[rule] if row["verdict"] == "pass"] for rule in (*kept, *beside)}
+    lines = {rule: kept_line(rules[rule], rows, span, start_ns) for rule, rows in passed.items()}
     parts = {
-        "broken": [_line(rules[rule], found.get(rule) or by_rule[rule], start_ns) for rule in broken],
-        "kept": [_quoted(rules[rule]) for rule in kept],
-        "near": [_quoted(rules[rule]) for rule in kept if any(row["near_miss"] for row in rest[rule])],
+        "broken": [
+            broken_line(
+                rules[rule], found.get(rule) or [row for row in by_rule[rule] if row["verdict"] == "fail"], start_ns
+            )
+            for rule in broken
+        ],
+        "kept": [lines[rule] for rule in kept if EXCUSES not in rules[rule]["tags"]],
+        "excused": [lines[rule] for rule in kept if EXCUSES in rules[rule]["tags"]],
         "reasons": _reasons(undecided, rules),
     }
-    spare = (
-        _ALL_ROOM + _SECOND_ROOM * seconds_left - sum(min(_length(parts[name]), room) for name, room in _ROOM.items())
-    )
-    told_parts = {}
-    for name, room in _ROOM.items():
-        told_parts[name] = _fitting(parts[name], min(room, _length(parts[name])) + max(spare, 0))
-        spare -= max(_length(told_parts[name].shown) - room, 0)
     return {
         "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
-        **told_parts,
+        **parts,
         "only_hit": bool(broken) and all(CONTACT in rules[rule]["tags"] for rule in broken),
+        "beside": [lines[rule] for rule in beside],
         "elsewhere": len(elsewhere - undecided.keys()),
-        "never": len(rules) - len(broken) - len(undecided) - len(kept) - len(elsewhere - undecided.keys()),
+        "never": len(rules) - len(broken) - len(undecided) - len(passed) - len(elsewhere - undecided.keys()),
     }
 
 
@@ -88,29 +89,33 @@ class Fitting(NamedTuple):
     more: int
 
 
-def _length(texts: Sequence[str]) -> int:
-    """Return the room that texts take, in characters."""
-    return sum(len(text) + _WASTE for text in texts)
+def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
+    """Cut the lists of what both parties did to what fits into two columns that share their room.
+
+    `seconds_left`: rows that the table second by second does not fill; `taken`: characters of other lines.
+    """
+    parts = [(told, name, room) for name, room in _ROOM.items() for told in parties if name in told]
+    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken
+    spare -= sum(min(_length(told[name], name), room) for told, name, room in parts)
+    for told, name, room in parts:
+        need = min(room, _length(told[name], name))
+        told[name] = _fitting(told[name], name, need + max(spare, 0))
+        spare -= max(_length(told[name].shown, name) - need, 0)
 
 
-def _fitting(texts: Sequence[str], room: int) -> Fitting:
+def _length(texts: Sequence[str], part: str) -> int:
+    """Return the room that texts of a part take, in characters."""
+    return sum(len(text) + _WASTE.get(part, 2) for text in texts)
+
+
+def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
     """Return as many of the texts as fit, at least one."""
     shown = list(texts[:1])
     for text in texts[1:]:
-        if _length([*shown, text]) > room:
+        if _length([*shown, text], part) > room:
             break
         shown.append(text)
     return Fitting(shown, len(texts) - len(shown))
-
-
-def _quoted(rule: Row) -> str:
-    """Return what a rule asks, in quotes: it is true where the rule is kept."""
-    return f"\u201c{rule['title']}\u201d"
-
-
-def short_clause(clause: str) -> str:
-    """Return the number of a clause without what it says."""
-    return clause.partition(":")[0].partition(" (")[0]
 
 
 def _within(row: Row, span: tuple[int, int]) -> bool:
@@ -118,22 +123,13 @@ def _within(row: Row, span: tuple[int, int]) -> bool:
     return start is None or end is None or (start <= span[1] and end >= span[0])
 
 
-def _line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
-    """Return the worst finding of a rule in words, and how many there are."""
-    row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
-    times = f" ({len(rows)} findings)" if len(rows) > 1 else ""
-    about = f"{short_clause(rule['clause'])}, {rule['severity']}"
-    what = measured(row, rule) or shorten(row["reason"], 120, placeholder=" ...")
-    sure = f"; {how_sure(row)}" if row.get("n_copies") is not None else ""
-    return f"{_quoted(rule)}{profile(row['profile'])} ({about}): {seconds(row['t_worst_ns'], start_ns)}, {what}{times}{sure}"
-
-
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[str]:
     """Return why rules are not decided, in words, the reason of most rules first."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     told = []
     for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
-        titles = [_quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows})]
-        why = shorten(summarise_reasons(verdict_reason(row) for row in rows), 100, placeholder=" ...")
-        told.append((-len(titles), why, f"{listed(titles, 3)}: {why}"))
+        titles = [quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows})]
+        given = (verdict_reason(row) for row in rows)
+        why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
+        told.append((-len(titles), why, f"{', '.join(titles)}: {why}"))
     return [text for *_, text in sorted(told)]

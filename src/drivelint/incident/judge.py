@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
+    from drivelint.engine.copies import MeasurementErrors
     from drivelint.result.request import RunRequest
     from drivelint.result.text import Row
 
@@ -55,8 +56,10 @@ class Judge:
         profiles = profile_table(load_profiles(asked.rules_dirs), asked.profiles)
         return cls(rules, catalogue.parse_params(rules, mine), profiles, memory)
 
-    def judge(self, drive: Drive, ego_id: str, object_id: str | None) -> Judged:
-        """Judge a drive of one ego."""
+    def judge(
+        self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
+    ) -> Judged:
+        """Judge a drive of one ego. `errors`: those of the copies that tell how sure findings are; None: nobody tells."""
         steps: list[pa.Table] = []
 
         def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
@@ -66,7 +69,7 @@ class Judge:
         with store.workspace(self.memory) as con:
             store.insert(con, "profile", self.profiles)
             memory = Memory(con, self.memory)
-            session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory)
+            session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory, errors=errors)
             session.judge([drive])
             session.close()
             verdicts, findings = (memory.run_job(job).to_pylist() for job in (collect.verdicts, collect.findings))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -22,6 +23,8 @@ MOST_ROWS: Final = BEFORE_S + AFTER_S + 2
 """Rows of the table at most: its seconds, the moment, and the last step before a contact."""
 SLOWING_MPS2: Final = 1.0
 """Who slows by less, as a mean of half a second, may coast."""
+_TYRES_MPS2, _LEAST_LOSS_MPS = 12.0, 1.0
+"""Who loses this much speed, this fast, from one step to the next does not brake: no tyre can."""
 _MEAN_S: Final = 0.5
 _MERGE_S: Final = 0.5
 """Two stretches of slowing with a shorter break between them are one."""
@@ -32,8 +35,9 @@ class Motion:
     """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
 
     `t`: seconds from the moment; `gap`: box to box in m, negative: depth of overlap; `closing`: speed at which the line
-    between the box centres shortens; `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as
-    the ego drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
+    between the box centres shortens; `relative`: speed of the one as seen from the other; `turn`: angle between the headings;
+    `lane_offset`: left of the middle of the ego's lane, as the ego drives; `out_since`: when the ego left its lane, in seconds from
+    the moment; NaN: it is in it, or nobody looked.
     """
 
     t: Floats
@@ -41,13 +45,18 @@ class Motion:
     lane_offset: tuple[Floats, Floats]
     gap: Floats
     closing: Floats
+    relative: Floats
     turn: Floats
     out_since: Floats
 
     @classmethod
     def of_steps(cls, steps: pa.Table, moment_ns: int) -> Motion:
         """Return the motion in rows of `queries/incident/step.sql`."""
-        c = {name: floats(steps[name]) for name in steps.column_names if name not in {"t_ns", "out_since_ns"}}
+        c = {
+            name: floats(steps[name])
+            for name in steps.column_names
+            if name not in {"t_ns", "out_since_ns", "with_direction"}
+        }
         east, north = c["object_x_m"] - c["x_m"], c["object_y_m"] - c["y_m"]
         de, dn = c["object_vx_mps"] - c["vx_mps"], c["object_vy_mps"] - c["vy_mps"]
         far = np.hypot(east, north)
@@ -60,6 +69,7 @@ class Motion:
             lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
             gap=np.where(np.isnan(exact), _apart(c), exact),
             closing=closing,
+            relative=np.hypot(de, dn),
             turn=np.abs(c["heading_diff_rad"]),
             out_since=(floats(steps["out_since_ns"]) - moment_ns) / 1e9,
         )
@@ -88,6 +98,23 @@ class Motion:
             return float("nan")
         return float((v[i] - np.interp(start, t, v)) / over_s)
 
+    def hardest_braking(self, party: int, i: int) -> float:
+        """Return the hardest deceleration, as a mean of half a second, that ends in the second before a step; 0: none; NaN: not known."""
+        ends = np.flatnonzero((self.t > self.t[i] - 1.0 + 1e-9) & (self.t <= self.t[i] + 1e-9)).tolist()
+        means = [self.acceleration(party, end, _MEAN_S) for end in ends if not self.is_sudden(party, end, _MEAN_S)]
+        return float(np.maximum(0.0, -np.min(means))) if means else math.nan
+
+    def sudden(self, party: int) -> Mask:
+        """Return at which steps a party has lost speed, since the step before, faster than tyres can brake."""
+        lost = -np.diff(self.speed[party], prepend=self.speed[party][:1])
+        found: Mask = (lost >= _LEAST_LOSS_MPS) & (lost >= _TYRES_MPS2 * np.diff(self.t, prepend=-np.inf))
+        return found
+
+    def is_sudden(self, party: int, i: int, over_s: float) -> bool:
+        """Whether a party lost speed so in the time before a step."""
+        within = (self.t > self.t[i] - over_s + 1e-9) & (self.t <= self.t[i])
+        return bool(self.sudden(party)[within].any())
+
 
 def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
     """Whether every half second of the 15 s before `until_s`, as far as recorded, tells if a party slowed."""
@@ -98,13 +125,17 @@ def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
 
 
 class Slowing(NamedTuple):
-    """A stretch in which a party slows: its times, the speeds at both, and the hardest deceleration (mean of half a second)."""
+    """A stretch in which a party slows: its times, the speeds at both, and the hardest deceleration (mean of half a second).
+
+    `sudden`: faster than tyres can brake, as in an impact.
+    """
 
     start_s: float
     end_s: float
     from_mps: float
     to_mps: float
     hardest_mps2: float
+    sudden: bool = False
 
     @property
     def mean_mps2(self) -> float:
@@ -117,14 +148,19 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
     t, v = motion.t, motion.speed[party]
     steps = np.flatnonzero((t >= until_s - BEFORE_S) & (t <= until_s + 1e-9))
     mean = {int(i): motion.acceleration(party, int(i), _MEAN_S) for i in steps}
-    hard = [i for i in steps.tolist() if mean[i] <= -SLOWING_MPS2]
+    sudden = motion.sudden(party)
+    hard = [i for i in steps.tolist() if mean[i] <= -SLOWING_MPS2 and not motion.is_sudden(party, i, _MEAN_S)]
+    found = [
+        Slowing(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
+        for i in steps.tolist()
+        if sudden[i]
+    ]
     runs: list[list[int]] = []
     for i in hard:
         if runs and t[i] - t[runs[-1][-1]] <= _MERGE_S + motion.step_s:
             runs[-1].append(i)
         else:
             runs.append([i])
-    found = []
     for run in runs:
         # the mean of the half second before says that it has begun by then: where the speed was highest
         within = np.flatnonzero((t >= t[run[0]] - _MEAN_S - 1e-9) & (t <= t[run[0]]))
@@ -132,12 +168,12 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
         found.append(
             Slowing(float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run))
         )
-    return found
+    return sorted(found)
 
 
 def second_by_second(motion: Motion, before_s: float | None) -> list[dict[str, Any]]:
     """Return a row per full second from 15 s before to 2 s after the moment, and that of the last step before a contact."""
-    return [_row(motion, i, t, t == before_s) for i, t in _wanted(motion, before_s)]
+    return [_row(motion, i, t, before_s) for i, t in _wanted(motion, before_s)]
 
 
 def _wanted(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float]]:
@@ -147,14 +183,16 @@ def _wanted(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float
             yield i, t
 
 
-def _row(motion: Motion, i: int, t: float, last_before: bool) -> dict[str, Any]:
+def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[str, Any]:
     return {
         "i": i,
         "t": t,
-        "last_before": last_before,
+        "last_before": t == last_before_s,
         "moment": t == 0,
         "speed": [float(v[i]) for v in motion.speed],
         "accel": [motion.acceleration(party, i, 1.0) for party in (0, 1)],
+        "hardest": [motion.hardest_braking(party, i) for party in (0, 1)],
+        "impact": [motion.is_sudden(party, i, 1.0) for party in (0, 1)],
         "offset": [float(v[i]) for v in motion.lane_offset],
         "gap": float(motion.gap[i]),
         "closing": float(motion.closing[i]),

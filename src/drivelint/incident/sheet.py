@@ -5,60 +5,45 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from dataclasses import dataclass
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from drivelint.catalogue.header import CONTACT
+from drivelint.convert import CLIP
+from drivelint.engine.copies import MeasurementErrors
+from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
-from drivelint.incident.conduct import conduct
+from drivelint.incident.conduct import conduct, fit
 from drivelint.incident.judge import same_finding
-from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowing_known, slowings
+from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
+from drivelint.incident.parties import against_each_other, others_drawn, overtaking, party
 from drivelint.incident.record import held_elements
-from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
-from drivelint.incident.words import closing, contact, how_sure, measured, minus, profile, speed, story
+from drivelint.incident.words import amount, closing, contact, how_sure, measured, minus, profile, story, told_unit
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
-from drivelint.result.certainty import POSSIBLE, SURE, certainty
-from drivelint.result.text import number, seconds, utc_at
+from drivelint.result.certainty import LEAST_SHARE, POSSIBLE, SURE, certainty
+from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     import pyarrow as pa
 
-    from drivelint.engine.batch import Drive
+    from drivelint.incident.case import Case
     from drivelint.incident.finding import NamedFinding
-    from drivelint.incident.judge import Judged
-    from drivelint.incident.motion import Slowing
     from drivelint.result.model import Result
-    from drivelint.result.request import RunRequest
     from drivelint.result.text import Row
 
 SPAN_S: Final = (15, 7)
 """What each party did is told from so long before the moment to so long after it."""
-LETTERS: Final = ("A", "B")
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
-
-
-@dataclass(frozen=True)
-class Case:
-    """Everything behind a sheet. `others`: what was judged of the second party, or in a sentence why it was not; None: there is none."""
-
-    result: Result
-    asked: RunRequest
-    finding: NamedFinding
-    drive: Drive
-    again: Judged
-    others: Judged | str | None
-    source: str
+_QUALITY_ROOM: Final = 370
+"""Characters of the columns that warnings on the log take."""
 
 
 def content(case: Case) -> dict[str, Any]:
@@ -72,13 +57,15 @@ def content(case: Case) -> dict[str, Any]:
     slowed = [slowings(motion, no, until_s) for no in range(len(finding.parties))]
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
     rows = second_by_second(motion, before_s)
+    span = _span(finding)
     return {
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
         "what": _what(finding),
-        "story": story(motion, at, slowed, closing_mps=row["closing_mps"], offset_s=offset_s),
+        "story": story(motion, at, slowed, did=overtaking(case, at), closing_mps=row["closing_mps"], offset_s=offset_s),
         "clip_of": _clip_of(finding.drive["file_name"]),
+        "cut_from": [check["message"] for check in finding.drive["quality"] if check["check_id"] == CLIP],
         "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
         "profile": profile(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
@@ -89,9 +76,11 @@ def content(case: Case) -> dict[str, Any]:
         "utc": utc_at(finding.moment_ns, finding.drive),
         "road_id": _road_of(case),
         "contact": finding.is_contact,
+        "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
-        "parties": [_party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
+        "parties": [party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
         "closing": closing(row["closing_mps"]),
+        "against": None if at is None else against_each_other(float(motion.relative[at]), row["closing_mps"]),
         "gap": None if at is None else _metres(float(motion.gap[at])),
         "least": _least_gap(motion, finding),
         "contacts": _told_contacts(case),
@@ -100,11 +89,18 @@ def content(case: Case) -> dict[str, Any]:
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
-        "conduct": _conduct(case, MOST_ROWS - len(rows)),
-        "span": SPAN_S,
+        "conduct": _conduct(case, span, MOST_ROWS - len(rows)),
+        "span": {
+            "of": span,
+            "before": figure((finding.moment_ns - span[0]) / 1e9, 1),
+            "after": figure((span[1] - finding.moment_ns) / 1e9, 1),
+        },
+        "recording": _recording(finding),
+        "errors": MeasurementErrors().words,
+        "least_share": f"{LEAST_SHARE:.0%}",
         "sure": _surest(case),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
-        "quality": [check["message"] for check in finding.drive["quality"] if check["severity"] != "info"],
+        "quality": _warnings(case),
         "again": same_finding(case.again.findings, row),
         "source": case.source,
         "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
@@ -128,7 +124,7 @@ def _what(finding: NamedFinding) -> str:
         return f"{overlap[:1].upper()}{overlap[1:]}."
     said = measured(row, rule)
     if said and row["margin"] is not None:
-        said = f"{rule['observes'] or 'measured'}: {said}; missed by {number(-row['margin'], row['unit'])}"
+        said = f"{rule['observes'] or 'measured'}: {said}; missed by {amount(-row['margin'], row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
         said += " (from one step to the next)"
     reason = "" if row["reason_measures"] and said else row["reason"]
@@ -152,69 +148,6 @@ def _signed(s: float) -> str:
 
 def _metres(value: float) -> str:
     return "not known" if math.isnan(value) else f"{value:.2f} m"
-
-
-def _party(
-    case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
-) -> dict[str, Any]:
-    """Return one party: who it is, how fast it was, and whether it slowed."""
-    actor_id = case.finding.parties[number]
-    tables = case.drive.trace.tables
-    about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
-    v = motion.speed[number]
-    window = v[(motion.t >= -BEFORE_S - 1e-9) & (motion.t <= (0.0 if before_s is None else before_s) + 1e-9)]
-    fastest = window[~np.isnan(window)].max(initial=-math.inf)
-    gaps = " (not known throughout)" if np.isnan(window).any() else ""
-    size = [about.get(name) for name in ("length_m", "width_m", "height_m")]
-    return {
-        "letter": LETTERS[number],
-        "id": actor_id,
-        "ego": number == 0,
-        "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
-        "size_source": size_source(case.asked, ego=number == 0),
-        "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
-        "speed": "not known" if at is None else speed(float(v[at])),
-        "fastest": "not known" if math.isinf(fastest) else f"{speed(float(fastest))}{gaps}",
-        "slowed": _slowed(slowed, before_s),
-        "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),
-        "lights": _brake_lights(case, actor_id),
-    }
-
-
-def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
-    """Return the last stretches of slowing in words, and how many there were before them."""
-    told = [f"{len(found) - 2} earlier"] if len(found) > 2 else []
-    for each in found[-2:]:
-        until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
-        hardest = "" if math.isnan(each.hardest_mps2) else f"hardest half second {each.hardest_mps2:.1f}, "
-        told.append(
-            f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, "
-            f"{hardest}mean {each.mean_mps2:.1f} m/s\u00b2".replace("-", "\u2212")
-        )
-    return told
-
-
-def _brake_lights(case: Case, actor_id: str) -> str:
-    """Return when the brake lights were on in the 15 s before the moment, in words."""
-    moment = case.finding.moment_ns
-    states = [
-        (t_ns, light)
-        for who, t_ns, light in zip(
-            *(case.drive.trace.tables["actor_state"][name].to_pylist() for name in ("actor_id", "t_ns", "brake_light")),
-            strict=True,
-        )
-        if who == actor_id and moment - BEFORE_S * 10**9 <= t_ns <= moment
-    ]
-    known = [(t_ns, light) for t_ns, light in states if light is not None]
-    if not known:
-        return "not recorded"
-    on = [t_ns for t_ns, light in known if light != "off"]
-    partly = "" if len(known) == len(states) else " (not known at every step)"
-    if not on:
-        return f"off throughout{partly}"
-    return f"on from {(on[0] - moment) / 1e9:+.2f} s, at {len(on)} of {len(states)} steps{partly}".replace(
-        "-", "\u2212"
-    )
 
 
 def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
@@ -258,28 +191,48 @@ def _told_contacts(case: Case) -> list[str]:
     return told[:2]
 
 
-def _conduct(case: Case, seconds_left: int) -> list[dict[str, Any]]:
+def _warnings(case: Case) -> list[str]:
+    return [check["message"] for check in case.finding.drive["quality"] if check["severity"] != "info"]
+
+
+def _recording(finding: NamedFinding) -> dict[str, str]:
+    """Return when the recording begins and ends, in seconds from the moment and of the drive."""
+    end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
+    from_s, to_s = ((t_ns - finding.moment_ns) / 1e9 for t_ns in (finding.start_ns, end_ns))
+    return {"length": seconds(end_ns, finding.start_ns), "from": _signed(from_s), "to": _signed(to_s)}
+
+
+def _span(finding: NamedFinding) -> tuple[int, int]:
+    """Return from when to when is told what each party did: no further than the recording goes."""
+    end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
+    first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), SPAN_S, strict=True))
+    return max(first, finding.start_ns), min(last, end_ns)
+
+
+def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> list[dict[str, Any]]:
     """Return what each party did, by the verdicts on it as ego."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
-    span = (finding.moment_ns - SPAN_S[0] * 10**9, finding.moment_ns + SPAN_S[1] * 10**9)
-    # a finding that was judged anew has no copies
+    # the first party's findings were judged anew without copies
     copies = {
         row["finding_id"]: {name: row[name] for name in ("n_copies", "n_stays")}
         for row in case.result.findings.to_pylist()
     }
-    found = []
+    found: list[dict[str, Any]] = []
     for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.others), strict=False):
-        told = {
+        told: dict[str, Any] = {
             "letter": letter,
             "id": who,
             "ego": letter == LETTERS[0],
+            "in_report": who in {ego["ego_id"] for ego in finding.drive["exposure"]},
             "not_judged": judged if isinstance(judged, str) else "",
         }
         if judged is not None and not isinstance(judged, str):
             findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
-            told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, seconds_left=seconds_left)
+            told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, touched=finding.is_contact)
         found.append(told)
+    beside = sum(len(line) for told in found for line in told.get("beside", ()))
+    fit(found, seconds_left, beside + _QUALITY_ROOM * bool(_warnings(case)))
     return found
 
 
@@ -305,12 +258,13 @@ def _plan(case: Case) -> dict[str, Any]:
     at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
     scene, *_ = [*_at(case.result.scenes, at), None]
     if scene is None:
-        return {"plan": None, "tiles": [], "shapes": []}
+        return {"plan": None, "tiles": [], "shapes": [], "drawn": []}
     road = Road(case.result.lanes)
     spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
     plan = plan_view(scene, road, set(finding.parties[1:]), spaces)
     tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
-    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([scene])}
+    drawn = others_drawn(plan, scene)
+    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([scene]), "drawn": drawn}
 
 
 def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
@@ -331,11 +285,11 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
         rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
         if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
             continue
-        title = f"\u201c{rule['title']}\u201d{profile(row['profile'])}"
+        title = f"\u201c{rule['title']}\u201d"
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
-            gaps.append({**row, "title": title})
+            gaps.append({**row, "title": title, "planned": profile(row["profile"])})
         elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):
-            own = {**row, "title": f"{rule['observes'] or title}, {unit}"}
+            own = {**row, "title": f"{rule['observes'] or title}, {told_unit(unit)}"}
     return gaps, own if own and any(value is not None for value in own["observed"]) else None
 
 

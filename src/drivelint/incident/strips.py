@@ -29,6 +29,9 @@ class _Line(NamedTuple):
     name: str
     t: list[float]
     values: list[float]
+    title: str = ""
+    """What several lines have in common, for one legend; '': nothing."""
+    label: str = ""
 
 
 def strips(
@@ -50,7 +53,11 @@ def strips(
     if len(parties) > 1:
         lines = [_Line("gap", "gap", t, [float(motion.gap[i]) for i in shown])]
         lines += [
-            _course_line(row, "required", f"required: {row['title']}", moment_ns, t) for row in gaps[:_MOST_REQUIRED]
+            _course_line(row, "required", f"required: {row['title']}{row['planned']}", moment_ns, t)._replace(
+                title=f"required: {row['title']}",
+                label="as driven" if row["profile"] == "observed" else row["profile"] or "",
+            )
+            for row in gaps[:_MOST_REQUIRED]
         ]
         charts.append(_chart("Gap from box to box, m", lines, x, from_zero=True))
     if own is not None:
@@ -71,10 +78,20 @@ def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = Fal
     known = [v for line in lines for v in line.values if math.isfinite(v)]
     known += [0.0] if from_zero and known else []
     y = axis_around(known or [0.0], _BOTTOM, _TOP)
+    shown = [line for line in lines if any(math.isfinite(v) for v in line.values)]
     drawn = [
-        {"kind": line.kind, "name": line.name, "d": _path(line, x, y), "dots": _dots(line, x, y)}
-        for line in lines
-        if any(math.isfinite(v) for v in line.values)
+        {
+            "kind": line.kind,
+            "name": line.name,
+            "legend": ""
+            if line.title and line.title in {other.title for other in shown[:i]}
+            else line.title or line.name,
+            "d": _path(line, x, y),
+            "dots": _dots(line, x, y),
+            "label": line.label,
+            "labels": _labels(line, x, y, i),
+        }
+        for i, line in enumerate(shown)
     ]
     return {
         "title": title,
@@ -90,6 +107,13 @@ def _dots(line: _Line, x: Axis, y: Axis) -> list[tuple[str, str]]:
     """Return the points of what was measured at so few steps that a line would not show."""
     points = [(num(x.at(at)), num(y.at(v))) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)]
     return points if len(points) < _HOLE_STEPS else []
+
+
+def _labels(line: _Line, x: Axis, y: Axis, i: int) -> list[tuple[str, str, bool]]:
+    """Return where the name of a line stands, beside its last point: on the left of every other line, as they may be close."""
+    points = [(at, v) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)][-1:] if line.label else []
+    left = bool(i % 2)
+    return [(num(x.at(at) + (-6 if left else 6)), num(y.at(v)), left) for at, v in points]
 
 
 def _path(line: _Line, x: Axis, y: Axis) -> str:

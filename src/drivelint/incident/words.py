@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from drivelint.incident.motion import Motion, Slowing
     from drivelint.result.text import Row
 
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
-_SENSE: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
+SENSE: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
 _KMH, _MPH = 3.6, 1 / 0.44704
 _HEAD_ON_RAD, _ALONG_RAD = 5 * math.pi / 6, math.pi / 6
 
@@ -36,6 +35,23 @@ def closing(mps: float | None) -> str | None:
     return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
 
 
+def told_unit(unit: str | None) -> str:
+    """Return a unit as typeset."""
+    return (unit or "").replace("m/s2", "m/s\u00b2")
+
+
+def amount(value: float | None, unit: str | None) -> str:
+    """Return a measured value with its unit as typeset."""
+    return number(value, told_unit(unit) or None)
+
+
+def nearly_same(relative_mps: float, closing_mps: float | None) -> bool:
+    """Whether the box centres near at the relative speed, or it is not known."""
+    if math.isnan(relative_mps):
+        return True
+    return closing_mps is not None and math.isclose(closing_mps, relative_mps, rel_tol=0.05, abs_tol=0.2)
+
+
 def minus(text: str) -> str:
     """Return a text with the sign of negative numbers as typeset."""
     return text.replace(" -", " \u2212") if not text.startswith("-") else "\u2212" + minus(text[1:])
@@ -46,9 +62,9 @@ def measured(row: Row, rule: Row) -> str:
     if row["observed"] is None and row["required"] is None:
         return ""
     if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
-        return f"boxes overlap by {number(-row['observed'], 'm')} and must not"
-    must = _SENSE.get(rule["sense"], "")
-    return minus(f"{number(row['observed'], row['unit'])}, must be {must}{number(row['required'], row['unit'])}")
+        return f"boxes overlap by {amount(-row['observed'], 'm')} and must not"
+    must = SENSE.get(rule["sense"], "")
+    return minus(f"{amount(row['observed'], row['unit'])}, must be {must}{amount(row['required'], row['unit'])}")
 
 
 def profile(name: str | None) -> str:
@@ -68,22 +84,29 @@ def contact(row: Row, rule: Row) -> str:
     """Return what the recording and its copies say of boxes that overlap; '' for another finding."""
     if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
-    said = f"the boxes overlap by {number(-row['observed'], 'm')} in the recording"
+    said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"
     if row["n_copies"] is not None and row["n_stays"] < row["n_copies"]:
         said += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with its errors they do not"
     return said
 
 
 def story(
-    motion: Motion, at: int | None, slowed: Sequence[list[Slowing]], *, closing_mps: float | None, offset_s: float
+    motion: Motion,
+    at: int | None,
+    slowed: Sequence[list[Slowing]],
+    *,
+    did: str,
+    closing_mps: float | None,
+    offset_s: float,
 ) -> str:
     """Return in one sentence what is known to have happened up to the step `at`; '' for one party, or where that step is not known.
 
-    `slowed`: of each party, see `slowings`; `closing_mps`: of the finding; `offset_s`: the moment in seconds of the drive.
+    `slowed`: of each party, see `slowings`; `did`: what the first was doing; `closing_mps`: of the finding; `offset_s`: the moment in
+    seconds of the drive.
     """
     if at is None or len(slowed) < 2:
         return ""
-    parts = [_left_lane(motion, at, offset_s)]
+    parts = [did, _left_lane(motion, at, offset_s)]
     until_s = float(motion.t[at])
     steady = [not found and slowing_known(motion, party, until_s) for party, found in enumerate(slowed)]
     if all(steady):
@@ -92,14 +115,18 @@ def story(
         for letter, found, still in zip("AB", slowed, steady, strict=True):
             if found:
                 from_s, to_s = (each + offset_s for each in (found[-1].start_s, found[-1].end_s))
-                parts.append(f"{letter} slowed last from {from_s:.2f} s to {to_s:.2f} s")
+                how = "lost speed faster than tyres brake" if found[-1].sudden else "slowed last"
+                parts.append(f"{letter} {how} from {from_s:.2f} s to {to_s:.2f} s")
             elif still:
                 parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
     v = [float(each[at]) for each in motion.speed]
     parts += [f"{letter} at {mps:.1f} m/s" for letter, mps in zip("AB", v, strict=True) if not math.isnan(mps)]
     turn = float(motion.turn[at])
     how = "" if math.isnan(turn) else _angle(turn)
-    if closing_mps is not None:
+    relative = float(motion.relative[at])
+    if not nearly_same(relative, closing_mps):
+        how = f"{how}, relative speed {speed(relative)}" if how else f"relative speed {speed(relative)}"
+    elif closing_mps is not None:
         nearer = f"drawing apart at {-closing_mps:.1f} m/s" if closing_mps < 0 else f"closing at {speed(closing_mps)}"
         how = f"{how}, {nearer}" if how else nearer
     parts.append(how)

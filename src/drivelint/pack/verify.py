@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
@@ -30,6 +30,12 @@ if TYPE_CHECKING:
     from drivelint.pack.request import VerifyRequest
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
+
+_OUTCOMES: Final = {
+    "PASSED": "every rule that applied was kept",
+    "WARNED": "no rule was broken, but not everything was judged and kept with room",
+    "FAILED": "the drives broke rules",
+}
 
 
 def verify(request: VerifyRequest) -> Verification:
@@ -57,9 +63,8 @@ def verify(request: VerifyRequest) -> Verification:
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
     signed = ", ".join(filter(None, (signed, stamp.said)))
     state = "consistent" if key is None else "untouched since it was signed"
-    sentence = (
-        f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{outcome and f'; it states {outcome}'}"
-    )
+    states = f"; it states that {_OUTCOMES[outcome]} ({outcome})" if outcome else ""
+    sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{states}"
     return Verification(wrong, sentence, [*stamp.notes, *notes])
 
 

@@ -66,7 +66,10 @@ def worst_moment(
             (how, list(dict.fromkeys(each.rule["title"] for each in along if each.kind == kind))[:_ALSO])
             for kind, how in (("fail", "not kept"), ("near", "only just kept"))
         ],
-        "explain": ["drivelint explain", shlex.quote(_name(row)), "--in ."],
+        "commands": [
+            ["drivelint explain", shlex.quote(_name(row)), "--in ."],
+            *([["drivelint report .", f"--incident {row['finding_id']}"]] if "finding_id" in row else []),
+        ],
         "files": _files(row, folder),
     }
 

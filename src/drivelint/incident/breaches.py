@@ -1,0 +1,118 @@
+"""One line of the sheet for each rule: how it was broken, or what was measured where it was kept."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from textwrap import shorten
+from typing import TYPE_CHECKING, Final
+
+from drivelint.catalogue.header import EXCUSES
+from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile
+from drivelint.phrases import plural
+from drivelint.result.certainty import certainty
+from drivelint.result.text import seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.result.text import Row
+
+ADVICE: Final = ("begin", "choose", "correct", "give", "make", "record", "see")
+"""First words of what a reason advises."""
+_ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
+_MOST_STRETCHES: Final = 2
+
+
+def quoted(rule: Row) -> str:
+    """Return the title of a rule in quotes: it is a demand, no statement of the sheet."""
+    return f"\u201c{rule['title']}\u201d"
+
+
+def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
+    """Return the worst finding of a rule in words, of each profile if there are several, and how many there are, how sure."""
+    ordered = sorted(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
+    row = ordered[0]
+    per_profile = list({each["profile"]: each for each in reversed(ordered)}.values())
+    what = (
+        _measured_by_profile(rule, per_profile)
+        or measured(row, rule)
+        or shorten(row["reason"], 120, placeholder=" ...")
+    )
+    whom = profile(row["profile"]) if len(per_profile) == 1 else ""
+    about = f"{short_clause(rule['clause'])}, {rule['severity']}"
+    return f"{quoted(rule)}{whom} ({about}): {_when(row, rule, start_ns)}, {what}{_certainties(rows)}"
+
+
+def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
+    """Return what was measured of a rule that was kept in all of these verdicts: the worst value, and when, if not in all of the span.
+
+    A rule without a measure is quoted. So is one that may excuse what was done: what it measures leaves that out.
+    """
+    row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
+    said, about = quoted(rule), [_stretches(rows, span, start_ns)]
+    if EXCUSES not in rule["tags"] and rule["observes"] and row["observed"] is not None:
+        whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
+        said = minus(f"{rule['observes']}{whom} {amount(row['observed'], row['unit'])}")
+        about.insert(0, f"{SENSE.get(rule['sense'], '')}{amount(row['required'], row['unit'])}")
+    if any(each["near_miss"] for each in rows):
+        about.append("narrowly")
+    told = "; ".join(each for each in about if each)
+    return f"{said} ({told})" if told else said
+
+
+def without_advice(reason: str) -> str:
+    """Return a reason without what it advises to record or to give: the sheet is about a recording that is over."""
+    return _ADVICE.sub("", reason).removesuffix(".")
+
+
+def short_clause(clause: str) -> str:
+    """Return the number of a clause without what it says."""
+    return clause.partition(":")[0].partition(" (")[0]
+
+
+def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
+    """Return what was measured and what each profile requires, the mildest first; '' for one profile, or other measures."""
+    if len(rows) < 2 or any(row["observed"] is None or row["required"] is None for row in rows):
+        return ""
+    ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
+    found = {amount(row["observed"], row["unit"]) for row in rows}
+    if len(found) > 1:
+        return "; ".join(f"{measured(row, rule)}{profile(row['profile'])}" for row in ordered)
+    needs = ", ".join(f"{amount(row['required'], row['unit'])}{profile(row['profile'])}" for row in ordered)
+    return minus(f"{found.pop()}, must be {SENSE.get(rule['sense'], '')}{needs}")
+
+
+def _when(row: Row, rule: Row, start_ns: int) -> str:
+    worst = seconds(row["t_worst_ns"], start_ns)
+    if rule["kind"] == "execution":
+        return f"for the manoeuvre of {worst}"
+    if row["t_start_ns"] in {None, row["t_end_ns"]}:
+        return f"at {worst}"
+    start, end = (seconds(row[key], start_ns) for key in ("t_start_ns", "t_end_ns"))
+    return f"from {start} to {end}, worst at {worst}"
+
+
+def _certainties(rows: Sequence[Row]) -> str:
+    """Return how sure findings are; nothing is said of a verdict that is no finding."""
+    found = [row for row in rows if "finding_id" in row]
+    if not found:
+        return ""
+    if len(found) == 1:
+        return f"; {how_sure(found[0]) or 'certainty not examined'}"
+    n = Counter(certainty(row) or "not examined" for row in found)
+    return f" ({plural(len(found), 'finding')}: {', '.join(f'{n[word]} {word}' for word in sorted(n, reverse=True))})"
+
+
+def _stretches(rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
+    """Return when a rule was judged, in words; '' for all of the span."""
+    found = sorted({(row["t_start_ns"], row["t_end_ns"]) for row in rows if row["t_start_ns"] is not None})
+    if not found or any(start <= span[0] and end >= span[1] for start, end in found):
+        return ""
+    if len(found) > _MOST_STRETCHES:
+        first, last = seconds(found[0][0], start_ns), seconds(max(end for _, end in found), start_ns)
+        return f"{len(found)} times, {first[:-2]} to {last}"
+    return ", ".join(
+        seconds(start, start_ns) if start == end else f"{seconds(start, start_ns)[:-2]} to {seconds(end, start_ns)}"
+        for start, end in found
+    )

@@ -1,0 +1,32 @@
+"""Everything that stands behind an incident sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from drivelint.engine.batch import Drive
+    from drivelint.incident.finding import NamedFinding
+    from drivelint.incident.judge import Judged
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+LETTERS: Final = ("A", "B")
+"""What the sheet calls the parties."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """What was found and what was judged anew.
+
+    `others`: what was judged of the second party, or in a sentence why it was not; None: there is none.
+    """
+
+    result: Result
+    asked: RunRequest
+    finding: NamedFinding
+    drive: Drive
+    again: Judged
+    others: Judged | str | None
+    source: str

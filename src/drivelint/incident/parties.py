@@ -1,0 +1,157 @@
+"""Who the parties are, how fast they were, whether they slowed, and in which lanes; and who else stood or drove around them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import shapely
+
+from drivelint.incident.case import LETTERS
+from drivelint.incident.judge import Judged
+from drivelint.incident.motion import BEFORE_S, slowing_known
+from drivelint.incident.sizes import size_source
+from drivelint.incident.words import nearly_same, speed
+from drivelint.report.html.plan_view import corners
+from drivelint.result.text import seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.incident.case import Case
+    from drivelint.incident.motion import Motion, Slowing
+    from drivelint.result.text import Row
+
+_STANDING_MPS: Final = 0.5
+_MOST_OTHERS: Final = 3
+_SIDES: Final = {True: "centre in a lane of its direction", False: "centre in the oncoming lane"}
+
+
+def party(
+    case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
+) -> dict[str, Any]:
+    """Return one party: who it is, how fast it was, and whether it slowed."""
+    actor_id = case.finding.parties[number]
+    tables = case.drive.trace.tables
+    about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
+    v = motion.speed[number]
+    window = v[(motion.t >= -BEFORE_S - 1e-9) & (motion.t <= (0.0 if before_s is None else before_s) + 1e-9)]
+    fastest = window[~np.isnan(window)].max(initial=-math.inf)
+    gaps = " (not known throughout)" if np.isnan(window).any() else ""
+    size = [about.get(name) for name in ("length_m", "width_m", "height_m")]
+    return {
+        "letter": LETTERS[number],
+        "id": actor_id,
+        "ego": number == 0,
+        "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
+        "size_source": size_source(case.asked, ego=number == 0),
+        "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
+        "lane": _lane(case, number, at),
+        "speed": "not known" if at is None else speed(float(v[at])),
+        "fastest": "not known" if math.isinf(fastest) else f"{speed(float(fastest))}{gaps}",
+        "slowed": _slowed(slowed, before_s),
+        "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),
+        "lights": _brake_lights(case, actor_id),
+    }
+
+
+def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
+    """Return the last stretches of slowing in words, and how many there were before them."""
+    told = [f"{len(found) - 2} earlier"] if len(found) > 2 else []
+    for each in found[-2:]:
+        until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
+        if each.sudden:
+            how = f"lost within {each.end_s - each.start_s:.2f} s, faster than tyres brake: as in an impact"
+        else:
+            how = f"hardest half second {each.hardest_mps2:.1f}, mean {each.mean_mps2:.1f} m/s\u00b2"
+        told.append(
+            f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, {how}".replace(
+                "-", "\u2212"
+            )
+        )
+    return told
+
+
+def _brake_lights(case: Case, actor_id: str) -> str:
+    """Return when the brake lights were on in the 15 s before the moment, in words."""
+    moment = case.finding.moment_ns
+    states = [
+        (t_ns, light)
+        for who, t_ns, light in zip(
+            *(case.drive.trace.tables["actor_state"][name].to_pylist() for name in ("actor_id", "t_ns", "brake_light")),
+            strict=True,
+        )
+        if who == actor_id and moment - BEFORE_S * 10**9 <= t_ns <= moment
+    ]
+    known = [(t_ns, light) for t_ns, light in states if light is not None]
+    if not known:
+        return "not recorded"
+    on = [t_ns for t_ns, light in known if light != "off"]
+    partly = "" if len(known) == len(states) else " (not known at every step)"
+    if not on:
+        return f"off throughout{partly}"
+    return f"on from {(on[0] - moment) / 1e9:+.2f} s, at {len(on)} of {len(states)} steps{partly}".replace(
+        "-", "\u2212"
+    )
+
+
+def _lane(case: Case, number: int, at: int | None) -> str:
+    """Return in words in which lane a party is at a step of the first one."""
+    judged = (case.again, case.others)[number]
+    if at is None or not isinstance(judged, Judged) or not judged.steps.num_rows:
+        return "not examined"
+    t_ns = case.again.steps["t_ns"][at].as_py()
+    i = int(np.searchsorted(judged.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1
+    if i < 0:
+        return "not known"
+    step = judged.steps.slice(i, 1).to_pylist()[0]
+    said: str = _SIDES.get(step["with_direction"], "lane not known")
+    if step["out_since_ns"] is not None:
+        said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.start_ns)}"
+        said += " and is not wholly back" if step["with_direction"] else ""
+    return said
+
+
+def overtaking(case: Case, at: int | None) -> str:
+    """Return in words whom the first party was overtaking at a step, and in which lane; '' for nobody, or where nobody looked."""
+    if at is None:
+        return ""
+    t_ns, row = case.again.steps["t_ns"][at].as_py(), case.finding.row
+    passed = sorted(
+        {
+            each["vbp_id"]
+            for each in case.result.overtakes.to_pylist()
+            if (each["drive_id"], each["ego_id"]) == (row["drive_id"], row["ego_id"])
+            and each["t0_ns"] <= t_ns <= each["t_end_ns"]
+        }
+    )
+    against = case.again.steps["with_direction"][at].as_py() is False
+    return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
+
+
+def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
+    """Return in words who else the plan view names: kind, size, speed, and distance from the first party."""
+    actors = {actor["actor_id"]: actor for actor in scene["actors"]}
+    ego = shapely.polygons(corners(plan["ego"]))
+    told = []
+    for who in [text["actor"] for text in plan["texts"] if text["kind"] == "other"]:
+        about = actors[who]
+        size = " x ".join("?" if about[side] is None else f"{about[side]:.2f}" for side in ("length_m", "width_m"))
+        mps = about["speed_mps"]
+        moves = "speed not known" if mps is None else "standing" if mps < _STANDING_MPS else f"at {mps:.1f} m/s"
+        apart = float(shapely.distance(ego, shapely.polygons(corners(about))))
+        kind = (about["actor_class"] or "kind not recorded").replace("_", " ")
+        told.append(f"{who}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
+    more = [f"{len(told) - _MOST_OTHERS} more"] if len(told) > _MOST_OTHERS else []
+    return told[:_MOST_OTHERS] + more
+
+
+def against_each_other(relative_mps: float, closing_mps: float | None) -> str:
+    """Return the relative speed of both, and how fast the box centres near where that is not the same, in words."""
+    if math.isnan(relative_mps):
+        return "relative speed not known"
+    said = f"relative speed {speed(relative_mps)}"
+    if closing_mps is None or nearly_same(relative_mps, closing_mps):
+        return said
+    return f"{said}; the box centres {'draw apart' if closing_mps < 0 else 'near'} at {abs(closing_mps):.1f} m/s"

@@ -1,0 +1,125 @@
+"""What the sheet says of broken, kept and undecided rules, from a few rows each."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from drivelint.catalogue import load_rules
+from drivelint.catalogue.header import EXCUSES
+from drivelint.incident.breaches import ADVICE, without_advice
+from drivelint.incident.conduct import conduct, fit
+from drivelint.reasons.reason_text import shared_texts
+
+S = 1_000_000_000
+SPAN = (0, 20 * S)
+RULES: dict[str, dict[str, Any]] = {
+    name: {"rule_id": name, "title": title, "clause": "R1: do", "hypothesis": f"Did it {name}?", "severity": "major", "kind": kind,
+           "sense": sense, "unit": unit, "observes": observes, "tags": tags}
+    for name, title, kind, sense, unit, observes, tags in (
+        ("boxes", "No collision", "invariant", ">", "m", "distance between the two", ["contact"]),
+        ("impact", "No impact", "invariant", "<", "m/s2", "change of speed", ["contact"]),
+        ("limit", "Within the limit", "invariant", "<=", "m/s", "speed", []),
+        ("lane", "Within its lane", "invariant", "<=", "s", "time astride", ["excuses"]),
+        ("ahead", "Safe distance ahead", "execution", ">", "m", "distance ahead", []),
+        ("lamps", "Headlights at night", "invariant", "holds", None, None, []),
+    )
+}  # fmt: skip
+
+
+def row(rule: str, verdict: str = "pass", **said: Any) -> dict[str, Any]:
+    values: dict[str, Any] = {
+        "t_start_ns": SPAN[0], "t_end_ns": SPAN[1], "t_worst_ns": 2 * S, "observed": 1.0, "required": 2.0, "margin": 1.0, "profile": None,
+        "object_id": None, "near_miss": False, "finding_ids": [], "reason": "", "reason_code": "kept", "cause_code": None,
+    }  # fmt: skip
+    return {**values, "rule_id": rule, "verdict": verdict, "unit": RULES[rule]["unit"], **said}
+
+
+def finding(rule: str, copies: tuple[int, int] | None, **said: Any) -> dict[str, Any]:
+    n = dict(zip(("n_stays", "n_copies"), copies or (None, None), strict=True))
+    return {**row(rule, "fail", margin=-1.0, finding_id="f", **said), **n}
+
+
+def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
+    found = conduct(verdicts, findings, RULES, SPAN, 0, touched=touched)
+    fit([found], 0, 0)
+    return found
+
+
+@pytest.mark.parametrize("touched", [False, True])
+def test_no_rule_of_contacts_is_kept_under_a_contact(*, touched: bool) -> None:
+    """Another finding of the party is a contact, or the sheet is about one."""
+    hit = [] if touched else [finding("impact", (32, 32))]
+    found = told([row("boxes", object_id="3", observed=0.14, required=0.0), row("limit")], hit, touched=touched)
+    assert not any("distance between" in line or "No collision" in line for line in found["kept"].shown)
+    assert found["beside"] == ["distance between the two with 3: 0.14 m (more than 0.00 m)"]
+    assert found["n"]["kept"] == 1
+    assert sum(found["n"].values()) + found["never"] + len(found["beside"]) == len(RULES)
+
+
+def test_a_rule_with_excuses_is_not_said_to_be_kept() -> None:
+    found = told([row("lane", observed=0.0, required=5.0)], [])
+    assert found["kept"].shown == []
+    assert found["excused"].shown == ["\u201cWithin its lane\u201d"]  # and not that it was astride for 0 s
+
+
+def test_kept_is_named_by_what_was_measured_and_when() -> None:
+    part = row("limit", observed=5.9, required=18.3, t_end_ns=7 * S)
+    assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s)"]
+    assert told([part], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    assert told([{**part, "near_miss": True}], [])["kept"].shown[0].endswith("; narrowly)")
+
+
+def test_how_sure_several_findings_are() -> None:
+    found = [
+        finding("impact", copies, t_start_ns=s * S, t_end_ns=s * S)
+        for s, copies in enumerate([(32, 32), (49, 100), (50, 100)])
+    ]
+    assert told([], found)["broken"].shown[0].endswith("(3 findings: 1 sure, 2 possible)")
+    assert told([], found[:1])["broken"].shown[0].endswith("; sure, 32 of 32")
+    assert told([], [finding("impact", None)])["broken"].shown[0].endswith("; certainty not examined")
+
+
+def test_begin_and_worst_time() -> None:
+    lasting = finding("impact", None, t_start_ns=9 * S, t_end_ns=11 * S, t_worst_ns=10 * S)
+    assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in told([], [lasting])["broken"].shown[0]
+    once = finding("ahead", None, t_start_ns=7 * S, t_end_ns=7 * S, t_worst_ns=7 * S)
+    assert ": for the manoeuvre of 7.00 s, " in told([], [once])["broken"].shown[0]
+
+
+def test_every_profile_is_told_the_mildest_first() -> None:
+    needs = {"relaxed": 112.57, "aggressive": 51.19, "nominal": 74.92}
+    found = [finding("ahead", (32, 32), profile=name, observed=45.59, required=m) for name, m in needs.items()]
+    found = [{**each, "margin": each["observed"] - each["required"]} for each in found]
+    assert (
+        "45.59 m, must be more than 51.19 m (planned as aggressive), 74.92 m (planned as nominal), "
+        "112.57 m (planned as relaxed) (3 findings: 3 sure)" in told([], found)["broken"].shown[0]
+    )
+
+
+def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
+    reason = "the log does not say when the headlights are on: record either their signal or the event headlights, on and off"
+    found = told([row("lamps", "unknown", reason=reason, reason_code="missing", finding_ids=None)], [])
+    assert found["reasons"].shown == [
+        "\u201cHeadlights at night\u201d: The log does not say when the headlights are on"
+    ]
+
+
+def test_advice_begins_with_a_known_word() -> None:
+    """Else it stays in the reason, which is only longer."""
+    texts = [*shared_texts().values(), *(text for rule in load_rules().values() for text in rule.reasons.values())]
+    plain = [text.advice for text in texts if text.advice]
+    assert len(plain) > 50
+    assert sum(advice.split()[0] in ADVICE for advice in plain) > 0.9 * len(plain)
+    assert without_advice("no map: give one with --map") == "no map"
+    assert without_advice("rule x: did not end") == "rule x: did not end"
+
+
+def test_a_rule_that_excuses_something_says_so_by_its_tag() -> None:
+    excuses = re.compile(r"outside an? |, or may |own accord|without an emergency|nobody in its way|, unless ")
+    rules = load_rules().values()
+    assert {rule.id for rule in rules if excuses.search(rule.hypothesis)} == {
+        rule.id for rule in rules if EXCUSES in rule.tags
+    }

@@ -1,0 +1,94 @@
+"""What a claims handler missed on the sheet of a contact."""
+
+from __future__ import annotations
+
+import html
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint.incident import render
+from drivelint.incident.sheet import content
+
+if TYPE_CHECKING:
+    from tests.incident.conftest import CaseOf
+
+
+@pytest.fixture(scope="module")
+def collision(case_of: CaseOf) -> dict[str, Any]:
+    return content(case_of("no-collision@collision"))
+
+
+@pytest.fixture(scope="module")
+def text(case_of: CaseOf) -> str:
+    page = render(case_of("no-collision@collision")).decode().partition("</style>")[2]
+    return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", page)))
+
+
+def test_nothing_is_kept_that_the_sheet_contradicts(collision: dict[str, Any], text: str) -> None:
+    for party in collision["conduct"]:
+        assert not any("ollision" in line or "ithin its lane" in line for line in party["kept"].shown)
+    assert "Kept:" not in text
+
+
+def test_both_parties_breaches_have_their_certainty(collision: dict[str, Any]) -> None:
+    for party in collision["conduct"]:
+        lines = [line for line in party["broken"].shown if ", critical" in line or ", major" in line]
+        assert lines
+        assert all(re.search(r"(sure|possible), \d+ of \d+$|findings: .*\d (sure|possible)", line) for line in lines)
+
+
+def test_assumed_errors_are_named(text: str) -> None:
+    assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place" in text
+    assert "95% of the copies or more" in text
+
+
+def test_when_the_recording_begins_and_ends(collision: dict[str, Any], case_of: CaseOf, text: str) -> None:
+    finding = case_of("no-collision@collision").finding
+    before, after = (float(collision["span"][name]) for name in ("before", "after"))
+    moment_s = (finding.moment_ns - finding.start_ns) / 1e9
+    assert before == pytest.approx(min(15.0, moment_s), abs=0.051)
+    assert after == pytest.approx(min(7.0, finding.drive["duration_s"] - moment_s), abs=0.051)
+    assert f"from {before} s before to {after} s after" in text
+    assert f"The recording lasts {finding.drive['duration_s']:.2f} s" in text
+    assert "local time and its zone: not in the log" in text
+
+
+def test_overtake_lanes_and_who_else_was_there(collision: dict[str, Any], text: str) -> None:
+    (overtaken,) = re.findall(r"A was overtaking (\w+), in the oncoming lane; A left its lane", collision["story"])
+    assert overtaken not in {party["id"] for party in collision["parties"]}
+    ego, other = (party["lane"] for party in collision["parties"])
+    assert ego.startswith("centre in the oncoming lane; left its lane at ")
+    assert other == "centre in a lane of its direction"
+    assert re.search(rf"Others: {overtaken}: car, [\d.]+ x [\d.]+ m, (standing|at [\d.]+ m/s), [\d.]+ m from A", text)
+
+
+def test_no_unit_is_written_in_two_ways(text: str) -> None:
+    assert "m/s2" not in text.partition("To check it")[0]
+
+
+def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None:
+    told = content(case_of("safe-distance-ahead@collision"))
+    (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]
+    limits = [line for line in chart["lines"] if line["kind"] == "limit"]
+    assert len({line["label"] for line in limits}) == len(limits) > 1
+    assert all(line["labels"] for line in limits)
+    assert sum(bool(line["legend"]) for line in limits) == 1
+
+
+def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
+    assert "not examined" in content(replace(case, others=None))["parties"][1]["lane"]
+
+
+def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    said = "cut from collision.csv, SHA-256 0123abcd: 0.00 s to 9.00 s of it"
+    check = {"check_id": "clip", "severity": "info", "message": said}
+    drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
+    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    assert said in page
+    assert "Warnings on the log" not in page  # it is none
