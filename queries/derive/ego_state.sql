@@ -11,7 +11,7 @@ trailer_reach AS (
     GROUP BY ALL
 ),
 running_chain AS (
-    SELECT st.drive_id, st.ego_id, st.t_ns, st.travel_m, coalesce(c.chain_id, f.chain_id) AS chain_id
+    SELECT st.drive_id, st.ego_id, st.t_ns, st.seg, st.travel_m, coalesce(c.chain_id, f.chain_id) AS chain_id
     FROM step st
     ASOF LEFT JOIN (SELECT * FROM chain WHERE t_first_ns IS NOT NULL) c
         ON c.drive_id = st.drive_id AND c.ego_id = st.ego_id AND c.t_first_ns <= st.t_ns
@@ -31,7 +31,12 @@ step_limit AS (
 )
 SELECT
     r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.z_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
-    max(s.speed_mps) OVER (PARTITION BY r.drive_id, r.ego_id ORDER BY r.t_ns RANGE BETWEEN 3_000_000_000 PRECEDING AND CURRENT ROW) AS fastest_3s_mps,
+    -- An ego that is not seen for a part of the 3 s may have moved then.
+    CASE
+        WHEN max(s.speed_mps) OVER last_3s >= standing_mps()
+            OR count(s.speed_mps) OVER last_3s = count(*) OVER last_3s AND min(r.seg) OVER last_3s = r.seg AND min(r.t_ns) OVER last_3s <= r.t_ns - 3_000_000_000 + k.max_gap_ns
+            THEN max(s.speed_mps) OVER last_3s
+    END AS fastest_3s_mps,
     r.travel_m, s.length_m, s.width_m, CASE WHEN t.t_ns IS NULL THEN s.length_m ELSE s.length_m / 2 + t.reach_m END AS combination_m, s.indicator,
     e.lanelet_id, e.with_direction,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
@@ -43,9 +48,11 @@ SELECT
     c.lat_half_m, c.heading_diff_rad
 FROM running_chain r
 JOIN data_log l USING (drive_id)
+JOIN clock k USING (drive_id, ego_id)
 JOIN state_dynamics s ON s.drive_id = r.drive_id AND s.actor_id = r.ego_id AND s.t_ns = r.t_ns
 LEFT JOIN trailer_reach t ON t.drive_id = r.drive_id AND t.ego_id = r.ego_id AND t.t_ns = r.t_ns
 LEFT JOIN ego_lane e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
 LEFT JOIN step_limit v ON v.drive_id = r.drive_id AND v.ego_id = r.ego_id AND v.t_ns = r.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.chain_id = r.chain_id AND c.t_ns = r.t_ns
+WINDOW last_3s AS (PARTITION BY r.drive_id, r.ego_id ORDER BY r.t_ns RANGE BETWEEN 3_000_000_000 PRECEDING AND CURRENT ROW)

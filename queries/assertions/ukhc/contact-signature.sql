@@ -59,15 +59,15 @@ SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN
 FROM pair
 WHERE clearance_m IS NULL OR clearance_m <= $within_m
 UNION ALL
--- An actor whose track ends close by may have touched the ego unseen: each such actor adds one step, whose result is not known.
+-- An actor whose track ends close by, or on a way that may lead to the ego, may have touched the ego unseen: each such actor adds one step, whose result is not known.
 SELECT l.drive_id, l.ego_id, s.t_ns, l.object_id, NULL,
-    why('recorded_too_short', {'object_id': l.object_id, 'to_ns': last.t_ns, 'far_m': coalesce(p.clearance_m, p.distance_m), 'ego_to_ns': c.t_end_ns})
+    why('recorded_too_short', {'object_id': l.object_id, 'to_ns': last.t_ns, 'far_m': CASE WHEN p.clearance_is_bound THEN p.distance_m ELSE coalesce(p.clearance_m, p.distance_m) END, 'ego_to_ns': c.t_end_ns})
 FROM lost_object l
 JOIN clock c USING (drive_id, ego_id)
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) last
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.object_id = l.object_id AND p.t_ns = last.t_ns
-WHERE l.code = 'lost_near_ego'
+WHERE l.code IN ('lost_near_ego', 'lost_on_road')
 UNION ALL
 -- An actor that came near between two steps may have touched the ego, too.
 SELECT drive_id, ego_id, t_next_ns, object_id, NULL, why('close_between_samples', {'object_id': object_id}) FROM between_steps

@@ -28,7 +28,7 @@
 -- says = "contact, {depth_m:.2f} m deep, the ego having moved at {fastest_3s_mps:.1f} m/s in the 3 s before"
 --
 -- [reasons.contact_speed_unknown]
--- says = "contact, {depth_m:.2f} m deep, the ego's speed is not known"
+-- says = "contact, {depth_m:.2f} m deep; who struck whom is not known: the log does not have the ego's speed for all of the 3 s before"
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
