@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from drivelint.casefile import commands as workshop
+from drivelint.casefile import mutation
 from drivelint.catalogue import Rule, read_rule
 from drivelint.errors import ExitCode, RuleError, UsageError
 from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
@@ -43,7 +44,7 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
 def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
     workshop.new_rule("mine.two", tmp_path, "invariant")
-    monkeypatch.setattr(workshop.mutation, "judge_all_mutants", lambda *_: iter(()))
+    monkeypatch.setattr(mutation, "judge_all_mutants", lambda *_: iter(()))
     for file in (sql, cases):
         assert said_of(file) == (ExitCode.OK, "ok   mine.one: 10 of 10 checks")
     said = Said()
