@@ -92,7 +92,7 @@ def finding_line(
         href=f"#{place or anchor('moment', *incident_key(row))}" if linked else "",
         keys=" ".join((kind, row["severity"], rule["pack"], *found)),
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
-        when=non_breaking(when(row, {rule["rule_id"]: rule}, start_ns)),
+        when=when(row, {rule["rule_id"]: rule}, start_ns).replace(" s", non_breaking(" s")),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
         required=required,
         gauge=_gauge(row["observed"], row["required"]),
