@@ -123,3 +123,9 @@ def test_a_contact_stands_on_top(overtakes: Result, text: str) -> None:
     assert drives.pop() in told.partition("shows a contact:")[2]
     assert f"{-rows[0]['observed']:.2f} m deep" in told
     assert "there was a contact" not in page(result([verdict("fail")], [finding()]))
+
+
+def test_an_acceleration_has_its_unit_typeset(text: str) -> None:
+    told = Parsed(text).text.replace("\u00a0", " ")
+    assert re.search(r"\d m/s\u00b2", told)
+    assert not re.search(r"\d m/s2", told)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
+_MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
 _STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 
 
@@ -57,8 +59,11 @@ def page_environment(scripts: Sequence[str], folder: Path | None = None, styles:
 
 
 def visible(value: Any) -> Any:
-    """Return what a template fills in so that everything in it is seen: no character turns the order of what is read."""
-    return shown(value) if type(value) is str else value  # Markup is ours
+    """Return what a template fills in so that everything in it is seen: no character turns the order of what is read.
+
+    The unit of an acceleration, alone or after a number, is typeset.
+    """
+    return _MPS2.sub("m/s\u00b2", shown(value)) if type(value) is str else value  # Markup is ours
 
 
 def _joined(files: Iterable[Path]) -> str:
