@@ -42,8 +42,8 @@ _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
-_QUALITY_ROOM: Final = 370
-"""Characters of the columns that warnings on the log take."""
+_LINE_ROOM: Final = 370
+"""Characters of the columns that warnings on the log take, or what a clip was cut from."""
 
 
 def content(case: Case) -> dict[str, Any]:
@@ -65,7 +65,7 @@ def content(case: Case) -> dict[str, Any]:
         "what": _what(finding),
         "story": story(motion, at, slowed, did=overtaking(case, at), closing_mps=row["closing_mps"], offset_s=offset_s),
         "clip_of": _clip_of(finding.drive["file_name"]),
-        "cut_from": [check["message"] for check in finding.drive["quality"] if check["check_id"] == CLIP],
+        "cut_from": _cut_from(case),
         "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
         "profile": profile(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
@@ -195,6 +195,10 @@ def _warnings(case: Case) -> list[str]:
     return [check["message"] for check in case.finding.drive["quality"] if check["severity"] != "info"]
 
 
+def _cut_from(case: Case) -> list[str]:
+    return [check["message"] for check in case.finding.drive["quality"] if check["check_id"] == CLIP]
+
+
 def _recording(finding: NamedFinding) -> dict[str, str]:
     """Return when the recording begins and ends, in seconds from the moment and of the drive."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
@@ -232,7 +236,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> list[dict[
             told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, touched=finding.is_contact)
         found.append(told)
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
-    fit(found, seconds_left, beside + _QUALITY_ROOM * bool(_warnings(case)))
+    fit(found, seconds_left, beside + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
     return found
 
 
