@@ -10,10 +10,12 @@ WITH _outcome_or_clean_group AS (
     FROM _group WHERE clean
 ), _outcome_in_time AS (
     -- A pass is none where the log has lost something: of whom, nobody knows. A step that fails stands.
+    FROM _outcome_or_clean_group WHERE verdict IS DISTINCT FROM 'pass'
+    UNION ALL BY NAME
     SELECT o.* REPLACE (CASE WHEN l.is_lost THEN 'unknown' ELSE o.verdict END AS verdict, CASE WHEN l.is_lost THEN 'log_hole' ELSE o.code END AS code,
         CASE WHEN l.is_lost THEN NULL ELSE o.reason END AS reason, CASE WHEN l.is_lost THEN NULL ELSE o.margin END AS margin)
-    FROM _outcome_or_clean_group o
-    LEFT JOIN (FROM _segment WHERE is_lost) l ON o.verdict = 'pass' AND l.drive_id = o.drive_id AND l.ego_id = o.ego_id
+    FROM (FROM _outcome_or_clean_group WHERE verdict = 'pass') o
+    LEFT JOIN (FROM _segment WHERE is_lost) l ON l.drive_id = o.drive_id AND l.ego_id = o.ego_id
         AND o.t_worst_ns BETWEEN l.t_first_ns AND l.t_last_ns
 ), _rule_row AS (
     SELECT r.* FROM _outcome_in_time r ANTI JOIN _error e ON e.rule_no = r.rule_no AND e.drive_id = r.drive_id
