@@ -8,7 +8,7 @@ FROM (
     SELECT
         c.drive_id, c.ego_id, a.t_ns, c.max_gap_ns, a.x_m, a.y_m,
         a.t_ns - lag(a.t_ns) OVER v AS dt_ns, lag(a.x_m) OVER v AS x_before_m, lag(a.y_m) OVER v AS y_before_m,
-        -- Steps within one stretch, of which the log lost something else than the ego, are a segment of their own.
+        -- Steps of the ego within one lost stretch form a segment of their own.
         coalesce(len(list_filter(l.lost, lambda t: t.t_from_ns < a.t_ns AND t.t_to_ns > lag(a.t_ns) OVER v
             AND NOT (t.t_from_ns < lag(a.t_ns) OVER v AND t.t_to_ns > a.t_ns))) > 0, false) AS is_after_loss
     FROM clock c JOIN actor_state a ON a.drive_id = c.drive_id AND a.actor_id = c.ego_id

@@ -1,6 +1,7 @@
 -- Stretches in which an ego's log lacks something. `signal` is `registration` where position or heading is missing, `indicator` where its
--- state is missing, NULL for a hole without any step, `lost` where the log has lost something, be the ego's steps there or not. Holes matter
--- only to rules with reference points: invariants get their own row, see outcome_of_holes.sql. If a signal is missing in the whole log, the rule is not run at all.
+-- state is missing, NULL for a hole without any step, `lost` for a lost stretch of the log, whether or not the ego has steps there. Holes matter
+-- only to rules with reference points: invariants get their own row, see outcome_of_holes.sql. If a signal is missing in the whole log, the rule
+-- is not run at all.
 CREATE OR REPLACE TEMP TABLE _blind AS
 WITH _step_signal AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, s.k, n.signal,
@@ -22,6 +23,6 @@ WITH _step_signal AS (
 -- Our default: a shorter stretch cannot hide a whole occasion. An occasion that it cuts is unknown in the tables that the rule reads.
 SELECT * FROM _stretches WHERE b_ns - a_ns >= 1_000_000_000
 UNION ALL
--- Somebody of whom nothing else is recorded may be in the shortest lost stretch.
+-- Even the shortest lost stretch may hold the only states of an actor.
 SELECT s.drive_id, s.ego_id, 'lost', greatest(l.t_from_ns, s.t_start_ns), least(l.t_to_ns, s.t_end_ns)
 FROM _subject s JOIN lost_time l ON l.drive_id = s.drive_id AND l.t_from_ns < s.t_end_ns AND l.t_to_ns > s.t_start_ns

@@ -9,7 +9,7 @@ WITH _outcome_or_clean_group AS (
         'pass' AS verdict, code, reason, observed, required, margin, n AS n_expected, n AS n_judged
     FROM _group WHERE clean
 ), _outcome_in_time AS (
-    -- A pass is none where the log has lost something: of whom, nobody knows. A step that fails stands.
+    -- A pass within a lost stretch is unknown: the log does not say whose states it lost there. A fail stands.
     FROM _outcome_or_clean_group WHERE verdict IS DISTINCT FROM 'pass'
     UNION ALL BY NAME
     SELECT o.* REPLACE (CASE WHEN l.is_lost THEN 'unknown' ELSE o.verdict END AS verdict, CASE WHEN l.is_lost THEN 'log_hole' ELSE o.code END AS code,
@@ -60,7 +60,7 @@ WITH _outcome_or_clean_group AS (
         FROM _rule_row WHERE verdict IN ('error', 'unknown')
     ) u ON u.rule_no = b.rule_no AND u.drive_id = b.drive_id AND u.ego_id = b.ego_id
         AND u.from_ns <= b.b_ns + b.max_gap_ns AND u.to_ns >= b.a_ns - b.max_gap_ns
-    -- a rule with reference points is about more than a moment
+    -- A short lost stretch hides no whole occasion, so only invariants look at it.
     LEFT JOIN _rule q ON q.rule_no = b.rule_no
     WHERE w.never IS DISTINCT FROM true AND k.elsewhere IS DISTINCT FROM true
         AND (b.signal IS DISTINCT FROM 'lost' OR q.kind = 'invariant' OR b.b_ns - b.a_ns >= 1_000_000_000)

@@ -3,7 +3,7 @@ CREATE OR REPLACE TEMP TABLE _subject AS
     SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m,
         coalesce(l.t_start_ns, 0) AS start_ns
     FROM clock c LEFT JOIN data_log l ON c.drive_id = l.drive_id;
--- `is_lost`: the steps lie within a stretch of which the log has lost something, so that who is not there at them may have been.
+-- `is_lost`: the steps lie within a lost stretch of the log, so an actor without a state at them may have been there.
 CREATE OR REPLACE TEMP TABLE _segment AS
     SELECT s.drive_id, s.ego_id, s.seg, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns, min(s.k) AS k_first,
         coalesce(bool_or(l.t_to_ns > s.t_ns), false) AS is_lost
