@@ -28,7 +28,7 @@ class Comparison:
 
     @property
     def exit_code(self) -> int:
-        """That of the command line. 1: a new finding that gates; 4: none, but an earlier one that is gone and not fixed."""
+        """The exit code of `drivelint diff`. 1: a new finding that gates; 4: no such finding, but an earlier one is gone and not fixed."""
         return int(descriptions.exit_code(self._found, self._failing, self._least))
 
     @property

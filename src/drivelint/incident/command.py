@@ -33,7 +33,7 @@ def commands(asked: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) 
 
 
 def of_rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:
-    """Return the options of a run that say by which rules, profiles and parameters it judged. Folders are named without their folders."""
+    """Return the options of a run that say by which rules, profiles and parameters it judged. Of a path, only the last name is given."""
     words = _rules(asked, rule_ids)
     for profile in asked.profiles if tuple(asked.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]

@@ -59,7 +59,7 @@ class Judge:
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
     ) -> Judged:
-        """Judge a drive of one ego. `errors`: those of the copies that tell how sure findings are; None: nobody tells."""
+        """Judge a drive of one ego. `errors`: of the copies that tell how sure findings are; None: no copies are judged."""
         steps: list[pa.Table] = []
 
         def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
