@@ -9,7 +9,7 @@ import re
 import signal
 import subprocess
 import sys
-import threading
+from contextlib import suppress
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,8 @@ import typer
 
 import drivelint
 from drivelint import cli, demo
+from drivelint.pack import VerifyRequest, verify
 from drivelint.result.schemas import TABLE_OF_FILE
-from drivelint.sql import store
 from tests.report import synthetic
 from tests.shared_data import ROOT
 
@@ -75,6 +75,17 @@ def test_write_writes_the_bytes_of_the_command_line(
     theirs, ours = files(tmp_path / "a"), files(tmp_path / "b")
     assert set(theirs) >= {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "run.json", "summary.json"}
     assert theirs == ours
+
+
+def test_evidence_is_a_pack_of_the_result(drives: Path, tmp_path: Path) -> None:
+    asked: dict[str, Any] = {"map": drives / "road.xodr", "rules": "ukhc.no-collision", "robustness": False}
+    pack = tmp_path / "pack"
+    drivelint.check(drives / "safe.mcap", **asked, out=tmp_path / "out", evidence=pack)
+    told = verify(VerifyRequest(pack, traces=(drives / "safe.mcap",), map=drives / "road.xodr"))
+    assert told.problems == []
+    assert "1 drive judged again" in told.sentence
+    with pytest.raises(drivelint.DriveLintError, match="give out, too"):
+        drivelint.check(drives / "safe.mcap", **asked, evidence=tmp_path / "none")
 
 
 def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Path) -> None:
@@ -348,26 +359,39 @@ def test_a_drive_without_a_map_looks_like_one(drives: Path) -> None:
     assert "map: none | log: complete" in found._repr_html_()
 
 
-def test_an_interrupt_is_an_interrupt(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+INTERRUPTED = """
+import os, sys
+import drivelint, drivelint.run
+from drivelint.sql import store
+
+def long_query(*_):
+    with store.workspace(None) as con:
+        print("computing", flush=True)
+        con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
+
+drivelint.run.check = long_query
+try:
+    drivelint.check(sys.argv[1])
+except KeyboardInterrupt:
+    os._exit(42)
+"""
+
+
+def test_an_interrupt_is_an_interrupt(drives: Path) -> None:
     """Also while DuckDB computes in the main thread, which raises an error of its own then."""
-
-    done = threading.Event()
-
-    def interrupt() -> None:
-        while not done.wait(0.3):  # one that meets a callback of the garbage collection is lost
-            os.kill(os.getpid(), signal.SIGINT)
-
-    def long_query(*_: object) -> None:
-        with store.workspace(None) as con:
-            threading.Thread(target=interrupt, daemon=True).start()
-            try:
-                con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
-            finally:
-                done.set()
-
-    monkeypatch.setattr("drivelint.run.check", long_query)
-    with pytest.raises(KeyboardInterrupt):
-        drivelint.check(drives / "safe.mcap")
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    words = [sys.executable, "-c", INTERRUPTED, str(drives / "safe.mcap")]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env) as running:
+        assert running.stdout
+        assert running.stdout.readline() == "computing\n"
+        for _ in range(12):  # one that comes before the query, or meets a callback of the garbage collection, is lost
+            running.send_signal(signal.SIGINT)
+            with suppress(subprocess.TimeoutExpired):
+                running.wait(5.0)
+                break
+        else:
+            running.kill()
+        assert running.returncode == 42, running.stderr and running.stderr.read()
 
 
 def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:

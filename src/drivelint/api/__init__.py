@@ -17,7 +17,7 @@ from drivelint.api.keywords import errors_name_keywords
 from drivelint.api.progress import kept_notes
 from drivelint.api.tables import Table
 from drivelint.api.trace_tables import TraceTables
-from drivelint.cli import values
+from drivelint.cli import packs, values
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import UsageError
@@ -72,6 +72,8 @@ def check(
     require: Texts = None,
     out: AnyPath | None = None,
     overwrite: bool = False,
+    evidence: AnyPath | None = None,
+    sign: AnyPath | None = None,
     margins: bool = False,
     keep_db: bool = False,
     annotate: bool = True,
@@ -106,6 +108,7 @@ def check(
             folder,
             confidence=None if confidence is None else float(confidence),
         )
+        pack = packs.asked_pack(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
         settings = run.CheckOptions(
             traces=paths,
             **options.map_input(
@@ -144,6 +147,10 @@ def check(
                 result = gate_inputs.apply_to(result)
             if folder is not None:
                 outputs.write(result, folder, work, overwrite=overwrite)
+        if pack is not None:
+            from drivelint.pack import write_pack
+
+            write_pack(pack)
         return CheckResult(result, folder, tuple(listener.notes), scratch)
 
 

@@ -174,7 +174,7 @@ def check(
     from drivelint.settings import SETTINGS_FILE
 
     values.check_confidence(confidence, robustness)
-    pack_result = packs.pack_later(evidence, sign, out, overwrite=overwrite)
+    pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
     gate_inputs = GateInputs.from_files(
         baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
     )
@@ -220,8 +220,8 @@ def check(
         print_rich(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))
     if result.interrupted:
         say_kept(result.drives["status"].to_pylist(), out)
-    else:
-        pack_result()
+    elif pack is not None:
+        packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(exit_status(result).code))
 
 

@@ -123,7 +123,7 @@ def audit(
         prune=prune,
         cluster=cluster,
     )
-    pack_result = packs.pack_later(evidence, sign, out, whole=shard is None and not claim)
+    pack = packs.asked_pack(evidence, sign, out, whole=shard is None and not claim)
     with bar(quiet) as progress:
         try:
             counted = run_interruptible(lambda: audited(request, progress))
@@ -132,7 +132,8 @@ def audit(
             raise
     code = counted.exit_code(fail_on, strict=strict)
     typer.echo(inert(summary_text(counted, out, code)))
-    pack_result()
+    if pack is not None:
+        packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(code))
 
 

@@ -16,8 +16,6 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.phrases import inert, inert_line, plural
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from drivelint.pack import PackRequest
 
 Traces = Annotated[
@@ -77,20 +75,20 @@ def pack(
     request = PackRequest(
         folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite, most
     )
-    _write(request)
+    write_and_tell(request)
 
 
-def pack_later(
+def asked_pack(
     evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
-) -> Callable[[], None]:
-    """Return what packs a result that `check` or `audit` is going to write; does nothing where no pack is asked for.
+) -> PackRequest | None:
+    """Return the pack that is asked for of a result that `check` or `audit` is going to write; None: none is.
 
     `whole`: the command judges all drives and packs their results. Errors: `UsageError` for what is known before anything is judged.
     """
     if evidence is None:
         if sign is not None:
             raise UsageError("--sign is of an evidence pack: say where that goes with --evidence PACK")
-        return lambda: None
+        return None
     if result is None:
         raise UsageError("--evidence packs what --out writes: give --out, too")
     if not whole:
@@ -101,10 +99,10 @@ def pack_later(
 
     request = PackRequest(Path(result), evidence, sign, date=_date(None), overwrite=overwrite)
     ready(request)
-    return lambda: _write(request, err=True)
+    return request
 
 
-def _write(request: PackRequest, *, err: bool = False) -> None:
+def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
     """Write a pack and say what is in it, with `err` on stderr."""
     from drivelint.pack import write_pack
 

@@ -154,9 +154,10 @@ def _cell(column: str, value: Any, start_ns: int) -> str:
 
 
 def _comment(text: str, value: Any) -> str:
-    """Return what a column means, cut; of a NULL what that means, where it is said."""
-    _, null, meaning = text.partition("NULL: ")
-    text = null + meaning if value is None and null else text
+    """Return what a column means, cut: of a value without what NULL means, of a NULL only that, where it is said."""
+    of_value, null, of_null = text.partition("NULL: ")
+    if null:
+        text = null + of_null if value is None else of_value.rstrip("; ") or text
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 
