@@ -117,7 +117,15 @@ def add(out: Path, name: str, content: bytes) -> None:
 
 def changed(out: Path) -> list[str]:
     """Return the tables, and the summary, of a result that are not as they were written; none where nothing says how they were."""
-    return [name for name, said in _hashes(out).items() if sha256((out / name).read_bytes()).hexdigest() != said]
+    return [name for name, said in _hashes(out).items() if _sha256(out / name) != said]
+
+
+def _sha256(path: Path) -> str | None:
+    """Return the hash of a file; None where none can be read: its name may come from a damaged list."""
+    try:
+        return sha256(path.read_bytes()).hexdigest()
+    except (OSError, ValueError):
+        return None
 
 
 def _present(out: Path, patterns: Sequence[str]) -> set[str]:
