@@ -103,7 +103,8 @@ def test_three_audits_give_the_tables_of_one(tmp_path: Path, n_killed: int) -> N
         time.sleep(3.0)
         os.kill(victim.pid, signal.SIGKILL)
     codes = [each.wait() for each in running]
-    assert all(each.stderr is None or not each.stderr.read() for each in running[n_killed:])
+    said = [each.stderr.read().decode() for each in running[n_killed:] if each.stderr is not None]
+    assert not any(said), "".join(said)
     assert codes.count(-signal.SIGKILL) == n_killed
     assert set(codes[n_killed:]) <= {ExitCode.OK, ExitCode.FAILED, ExitCode.NOT_JUDGED}
     counted = merge(str(tmp_path / "out"), Silent())

@@ -244,15 +244,15 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:
     """
     told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings), "fail_on": request.fail_on}
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
-    if results.create(AUDIT_FILE, content):
-        results.write(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
-        return
-    there = json.loads(results.read(AUDIT_FILE) or b"{}")
-    if there.get("run_id") != id_:
-        changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
-        why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
-        raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
-    results.delete([SUMMARY_FILE])  # it is not of what is there from now on
+    if not results.create(AUDIT_FILE, content):
+        there = json.loads(results.read(AUDIT_FILE) or b"{}")
+        if there.get("run_id") != id_:
+            changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
+            why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
+            raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
+        results.delete([SUMMARY_FILE])  # it is not of what is there from now on
+    # whoever made the audit may not have come to this yet, or was killed before it
+    results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
 
 
 def _plain(settings: JudgeSettings) -> dict[str, Any]:
