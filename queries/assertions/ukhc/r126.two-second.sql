@@ -26,7 +26,7 @@
 -- [params.settle_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: time to make the gap anew after one of the two changed into the lane; a vehicle that was ahead already, or whose coming was not seen (at the log's begin, say), counts as settled"
+-- why = "our default: time to open the gap again after the ego or the other vehicle changed into the lane; a vehicle that was ahead already, or whose lane change was not seen (at the log's begin, say), counts as settled"
 --
 -- # Draft: where traffic is slow on a fast road, two seconds and the stopping distance of R126 disagree, and which of them a driver follows is a
 -- # judgement. No map says where a tunnel is.

@@ -251,7 +251,7 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         results.delete([SUMMARY_FILE])  # it is not of what is there from now on
-    # whoever made the audit may not have come to this yet, or was killed before it
+    # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
 
 

@@ -47,7 +47,7 @@ class Standing(NamedTuple):
 
     @property
     def warning(self) -> str:
-        """What is to be said of an audit that has not ended; '' of one that has."""
+        """A sentence that says how far the audit is; '' if it has ended."""
         if self.digest is not None and not self.n_loose and not self.missing_parts:
             return ""
         of = "" if self.n_asked is None else f" of {self.n_asked}"

@@ -147,7 +147,7 @@ def _kept(out: str) -> str:
     try:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
-    except (DriveLintError, OSError):  # whoever interrupts wants an end, not a message about a store
+    except (DriveLintError, OSError):  # The user interrupts to stop: an error of the store does not matter then.
         return f"what was judged stays in {inert_line(out)}"
     if not n:
         return f"no drive has a result in {inert_line(out)} yet"

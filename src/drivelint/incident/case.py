@@ -18,7 +18,7 @@ LETTERS: Final = ("A", "B")
 
 @dataclass(frozen=True)
 class Case:
-    """What was found and what was judged anew.
+    """A finding, its run, and what the sheet judged again.
 
     `others`: what was judged of the second party, or in a sentence why it was not; None: there is none.
     """

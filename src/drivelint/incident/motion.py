@@ -24,7 +24,7 @@ MOST_ROWS: Final = BEFORE_S + AFTER_S + 2
 SLOWING_MPS2: Final = 1.0
 """Who slows by less, as a mean of half a second, may coast."""
 _TYRES_MPS2, _LEAST_LOSS_MPS = 12.0, 1.0
-"""Who loses this much speed, this fast, from one step to the next does not brake: no tyre can."""
+"""Tyres cannot brake a vehicle this hard: such a loss of speed between two steps is an impact."""
 _MEAN_S: Final = 0.5
 _MERGE_S: Final = 0.5
 """Two stretches of slowing with a shorter break between them are one."""

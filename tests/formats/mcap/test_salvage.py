@@ -76,6 +76,12 @@ def lost(trace: Trace, t_ns: int) -> bool:
     )
 
 
+def assert_missing_is_lost(trace: Trace, whole: Path) -> None:
+    missing = missing_times(trace, whole)
+    assert missing
+    assert all(lost(trace, t) for t in missing)
+
+
 def test_cut_within_a_chunk(whole: Path) -> None:
     data = whole.read_bytes()
     begin, end = places(data, CHUNK)[4]
@@ -114,9 +120,7 @@ def test_a_chunk_of_another_kind_is_lost_also_where_the_index_is(whole: Path, op
     assert "index_damaged" in findings(trace)
     (found,) = findings(trace)["lost_time"]
     assert f"(opcode {opcode}) record at byte {begin}" in found["message"]
-    missing = missing_times(trace, whole)
-    assert missing
-    assert all(lost(trace, t) for t in missing)
+    assert_missing_is_lost(trace, whole)
 
 
 def test_a_record_of_an_application_is_no_loss(whole: Path) -> None:
@@ -134,9 +138,7 @@ def test_an_end_that_stands_over_the_middle_is_seen(whole: Path) -> None:
     at, footer = places(data, CHUNK)[4][0], places(data, FOOTER)[0][0]
     (found,) = findings(trace := read(put(whole, data[:at] + data[footer:])))["lost_time"]
     assert "no end of the data before the footer" in found["message"]
-    missing = missing_times(trace, whole)
-    assert missing
-    assert all(lost(trace, t) for t in missing)
+    assert_missing_is_lost(trace, whole)
 
 
 def test_zero_filled_tail(whole: Path) -> None:
