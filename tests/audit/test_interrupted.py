@@ -92,12 +92,23 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
         assert tables_digest(con) == before
 
 
-def test_workers_do_not_hear_a_ctrl_c_while_they_begin() -> None:
-    """What multiprocessing starts first took the block off again, and each worker printed a traceback."""
-    code = (
-        "import signal; from drivelint.audit.executors.local import LocalPool; pool = LocalPool(1)\n"
-        "pool._pool.schedule(int).result()\n"
-        "print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])); pool.close()"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "True"
+BLOCKED = """
+import signal
+from drivelint.audit.executors.local import LocalPool
+
+def blocked():
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+if __name__ == "__main__":
+    pool = LocalPool(1)
+    print(pool._pool.schedule(blocked).result(), blocked())
+    pool.close()
+"""
+
+
+def test_ctrl_c_is_heard_by_the_driver_and_by_no_worker_that_begins(tmp_path: Path) -> None:
+    """What multiprocessing starts first must not take the block off, and the main thread must not keep it."""
+    script = tmp_path / "blocked.py"
+    script.write_text(BLOCKED, encoding="utf-8")
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "False"]

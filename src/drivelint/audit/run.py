@@ -18,7 +18,7 @@ from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
-from drivelint.audit.executors.local import begin_worker
+from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
@@ -182,7 +182,9 @@ def _compact_apart(out: str) -> None:
         suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
         ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(None, os.getpid())) as apart,
     ):
-        apart.submit(_compact_there, out).result()
+        with deaf_to_ctrl_c():
+            packing = apart.submit(_compact_there, out)
+        packing.result()
 
 
 def _compact_there(out: str) -> None:

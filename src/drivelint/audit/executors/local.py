@@ -9,6 +9,7 @@ import sys
 from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
 from concurrent.futures import TimeoutError as TookTooLongError
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from drivelint.audit.executors import Outcome
 from drivelint.audit.worker import run_task
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from concurrent.futures import Future
 
     from drivelint.audit.model import Receipt, Task
@@ -60,23 +62,34 @@ class LocalPool:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def _started(self) -> ProcessPool:
-        sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
-        resource_tracker.ensure_running()  # its start would take the block below off again
-        sys.warnoptions.pop()
-        # threads and processes that are started from here on inherit it: Ctrl-C is the main thread's
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        return ProcessPool(
+        pool = ProcessPool(
             max_workers=self._workers,
             max_tasks=TASKS_PER_WORKER,
             initializer=begin_worker,
             initargs=(self._memory, os.getpid()),
             context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
         )
+        with deaf_to_ctrl_c():
+            _ = pool.active  # this starts the threads that start the processes
+        return pool
 
     def close(self) -> None:
         """See `Executor.close`."""
         self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
+
+
+@contextmanager
+def deaf_to_ctrl_c() -> Iterator[None]:
+    """Make the threads and processes that are started within not hear Ctrl-C, which is for the main thread alone."""
+    sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
+    resource_tracker.ensure_running()  # its start would take the block below off again
+    sys.warnoptions.pop()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
