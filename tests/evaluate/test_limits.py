@@ -6,11 +6,14 @@ import json
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from threading import Event
+from typing import TYPE_CHECKING, cast
 
+import duckdb
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint.evaluate import limits
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
 from tests.evaluate.bombs import BOMBS, write_pack
@@ -128,8 +131,35 @@ def test_a_pack_of_bombs_is_contained(tmp_path: Path) -> None:
     assert_contained(tmp_path, tuple(BOMBS))
 
 
+def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    bytes_now = iter(range(0, 1_000_000, 100))
+    found: list[tuple[str, int]] = []
+    ended = Event()
+
+    class Deaf:
+        @staticmethod
+        def known(_task: str) -> dict[str, limits.Excess]:
+            return {}
+
+        @staticmethod
+        def found(_task: str, _rule_id: str, excess: limits.Excess) -> None:
+            found.append((excess, next(bytes_now)))
+            ended.set()
+
+    monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
+    monkeypatch.setattr(limits, "_LOOK_S", 0.001)
+    monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
+    held_to = limits.RuleLimits(60.0, deaf=cast("limits.DeafRules", Deaf))
+    held_to.memory = lambda: 1_000
+    with duckdb.connect() as con, held_to.hold(con, "mine.grows", alone=True) as held:
+        assert ended.wait(30.0)
+    assert held.excess == "out_of_memory"
+    assert found[0] == ("out_of_memory", 1_400)
+
+
 ONE = """
 import json, os, sys, time
+from drivelint.evaluate import limits
 from drivelint.evaluate import limits
 from drivelint.report.progress import Silent
 from drivelint.run import check

@@ -25,7 +25,9 @@ MOST_EXCESSES: Final = 3
 """A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
 _LOOK_S: Final = 0.05
 _MEMORY_GRACE_S: Final = 0.5
-"""How long a rule may take to heed an interrupt for its memory; it may take gigabytes a second meanwhile."""
+"""How long a rule may take to heed an interrupt for its memory, unless it takes too much more meanwhile."""
+_MOST_EXCESS: Final = 1.25
+"""So many times its memory ends the grace."""
 
 Excess = Literal["rule_timeout", "out_of_memory"]
 """The limit that a rule went beyond, as the reason code of its verdicts."""
@@ -111,7 +113,7 @@ class RuleLimits:
     def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool) -> None:
         seconds = self.seconds or 0.0
         until, before = monotonic() + seconds, resident_bytes()
-        patience = 0.0
+        patience, most = 0.0, 0
         while not held.over.wait(min(_LOOK_S, seconds)):
             now = monotonic()
             excess = held.excess
@@ -121,10 +123,13 @@ class RuleLimits:
                     before = resident_bytes()
                 if memory is not None and resident_bytes() - before > memory:
                     excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
+                    most = before + int(_MOST_EXCESS * memory)
                 elif now >= until:
                     excess, patience = "rule_timeout", now + seconds
                 else:
                     continue
+            elif excess == "out_of_memory" and resident_bytes() > most:
+                patience = now
             with held.lock:
                 if held.over.is_set():
                     return
