@@ -259,6 +259,23 @@ def test_the_memory_limit_is_really_lifted() -> None:
         con.execute(large)
 
 
+@pytest.mark.parametrize("lifted", [False, True])
+def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool) -> None:
+    held = "SELECT sum(memory_usage_bytes) FROM duckdb_memory()"
+    with store.workspace(200_000_000) as con:
+        memory = Memory(con, 200_000_000)
+        if lifted:
+            memory.lift_limit()
+        limit = con.execute("SELECT current_setting('memory_limit')").fetchall()
+        con.execute("CREATE TABLE numbers AS SELECT range AS n, hash(range) AS h FROM range(4000000)")
+        ((before,),) = con.execute(held).fetchall()
+        memory.release()
+        ((after,),) = con.execute(held).fetchall()
+        assert before > 30_000_000 > after
+        assert con.execute("SELECT current_setting('memory_limit')").fetchall() == limit
+        assert con.execute("SELECT sum(n), count(DISTINCT h) FROM numbers").fetchall() == [(7999998000000, 4000000)]
+
+
 def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """DuckDB's own choice is a folder where the user is."""
     monkeypatch.chdir(tmp_path)

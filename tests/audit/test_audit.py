@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint import run
-from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge
+from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge, worker
 from drivelint.audit import run as audit_run
 from drivelint.audit.ask import ask
 from drivelint.audit.driver import MOST_ATTEMPTS
@@ -19,6 +19,7 @@ from drivelint.audit.executors import Outcome
 from drivelint.audit.lock import locked
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
+from drivelint.engine.memory import Memory
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet_report.opened import opened
 from drivelint.report.progress import Silent
@@ -121,6 +122,22 @@ def test_processes_give_the_same_tables(
         sources=(str(drives.manifest),), map=drives.road, out=str(tmp_path / "out"), settings=SETTINGS, workers=workers
     )
     assert audit(request, Silent()).digest == undisturbed[1].digest
+
+
+def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    released: list[Memory] = []
+    release = Memory.release
+    monkeypatch.setattr(worker, "TASKS_PER_RELEASE", 1)
+
+    def noted(memory: Memory) -> None:
+        released.append(memory)
+        release(memory)
+
+    monkeypatch.setattr(Memory, "release", noted)
+    assert judged(drives, tmp_path / "out", InThisProcess()).digest == undisturbed[1].digest
+    assert len(released) > 1
 
 
 def test_shards_give_the_same_tables(

@@ -57,6 +57,14 @@ class Memory:
         self._note(f"{format_bytes(self._limit)} of memory do not do (--memory): the database may take up to {given}")
         return True
 
+    def release(self) -> None:
+        """Give memory back to the system that nothing needs; called between statements. Limits stay as they are."""
+        store.release_memory(self._con)
+        if self.limited:
+            self._con.execute("SET memory_limit=?", [f"{self._limit}B"])
+        else:
+            store.lift_memory_limit(self._con)
+
     def most_growth(self) -> int | None:
         """Return by how many bytes the process may grow while a rule runs; None where that tells nothing of the rule.
 

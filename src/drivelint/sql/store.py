@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -155,6 +156,23 @@ def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     (most,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
     con.execute("SET memory_limit=?", [most])
     return str(most)
+
+
+def release_memory(con: duckdb.DuckDBPyConnection) -> None:
+    """Give memory back to the system that no table needs. The caller sets the memory limit anew.
+
+    DuckDB keeps a record of every block that it has freed, 200 bytes each and scattered, until it has to evict blocks. A limit that
+    it cannot keep makes it evict all it can: for a few milliseconds, with tables of some megabytes written to the spill folder.
+    The C library keeps the pages of what was freed, until it is told to return them.
+    """
+    with suppress(
+        duckdb.OutOfMemoryException, duckdb.IOException
+    ):  # an IOException: the disk is full, and the blocks stay
+        con.execute("SET memory_limit='1B'")
+    try:
+        ctypes.CDLL(None).malloc_trim(0)
+    except (OSError, TypeError, AttributeError):  # not glibc
+        return
 
 
 def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
