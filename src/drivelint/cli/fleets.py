@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
     """Write the fleet page of an audit into it, and print its name."""
     from drivelint.fleet_report import page
+    from drivelint.fleet_report.drive_pages import MOST_DRIVES
     from drivelint.fleet_report.opened import destination
 
     if to not in page.FORMATS:
         raise UsageError(f"--to {to}: of an audit there is {' and '.join(page.FORMATS)}: other formats are of a check")
     if drive_pages is not None and to != "html":
         raise UsageError("--drive-pages is for --to html: the other formats are one file")
-    most = page.MOST_DRIVES if drive_pages is None else values.parse_number_or_all("--drive-pages", drive_pages)
+    most = MOST_DRIVES if drive_pages is None else values.parse_number_or_all("--drive-pages", drive_pages)
     base = None if baseline is None else destination(baseline)
     name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base, most))
     _warn(audit)

@@ -17,6 +17,7 @@ from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.figures import LogAxis, log_axis
 from drivelint.fleet_report.places import FindingMap, finding_map
 from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
+from drivelint.fleet_report.worst_value import WorstValue, worst_value
 from drivelint.phrases import plural
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -47,8 +48,9 @@ class FleetContent:
 
     `totals`: the row of `drives.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
-    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. Logs of one content are one drive;
-    `n_without_rate`: findings of such a log that another one stands for in the rates, as it was judged otherwise.
+    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. `worst_value`: the value of a tag
+    whose rate differs most from the others. Logs of one content are one drive; `n_without_rate`: findings of such a log that another one
+    stands for in the rates, as it was judged otherwise.
     """
 
     audit: Audit
@@ -63,6 +65,7 @@ class FleetContent:
     n_without_rate: int
     contacts: tuple[int, int]
     not_judged: list[Row]
+    worst_value: WorstValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
     missing: Missing
@@ -161,6 +164,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
         not_judged=rows(con, "not_judged", {"most": MAX_DRIVES}),
+        worst_value=worst_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),
         missing=missing(con),

@@ -11,7 +11,7 @@ import re
 import shlex
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from drivelint.audit.bucket import is_url
 from drivelint.fleet_report import figures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -24,7 +23,7 @@ from drivelint.result.counts import SEVERITIES, VERDICTS
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import duckdb
     from jinja2 import Environment
