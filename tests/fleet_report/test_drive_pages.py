@@ -13,11 +13,17 @@ import pyarrow.parquet as pq
 import pytest
 from lxml import html
 
+from drivelint.audit.compact import RECEIPT_SCHEMA
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages
-from drivelint.fleet_report.opened import opened
+from drivelint.fleet_report.opened import Audit, opened
+from tests.fleet import audits
+from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
+from tests.report.synthetic import rule
 
 SEVERITIES = ("critical", "major", "minor")
 
@@ -192,6 +198,49 @@ def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, by
             counted.con, through = con, counted
         drive_pages.choose(through, most)
         return dict(drive_pages.pages(through, told, found.rules))
+
+
+def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_run() -> None:
+    note = {
+        "check_id": "gap",
+        "severity": "warning",
+        "actor_id": None,
+        "n": 1,
+        "t_first_ns": 0,
+        "message": "3 chunks were lost",
+    }
+    lack = {"ego_id": "1", "signal": "brake_light", "reason_code": "missing_brake_light", "reason": "no brake lights"}
+    drives = [
+        ego_drive("a", lossy=True, quality=[note], not_judged=[lack], sha256="same"),
+        ego_drive("b", sha256="same"),
+    ]
+    verdicts = [
+        said("a", "fail"),
+        said("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
+    ]
+    rules = [rule(profiles=[], status="draft"), rule("z-contact", profiles=[])]
+    with duckdb.connect() as con:
+        audits.add_rows(
+            con, drives, verdicts, [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
+        )
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        told = content_.content(con, audit, None, ())
+        assert drive_pages.choose(con, None) == [drive_pages.page_name("a"), drive_pages.page_name("b")]
+        made = dict(drive_pages.pages(con, audit, told.rules))
+    lossy, whole = (html.fromstring(made[drive_pages.page_name(key)]) for key in "ab")
+    assert "Lossy: parts of the log were lost" in words(lossy.find(".//header"))
+    assert "Lossy" not in words(whole)
+    data = words(lossy.xpath("//section[@aria-labelledby='data']")[0])
+    assert "warning 3 chunks were lost" in data
+    assert "missing brake light: no brake lights" in data
+    (finding,) = lossy.xpath("//section[@aria-labelledby='findings']//tbody/tr")
+    assert "possible, in 40 of 100 copies" in words(finding)
+    assert "draft" in words(finding[0])
+    (open_,) = lossy.xpath("//section[@aria-labelledby='undecided']//tbody/tr")
+    assert [words(cell) for cell in open_[:2]] == ["rule timeout error", "1"]
+    assert "1 other log of the audit" in words(lossy)
+    assert words(whole.xpath("//h1")[0]) == "Nothing could be decided: b"
 
 
 def test_a_name_holds_nothing_of_a_key_that_is_no_hash() -> None:
