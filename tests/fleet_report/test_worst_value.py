@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import binomtest, chi2
 
 from tests.fleet.audits import ego_drive
-from tests.fleet_report.test_honest_words import Told, touched, words, words_of
+from tests.fleet_report.told import Told, touched, words, words_of
 
 
 def told(*drives: tuple[str, int, dict[str, str]], km: float = 100.0) -> Told:
