@@ -1,2 +1,2 @@
 -- The drives that could not be judged.
-SELECT log, status_reason FROM drives WHERE status <> 'judged' ORDER BY log, key LIMIT $most
+SELECT key, log, status_reason FROM drives WHERE status <> 'judged' ORDER BY log, key LIMIT $most

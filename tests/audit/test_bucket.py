@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import re
 from typing import TYPE_CHECKING
 
 import obstore
 import pytest
 
 from drivelint.audit import bucket
+from drivelint.audit.store import open_store
 from drivelint.errors import TraceError
+from drivelint.fleet_report import page
 from tests.audit import fleet
 from tests.audit.faulty import faults, s3
 from tests.audit.here import judged
@@ -70,6 +74,22 @@ def test_a_store_that_fails_now_and_then_gives_the_same_tables(
     _use(monkeypatch, server)
     assert all(counted.values()), counted
     assert (got.judged, got.digest) == (N_DRIVES, digest)
+
+
+def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_removed(
+    drives: fleet.Fleet, server: str
+) -> None:
+    judged(drives, "s3://fleet/paged", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    results = open_store("s3://fleet/paged")
+    for most, due in ((None, N_DRIVES), (1, 1), (0, 0)):
+        page.write("s3://fleet/paged", "html", (), None, most)
+        told = json.loads(results.read("drives/pages.json") or b"{}").get("written_by_drivelint", [])
+        there = set(results.names("drives"))
+        assert len(told) == due
+        assert there == ({*told, "drives/pages.json"} if due else set())
+        linked = set(re.findall(r'href="(drives/[^"]+)"', (results.read("fleet.html") or b"").decode()))
+        assert linked <= there
+        assert bool(linked) == bool(due)
 
 
 def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:

@@ -1,10 +1,12 @@
-"""The fleet page in Chromium: no complaint, no request, sorting works, nothing wider than the window."""
+"""The fleet page and a drive page in Chromium: no complaint, no request, sorting works, nothing wider than the window."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
+from lxml import html
 
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
@@ -73,9 +75,23 @@ def test_rates_without_findings_are_folded(opened: Page) -> None:
 
 
 def test_no_list_of_the_page_is_a_box_that_scrolls(opened: Page) -> None:
-    boxes = ".rate-table, .changes"
+    boxes = ".rate-table, .changes, .worst-table"
     scrolling = f"[...document.querySelectorAll('{boxes}')].filter(e => e.scrollHeight > e.clientHeight + 1).length"
     assert opened.value(scrolling) == 0
+
+
+def test_the_worst_drives_stand_on_the_page_the_first_ten_of_any_order(opened: Page) -> None:
+    assert opened.value("getComputedStyle(document.querySelector('.worst-table')).overflow") == "visible"
+    assert opened.value(
+        "document.querySelector('.worst-table table').getBoundingClientRect().right <= document.documentElement.clientWidth"
+    )
+    seen = "[...document.querySelectorAll('.worst-table tbody tr')].filter(e => e.offsetHeight).length"
+    assert opened.value(seen) == 10
+    opened.value("document.querySelectorAll('.worst-table thead th button')[4].click()")
+    assert opened.value(seen) == 10
+    opened.value("document.querySelector('.more-switch summary').click()")
+    assert opened.value(seen) == opened.value("document.querySelectorAll('.worst-table tbody tr').length") > 10
+    opened.value("document.querySelector('.more-switch summary').click()")
 
 
 def test_folded_lists_are_open_on_paper_and_tables_are_not_cut(opened: Page) -> None:
@@ -89,3 +105,62 @@ def test_folded_lists_are_open_on_paper_and_tables_are_not_cut(opened: Page) -> 
     opened.call("Emulation.setEmulatedMedia", media="")
     opened.value("dispatchEvent(new Event('afterprint'))")
     assert opened.value(f"{folds}.every(e => !e.open)")
+
+
+@pytest.fixture(scope="module", params=[1440, 390])
+def drive_page(
+    request: pytest.FixtureRequest, filled: lake.Lake, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Page]:
+    """Return the page of the worst drive."""
+    assert ran("report", filled.folder).code == 0
+    fleet_page: Any = html.fromstring((filled.folder / "fleet.html").read_bytes())
+    link = fleet_page.xpath("//*[@class='worst-table']//th/a/@href")[0]
+    home = tmp_path_factory.mktemp("drive")
+    with Page(
+        home / "profile", (filled.folder / link).as_uri(), width=request.param, dark=request.param == 390
+    ) as shown:
+        yield shown
+
+
+def test_a_drive_page_opens_without_complaints_and_asks_for_nothing(drive_page: Page) -> None:
+    assert drive_page.value("getComputedStyle(document.body).margin") == "0px", "the policy let our style in"
+    assert drive_page.value("document.querySelectorAll('.drive-findings tbody tr').length") >= lake.WORST
+    assert drive_page.complaints() == []
+    assert all(url.startswith(("file:", "data:")) for url in drive_page.requests())
+
+
+def test_a_drive_page_is_not_wider_than_the_window_and_has_no_box_that_scrolls(drive_page: Page) -> None:
+    assert drive_page.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    boxes = "[...document.querySelectorAll('main *')].filter(e => /auto|scroll/.test(getComputedStyle(e).overflow))"
+    assert drive_page.value(f"{boxes}.length") == 0
+
+
+def test_findings_of_a_drive_are_sorted_by_a_click(drive_page: Page) -> None:
+    times = "[...document.querySelectorAll('.drive-findings tbody tr')].map(r => Number(r.cells[2].dataset.v))"
+    drive_page.value("document.querySelectorAll('.drive-findings thead th button')[2].click()")
+    rising = drive_page.value(times)
+    assert rising == sorted(rising)
+    assert rising[-1] > rising[0]
+
+
+def test_paper_has_the_whole_drive_page_within_its_width(drive_page: Page) -> None:
+    drive_page.call("Emulation.setEmulatedMedia", media="print")
+    drive_page.call("Emulation.setDeviceMetricsOverride", width=703, height=1000, deviceScaleFactor=1, mobile=False)
+    assert drive_page.value("document.documentElement.scrollWidth <= 703")
+    assert drive_page.value("getComputedStyle(document.querySelector('.drive-findings tr')).breakInside") == "avoid"
+    drive_page.call("Emulation.clearDeviceMetricsOverride")
+    drive_page.call("Emulation.setEmulatedMedia", media="")
+
+
+def test_its_link_leads_back_to_the_fleet_page(drive_page: Page) -> None:
+    """The last test of the page, as it leaves it."""
+    assert drive_page.value("document.querySelector('header a').offsetHeight > 0")
+    drive_page.events.clear()
+    drive_page.value("document.querySelector('header a').click()")
+    drive_page._until("Page.loadEventFired")
+    assert (
+        drive_page.value(
+            "location.pathname.endsWith('/fleet.html') && document.querySelectorAll('.worst-table').length"
+        )
+        == 1
+    )

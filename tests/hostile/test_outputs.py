@@ -34,7 +34,8 @@ def pages(nasty: Nasty) -> list[Path]:
             done = ran(*words)
             assert done.code == 0, done.err
     (sheet,) = (nasty.result / "incidents").iterdir()
-    return [nasty.result / "report.html", sheet, nasty.audit / "fleet.html"]
+    (drive,) = (nasty.audit / "drives").glob("*.html")
+    return [nasty.result / "report.html", sheet, nasty.audit / "fleet.html", drive]
 
 
 def test_every_element_of_a_page_is_ours(nasty: Nasty) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
+from drivelint.cli import options, values
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
@@ -19,15 +19,19 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.opened import Audit
 
 
-def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None) -> None:
+def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
     """Write the fleet page of an audit into it, and print its name."""
     from drivelint.fleet_report import page
+    from drivelint.fleet_report.drive_pages import MOST_DRIVES
     from drivelint.fleet_report.opened import destination
 
     if to not in page.FORMATS:
         raise UsageError(f"--to {to}: of an audit there is {' and '.join(page.FORMATS)}: other formats are of a check")
+    if drive_pages is not None and to != "html":
+        raise UsageError("--drive-pages is for --to html: the other formats are one file")
+    most = MOST_DRIVES if drive_pages is None else values.parse_number_or_all("--drive-pages", drive_pages)
     base = None if baseline is None else destination(baseline)
-    name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base))
+    name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base, most))
     _warn(audit)
     typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
 

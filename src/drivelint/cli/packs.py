@@ -71,7 +71,7 @@ def pack(
     """
     from drivelint.pack import MOST_FINDINGS, PackRequest
 
-    most = MOST_FINDINGS if findings is None else values.parse_findings(findings)
+    most = MOST_FINDINGS if findings is None else values.parse_number_or_all("--findings", findings)
     request = PackRequest(
         folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite, most
     )

@@ -59,11 +59,20 @@ def report(
     baseline: Annotated[
         Path | None, option("--baseline", "DEST", "Of an audit: an earlier one, to say what is new since.")
     ] = None,
+    drive_pages: Annotated[
+        str | None,
+        option(
+            "--drive-pages",
+            "N|all",
+            "Of an audit, with html: pages of the N worst drives in its folder drives; 0 for none. Default: 100.",
+        ),
+    ] = None,
 ) -> None:
     """Write a report from a result folder, into it.
 
     Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
-    Of an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged.
+    Of an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged. Beside fleet.html, a page of
+    each of the worst drives.
 
     With --incident, the sheet of one finding, to be filed: when and where, both parties, speeds, who slowed, second by second,
     what each of them did by the same rules, how sure it is, what the recording does not hold. The log is judged again for it.
@@ -73,10 +82,12 @@ def report(
     if is_audit(dest := destination(folder)):
         if incident is not None or pdf or trace is not None or map_ is not None or base_url is not None:
             raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
-        fleets.report_audit(dest, to, by or (), baseline)
+        fleets.report_audit(dest, to, by or (), baseline, drive_pages)
         return
-    if by or baseline is not None:
-        raise UsageError(f"--by and --baseline are of an audit, and {dest} is none: name the folder of audit --out")
+    if by or baseline is not None or drive_pages is not None:
+        raise UsageError(
+            f"--by, --baseline and --drive-pages are of an audit, and {dest} is none: name the folder of audit --out"
+        )
     if incident is not None:
         from drivelint.incident import IncidentRequest, write_incident
 

@@ -48,12 +48,12 @@ def check_confidence(confidence: float | None, robustness: bool) -> None:
         raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
 
 
-def parse_findings(text: str) -> int | None:
-    """Read how many findings, None for `all`. Errors: `UsageError`."""
+def parse_number_or_all(option: str, text: str) -> int | None:
+    """Read how many, None for `all`. Errors: `UsageError`."""
     if text.strip().lower() == "all":
         return None
     if not re.fullmatch(r"\s*\d{1,9}\s*", text, re.ASCII):
-        raise UsageError(f"--findings {text!r}: write a number such as 100, or all")
+        raise UsageError(f"{option} {text!r}: write a number such as 100, or all")
     return int(text)
 
 

@@ -16,6 +16,8 @@ from drivelint.fleet_report.difference import AuditDifference, difference, verdi
 from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.figures import LogAxis, log_axis
 from drivelint.fleet_report.places import FindingMap, finding_map
+from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
+from drivelint.fleet_report.worst_value import WorstValue, worst_value
 from drivelint.phrases import plural
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -27,8 +29,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.fleet_report.opened import Audit
-
-    Row = dict[str, Any]
+    from drivelint.fleet_report.rows import Row
 
 MAX_DRIVES: Final = 50
 """Drives in a table."""
@@ -47,8 +48,9 @@ class FleetContent:
 
     `totals`: the row of `drives.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
-    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. Logs of one content are one drive;
-    `n_without_rate`: findings of such a log that another one stands for in the rates, as it was judged otherwise.
+    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. `worst_value`: the value of a tag
+    whose rate differs most from the others. Logs of one content are one drive; `n_without_rate`: findings of such a log that another one
+    stands for in the rates, as it was judged otherwise.
     """
 
     audit: Audit
@@ -63,11 +65,18 @@ class FleetContent:
     n_without_rate: int
     contacts: tuple[int, int]
     not_judged: list[Row]
+    worst_value: WorstValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
     missing: Missing
     places: FindingMap | None
     baseline: AuditDifference | None
+
+    @property
+    def keys(self) -> list[str | None]:
+        """The drives that the page names; None for drives of the baseline alone."""
+        since = [] if self.baseline is None else [e.new_key for of in self.baseline.entries.values() for e in of]
+        return [*(row["key"] for row in self.worst), *(row["key"] for row in self.not_judged), *since]
 
     @property
     def n_findings(self) -> int:
@@ -123,15 +132,16 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
     for table, same in _SAME.items():
         con.execute(statement("fleet_report/counted", table=table, columns=same))
     event = statement("fleet/event", of="counted_", least_share=share)
-    (totals,) = _rows(con, "drives")
+    (totals,) = rows(con, "drives")
     (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
-    columns = {row[0] for row in con.execute("DESCRIBE receipts").fetchall()}
-    worst = _rows(
+    worst = rows(
         con,
         "worst",
         {"most": MAX_DRIVES},
         least_share=share,
-        options="r.options" if "options" in columns else "NULL",  # receipts of older audits do not have them
+        ranked=ranked(),
+        gravest_first=gravest_first(),
+        options=options_column(con),
     )
     for row in worst:
         row["command"] = check_command(row["log"], row["options"], audit.settings, row["drive_id"])
@@ -140,11 +150,11 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
     found = sorted(rates(con), key=lambda rate: _gravest_first(rate, rules))
     subject = statement("fleet/subject", of="", value=value_of(None), without="")
-    (with_findings,) = _rows(con, "with_findings", subject=subject)
+    (with_findings,) = rows(con, "with_findings", subject=subject)
     return FleetContent(
         audit=audit,
         totals=totals,
-        severities={row["severity"]: row for row in _rows(con, "severities", event=event)},
+        severities={row["severity"]: row for row in rows(con, "severities", event=event)},
         verdicts=verdict_counts(con, "counted_"),
         rules=rules,
         rates=found,
@@ -153,7 +163,8 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         n_drives_with_findings=with_findings["drives"],
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
-        not_judged=_rows(con, "not_judged", {"most": MAX_DRIVES}),
+        not_judged=rows(con, "not_judged", {"most": MAX_DRIVES}),
+        worst_value=worst_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),
         missing=missing(con),
@@ -167,10 +178,3 @@ def _gravest_first(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
     severity = SEVERITIES.index(rule["severity"]), CONTACT not in rule["tags"]
     n = rate.findings + rate.findings_of_unknown
     return (not n, severity, -(rate.per_100km.rate or 0.0), -n, rate.rule_id, rate.profile or "")
-
-
-def _rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
-    rows: list[Row] = (
-        con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
-    )
-    return rows

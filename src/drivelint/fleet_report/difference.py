@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import duckdb
 
@@ -12,6 +12,7 @@ from drivelint.errors import UsageError
 from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.opened import BASE
+from drivelint.fleet_report.rows import rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.compare import Comparison
     from drivelint.fleet_report.opened import Audit
-
-    Row = dict[str, Any]
+    from drivelint.fleet_report.rows import Row
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
 NEAREST: Final = 5
@@ -55,12 +55,16 @@ _JUDGED: Final = {
 
 
 class Entry(NamedTuple):
-    """A finding of one of two audits. `causes`: what else is known to differ there; `causes_not_known`: of what it is not known."""
+    """A finding of one of two audits. `causes`: what else is known to differ there; `causes_not_known`: of what it is not known.
+
+    `new_key`: its drive in the newer audit; None: it is not there.
+    """
 
     finding: ComparedFinding
     log: str
     causes: tuple[str, ...]
     causes_not_known: tuple[str, ...]
+    new_key: str | None
 
 
 class Opened(NamedTuple):
@@ -150,8 +154,8 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
     """Return the difference of the audits of `opened`, with at most `most` findings of each standing."""
     found = compare(con, base=BASE, new="", tools=(base.version, new.version))
     sides = {"base": BASE, "new": ""}
-    (gating,) = _rows(con, "gating", base=BASE, new="")
-    only = [_rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
+    (gating,) = rows(con, "gating", base=BASE, new="")
+    only = [rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
     for each in found.differences:
@@ -175,14 +179,14 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         comparison=found,
         base_only=[row["log"] for row in only[0]],
         new_only=[row["log"] for row in only[1]],
-        opened=[Opened(**row) for row in _rows(con, "opened", base=BASE, new="")],
+        opened=[Opened(**row) for row in rows(con, "opened", base=BASE, new="")],
         rates=compare_rates(con, base=BASE, new=""),
     )
 
 
 def verdict_counts(con: duckdb.DuckDBPyConnection, of: str) -> dict[str, int]:
     """Return verdict -> number of rows, zeros included."""
-    found = {row["verdict"]: row["n"] for row in _rows(con, "verdicts", of=of)}
+    found = {row["verdict"]: row["n"] for row in rows(con, "verdicts", of=of)}
     return {verdict: found.get(verdict, 0) for verdict in VERDICTS}
 
 
@@ -196,8 +200,11 @@ def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
 
 
 def _entries(con: duckdb.DuckDBPyConnection, standing: str, most: int) -> list[Entry]:
-    rows = _rows(con, "entries", {"standing": standing, "most": most}, base=BASE, new="")
-    return [Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"])) for row in rows]
+    found = rows(con, "entries", {"standing": standing, "most": most}, base=BASE, new="")
+    return [
+        Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"])
+        for row in found
+    ]
 
 
 def _finding(row: Row) -> ComparedFinding:
@@ -231,11 +238,3 @@ def _why(row: Row) -> str:
 
 def _length(row: Row, of: str) -> float:
     return float(row[f"{of}to_s"] - row[f"{of}from_s"])
-
-
-def _rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
-    """Return the rows of a statement of `queries/fleet_report`."""
-    rows: list[Row] = (
-        con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
-    )
-    return rows

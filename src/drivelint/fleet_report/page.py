@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
-from drivelint.fleet_report import figures
+from drivelint.fleet_report import drive_pages, figures, page_files
 from drivelint.fleet_report.content import FleetContent, content
 from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, times
+from drivelint.fleet_report.drive_pages import MOST_DRIVES
 from drivelint.fleet_report.opened import opened
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
@@ -21,8 +23,9 @@ from drivelint.result.counts import SEVERITIES, VERDICTS
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
+    import duckdb
     from jinja2 import Environment
 
     from drivelint.fleet.missing import MissingSignal, Undecided
@@ -30,6 +33,7 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.opened import Audit
 
 FORMATS: Final = ("html", "markdown")
+NO_LINKS: Final[Mapping[str, str]] = MappingProxyType({})
 _FILES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
 _STANDING_TITLES: Final = {
     "never_decided": "Never decided: none passed or failed, some are unknown",
@@ -40,21 +44,35 @@ _STANDING_TITLES: Final = {
 _HERE: Final = Path(__file__).parent
 
 
-def write(dest: str, to: str, by: Sequence[str], baseline: str | None) -> tuple[str, Audit]:
-    """Write the page of an audit into it; return the file's name and the audit.
+def write(
+    dest: str, to: str, by: Sequence[str], baseline: str | None, most_drives: int | None = MOST_DRIVES
+) -> tuple[str, Audit]:
+    """Write the page of an audit into it, and with HTML those of its worst drives; return the fleet page's name and the audit.
 
-    `by`: tags by which rates are told apart. Errors: `UsageError` for an audit or tag that is not there; `OutputError`.
+    `by`: tags by which rates are told apart. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
+    `UsageError` for an audit or tag that is not there; `OutputError`.
     """
     with opened(dest, baseline) as (con, audit, base):
         found = content(con, audit, base, by)
-    page = html(found) if to == "html" else markdown(found)
-    audit.results.write(_FILES[to], page)
+        if to == "html":
+            _write_html(con, found, most_drives)
+        else:
+            audit.results.write(_FILES[to], markdown(found))
     return _FILES[to], audit
 
 
-def html(found: FleetContent) -> bytes:
-    """Return the page as UTF-8; the same audit gives the same bytes."""
-    text = _environment().get_template("fleet.html.j2").render(_words(found))
+def _write_html(con: duckdb.DuckDBPyConnection, found: FleetContent, most_drives: int | None) -> None:
+    """Write the drive pages, then the fleet page that links to them."""
+    results = found.audit.results
+    with page_files.listed(results, drive_pages.choose(con, most_drives)):
+        for name, page in drive_pages.pages(con, found.audit, found.rules):
+            results.write(name, page)
+        results.write(_FILES["html"], html(found, drive_pages.links(con, found.keys)))
+
+
+def html(found: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
+    """Return the page as UTF-8; the same audit gives the same bytes. `links`: a drive's key -> the address of its page."""
+    text = _environment().get_template("fleet.html.j2").render(_words(found), links=links)
     return text.encode("utf-8", "replace")
 
 

@@ -26,10 +26,12 @@ _MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
 _STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 
 
-def page_environment(scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = ()) -> Environment:
+def page_environment(
+    scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = (), *, base: Sequence[str] = _STYLES
+) -> Environment:
     """Return the templates of the report, and before them those of `folder`, whose `styles` come after the report's.
 
-    `scripts`: files of the report's templates.
+    `scripts`: files of the report's templates. `base`: the styles of the report that the page needs.
     """
     environment = Environment(
         finalize=visible,
@@ -39,7 +41,7 @@ def page_environment(scripts: Sequence[str], folder: Path | None = None, styles:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style = _joined([*(TEMPLATES / name for name in _STYLES), *((folder or TEMPLATES) / name for name in styles)])
+    style = _joined([*(TEMPLATES / name for name in base), *((folder or TEMPLATES) / name for name in styles)])
     script = _joined(TEMPLATES / name for name in scripts)
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours

@@ -1,0 +1,152 @@
+"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, what is unknown and why.
+
+The rows of all chosen drives are put into tables by one statement per table of the audit, and read from there some drives at a time:
+neither the number of scans nor the memory of this process grows with the drives.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shlex
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from drivelint.audit.bucket import is_url
+from drivelint.fleet_report import figures
+from drivelint.fleet_report.drive_command import check_command
+from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
+from drivelint.phrases import plural
+from drivelint.reasons.signals import WHAT_IS_NULL, remedy
+from drivelint.report.html.environment import page_environment
+from drivelint.result.certainty import doubt
+from drivelint.result.counts import SEVERITIES, VERDICTS, grouped
+from drivelint.result.text import utc_at
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    import duckdb
+    from jinja2 import Environment
+
+    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.rows import Row
+
+FOLDER: Final = "drives"
+MOST_DRIVES: Final = 100
+"""Drives that get a page if nothing else is asked for."""
+MAX_FINDINGS: Final = 200
+"""Findings on a page."""
+MAX_NOTES: Final = 40
+"""Reasons of unknown verdicts on a page, and notes on the data."""
+_AT_A_TIME: Final = 100
+_PLAIN: Final = re.compile(r"[0-9a-f]{64}")
+_HERE: Final = Path(__file__).parent
+
+
+def page_name(key: str) -> str:
+    """Return the name of a drive's page by its key; a key that is no SHA-256 may hold anything, so its hash stands for it."""
+    plain = key if _PLAIN.fullmatch(key) else hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()
+    return f"{FOLDER}/{plain}.html"
+
+
+def is_page_name(name: str) -> bool:
+    """Whether a name is one that `page_name` gives."""
+    folder, _, file = name.rpartition("/")
+    return folder == FOLDER and file.endswith(".html") and _PLAIN.fullmatch(file.removesuffix(".html")) is not None
+
+
+def choose(con: duckdb.DuckDBPyConnection, most: int | None) -> list[str]:
+    """Choose the drives that get a page, after `content`; return the names of the pages.
+
+    `most`: so many of the drives with findings, the worst first; None: all drives of the audit.
+    """
+    con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": most})
+    return [page_name(key) for (key,) in con.execute("SELECT key FROM page_drive ORDER BY no").fetchall()]
+
+
+def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[str, str]:
+    """Return key -> address, for a link from the fleet page, of those of these drives that were chosen to have a page."""
+    asked = sorted({key for key in keys if key is not None})
+    found = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": asked})
+    return {key: page_name(key) for (key,) in found.fetchall()}
+
+
+def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]) -> Iterator[tuple[str, bytes]]:
+    """Yield name and content of the page of each chosen drive. `rules`: rule_id -> row of the table `rule`."""
+    con.execute(statement("fleet_report/page_facts", options=options_column(con)))
+    con.execute(statement("fleet_report/page_findings", gravest_first=gravest_first()), {"most": MAX_FINDINGS})
+    con.execute(statement("fleet_report/page_verdicts"))
+    (n_pages,) = con.execute("SELECT count(*) FROM page_drive").fetchone() or (0,)
+    template = _environment().get_template("drive.html.j2")
+    same = {
+        "audit": audit,
+        "titles": {rule_id: rule["title"] for rule_id, rule in rules.items()},
+        "rules": rules,
+        "severities": SEVERITIES,
+        "verdicts": VERDICTS,
+        "max_notes": MAX_NOTES,
+    }
+    for first in range(1, n_pages + 1, _AT_A_TIME):
+        for told in _some(con, audit, first, first + _AT_A_TIME - 1):
+            yield page_name(told["drive"]["key"]), template.render(same | told).encode("utf-8", "replace")
+
+
+def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
+    """Yield what the template says of each of the drives with these numbers."""
+    bound = {"first": first, "last": last}
+    facts = rows(con, "page_some", bound, table="page_facts", order="no")
+    findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")
+    parts = (findings, rows(con, "page_counts", bound), rows(con, "page_undecided", bound))
+    by_drive = [grouped(part, lambda row: row["no"]) for part in parts]
+    for drive in facts:
+        yield _told(audit, drive, *(part.get(drive["no"], []) for part in by_drive))
+
+
+def _told(audit: Audit, drive: Row, findings: list[Row], counted: list[Row], undecided: list[Row]) -> Row:
+    for row in findings:
+        row |= {"doubt": doubt(row), "utc": utc_at(row["t_worst_ns"], drive)}
+    for row in undecided:
+        row["mend"] = remedy(row["reason_code"], None, drive["format"] or "mapped")
+    counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in counted}
+    by_severity = {name: findings[0][f"n_{name}"] if findings else 0 for name in SEVERITIES}
+    home = f"{FOLDER}/{drive['drive_id']}"
+    worst = [findings[0]["finding_id"]] if findings else []
+    return {
+        "drive": drive | {"tags": sorted(drive["tags"] or ()), "utc": utc_at(drive["t_start_ns"], drive)},
+        "headline": _headline(drive, by_severity, counts),
+        "findings": findings,
+        "n_findings": sum(by_severity.values()),
+        "counts": counts,
+        "undecided": undecided,
+        "lacking": grouped(drive["not_judged"], lambda lack: (lack["signal"], lack["reason"])),
+        "command": check_command(drive["log"], drive["options"], audit.settings, drive["drive_id"]),
+        "explain": [shlex.join(["drivelint", "explain", each, "--in", home]) for each in worst],
+        "is_stored": is_url(drive["log"]),
+    }
+
+
+def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, int]) -> tuple[str, str]:
+    """Return the outcome (fail, unknown or pass) of a drive, and the sentence at the top."""
+    if drive["status"] != "judged":
+        return "unknown", "Could not be judged"
+    if n := sum(by_severity.values()):
+        said = ", ".join(f"{found:,} {name}" for name, found in by_severity.items() if found)
+        return "fail", f"{said} {'finding' if n == 1 else 'findings'}"
+    if not counts["pass"]:
+        return "unknown", "Nothing could be decided"
+    if counts["unknown"] or counts["error"]:
+        return "unknown", "No finding, as far as it could be judged"
+    return "pass", "No finding"
+
+
+@cache
+def _environment() -> Environment:
+    environment = page_environment(
+        ("tables.js",), _HERE / "templates", ("fleet.css", "drive.css"), base=("report.css", "narrow.css", "first.css")
+    )
+    environment.filters |= {"figure": figures.figure, "plural": plural}
+    environment.globals["what_is_null"] = WHAT_IS_NULL
+    return environment

@@ -1,0 +1,51 @@
+"""The list of the drive pages beside the fleet page, by which a later report removes those that it does not write again."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from drivelint.fleet_report.drive_pages import FOLDER, is_page_name
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from drivelint.audit.store import ResultStore
+
+LIST_FILE: Final = f"{FOLDER}/pages.json"
+_KEY: Final = "written_by_drivelint"
+
+
+@contextmanager
+def listed(results: ResultStore, names: Collection[str]) -> Iterator[None]:
+    """List the pages that are written meanwhile; afterwards, remove those of an earlier report that are not among them.
+
+    While they are written, the list has the earlier ones too: if this report is killed, the next one knows of both. Files that are not
+    listed are never removed. Errors: `OutputError`.
+    """
+    earlier = _listed(results)
+    if earlier or names:
+        _write(results, {*earlier, *names})
+    yield
+    if gone := earlier - set(names):
+        results.delete(sorted(gone))
+    if names:
+        _write(results, names)
+    elif earlier:
+        results.delete([LIST_FILE])
+
+
+def _listed(results: ResultStore) -> set[str]:
+    """Return the pages of an earlier report. Other names in the list are not ours: nothing may be removed by them."""
+    try:
+        told = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
+    except msgspec.MsgspecError:
+        return set()
+    return {name for name in told.get(_KEY, ()) if is_page_name(name)}
+
+
+def _write(results: ResultStore, names: Collection[str]) -> None:
+    content = msgspec.json.format(msgspec.json.encode({_KEY: sorted(names)}), indent=1)
+    results.write(LIST_FILE, content + b"\n")

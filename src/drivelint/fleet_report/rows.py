@@ -1,0 +1,37 @@
+"""Runs the statements of `queries/fleet_report`, with the parts that several of them share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from drivelint.result.certainty import LEAST_SHARE
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    import duckdb
+
+    Row = dict[str, Any]
+
+
+def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
+    """Return the rows of a statement."""
+    found: list[Row] = (
+        con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
+    )
+    return found
+
+
+def ranked() -> str:
+    """Return the SELECT of the drives with findings, the worst first."""
+    return statement("fleet_report/ranked", least_share=str(LEAST_SHARE))
+
+
+def gravest_first() -> str:
+    """Return the order of the findings `f` of the rules `r`, to stand behind ORDER BY."""
+    return statement("fleet_report/gravest_first", least_share=str(LEAST_SHARE))
+
+
+def options_column(con: duckdb.DuckDBPyConnection) -> str:
+    """Return the SQL of a drive's options in its receipt `r`; receipts of older audits do not have them."""
+    columns = {row[0] for row in con.execute("DESCRIBE receipts").fetchall()}
+    return "r.options" if "options" in columns else "NULL"

@@ -1,0 +1,115 @@
+"""The value of a tag at which a rule has more findings per km than at the others: of all tags the one that stands out most."""
+
+from __future__ import annotations
+
+import shlex
+from itertools import groupby
+from operator import attrgetter
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.fleet import intervals
+from drivelint.fleet.rate_change import ALLOWED_FALSE_CALLS
+from drivelint.fleet.rates import rates
+from drivelint.fleet.situations import MEASURED
+from drivelint.fleet_report.by_tag import MAX_VALUES
+from drivelint.fleet_report.rows import rows
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import duckdb
+
+    from drivelint.fleet.intervals import Estimate
+    from drivelint.fleet.rates import Rate
+
+MAX_TAGS: Final = 6
+MAX_RULES: Final = 6
+_COMPARED: Final = "compared_"
+"""What the names of the views of the compared rules begin with."""
+
+
+class WorstValue(NamedTuple):
+    """A rule's rates by a tag, the highest first, of values at which something was wholly judged; `rest`: of all but the first value.
+
+    `corrected`: the chance of a difference like this one or a rarer one if no rate differs, corrected for all `n_tests` comparisons of the
+    values of `n_tags` tags; `n_tags_left_out`: tags that have more values, or that come behind the first tags.
+    """
+
+    tag: str
+    rates: list[Rate]
+    rest: Estimate
+    corrected: float
+    n_tests: int
+    n_tags: int
+    n_tags_left_out: int
+
+    @property
+    def worst(self) -> Rate:
+        """The rate at the value that stands out."""
+        return self.rates[0]
+
+    @property
+    def option(self) -> str:
+        """The option of `report` that shows all rules by the tag, as a shell reads it."""
+        return shlex.join(["--by", self.tag])
+
+    @property
+    def is_called(self) -> bool:
+        """Whether the difference is more than chance, as far as 5 % of false calls in all comparisons together are allowed."""
+        return self.corrected <= ALLOWED_FALSE_CALLS
+
+
+class _Compared(NamedTuple):
+    tag: str
+    rates: list[Rate]
+    p_value: float
+
+
+def worst_value(con: duckdb.DuckDBPyConnection, found: Sequence[Rate]) -> WorstValue | None:
+    """Return the value of a tag that stands out most; None: no tag has values that differ.
+
+    `found`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag and
+    rule can be told as the worst, but each value is a comparison that chance may win.
+    """
+    ids = list(dict.fromkeys(rate.rule_id for rate in found if rate.findings))[:MAX_RULES]
+    all_tags = rows(con, "tags")
+    told = [row["tag"] for row in all_tags if 1 < row["n_values"] <= MAX_VALUES and row["tag"] not in MEASURED]
+    if not ids or not told:
+        return None
+    tags = told[:MAX_TAGS]
+    con.execute("CREATE OR REPLACE TEMP TABLE compared_rule AS SELECT unnest($ids::VARCHAR[]) AS rule_id", {"ids": ids})
+    for table in ("verdicts", "findings", "rules"):
+        con.execute(
+            f"CREATE OR REPLACE TEMP VIEW {_COMPARED}{table} AS FROM {table} SEMI JOIN compared_rule USING (rule_id)"
+        )
+    con.execute(f"CREATE OR REPLACE TEMP VIEW {_COMPARED}drives AS FROM drives")
+    compared, n_tests = [], 0
+    for tag in tags:
+        by_rule = attrgetter("rule_id", "profile")
+        for _, of in groupby(rates(con, tag, of=_COMPARED), by_rule):
+            known = [rate for rate in of if rate.tag_value is not None and rate.km > 0]
+            if len(known) > 1 and any(rate.findings for rate in known):
+                n_tests += len(known)
+                compared.append(_compared(tag, known))
+    if not compared:
+        return None
+    first = min(compared, key=lambda each: (each.p_value, each.tag, each.rates[0].rule_id, each.rates[0].profile or ""))
+    rest = first.rates[1:]
+    return WorstValue(
+        first.tag,
+        first.rates,
+        intervals.poisson(sum(rate.findings for rate in rest), sum(rate.km for rate in rest) / 100),
+        min(1.0, n_tests * first.p_value),
+        n_tests,
+        len(tags),
+        sum(row["n_values"] > 1 for row in all_tags) - len(tags),
+    )
+
+
+def _compared(tag: str, known: Sequence[Rate]) -> _Compared:
+    """Compare the highest rate with all others: given the sum of the findings, each falls there with the value's share of the way."""
+    from scipy.stats import binomtest
+
+    ranked = sorted(known, key=lambda rate: (-(rate.per_100km.rate or 0.0), -rate.findings, rate.tag_value or ""))
+    n, km = sum(rate.findings for rate in ranked), sum(rate.km for rate in ranked)
+    return _Compared(tag, ranked, float(binomtest(ranked[0].findings, n, ranked[0].km / km).pvalue))

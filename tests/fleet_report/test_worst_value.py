@@ -1,0 +1,85 @@
+"""The value of a tag that the first screen names: its rate differs most from that of the others, and chance may explain it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from scipy.stats import binomtest, chi2
+
+from tests.fleet.audits import ego_drive
+from tests.fleet_report.told import Told, touched, words, words_of
+
+
+def told(*drives: tuple[str, int, dict[str, str]], km: float = 100.0) -> Told:
+    """Return the page of drives with so many contacts and these tags."""
+    return Told(
+        [ego_drive(name, km, tags=tags) for name, _, tags in drives],
+        [row for name, n, _ in drives for row in words(name, "fail" if n else "pass")],
+        [touched(name, k) for name, n, _ in drives for k in range(n)],
+    )
+
+
+def line(of: Told) -> str:
+    (found,) = of.html.xpath("//header/p[contains(@class, 'worst-value')]")
+    return words_of(found)
+
+
+def low_and_high(n: int, hundred_km: float) -> tuple[float, float]:
+    """Return Garwood's interval."""
+    return chi2.ppf(0.025, 2 * n) / 2 / hundred_km if n else 0.0, chi2.ppf(0.975, 2 * n + 2) / 2 / hundred_km
+
+
+def test_the_worst_site_is_named_with_rates_and_intervals_of_all_sites() -> None:
+    sites = [("a", 30, "hull"), ("b", 2, "leeds"), ("c", 3, "york")]
+    page = told(*((name, n, {"site": site, "release": "v1"}) for name, n, site in sites))
+    found = page.content.worst_value
+    assert found is not None
+    assert [(rate.tag_value, rate.findings) for rate in found.rates] == [("hull", 30), ("york", 3), ("leeds", 2)]
+    assert (found.worst.per_100km.low, found.worst.per_100km.high) == pytest.approx(low_and_high(30, 1))
+    assert (found.rest.low, found.rest.high) == pytest.approx(low_and_high(5, 2))
+    assert found.corrected == pytest.approx(
+        3 * binomtest(30, 35, 1 / 3).pvalue
+    )  # three sites; all drives have one release
+    said = line(page)
+    assert said.startswith(
+        "By tag, the largest difference is at site hull: No collision, findings per 100 km: hull 30.0 (20.2 to 42.8)"
+    )
+    assert "More than chance explains" in said
+    assert "leeds 2.00 (0.242 to 7.22)" in said
+    assert "report --by site" in said
+
+
+def test_a_difference_that_chance_explains_is_told_as_that() -> None:
+    page = told(("a", 3, {"site": "hull"}), ("b", 1, {"site": "york"}))
+    assert "It may be chance: p = 1.00, corrected for 2 comparisons of 1 tag" in line(page)
+
+
+def test_of_several_tags_the_one_that_differs_most_is_named() -> None:
+    drives: list[Any] = [
+        (f"{site}{release}", 20 if release == "v2" else 9 if site == "hull" else 8, {"site": site, "release": release})
+        for site in ("hull", "york")
+        for release in ("v1", "v2")
+    ]
+    assert "at release v2: No collision, findings per 100 km: v2 20.0 " in line(told(*drives))
+
+
+@pytest.mark.parametrize(
+    "drives",
+    [
+        [("a", 3, {}), ("b", 1, {})],
+        [("a", 3, {"site": "hull"}), ("b", 1, {"site": "hull"})],
+        [("a", 0, {"site": "hull"}), ("b", 0, {"site": "york"})],
+        [(f"{n}", n, {"car": f"{n}"}) for n in range(13)],
+    ],
+    ids=["no tags", "one value", "no findings", "too many values"],
+)
+def test_without_values_to_compare_nothing_is_said(drives: list[Any]) -> None:
+    page = told(*drives)
+    assert page.content.worst_value is None
+    assert not page.html.xpath("//p[contains(@class, 'worst-value')]")
+
+
+def test_a_tag_that_is_no_plain_word_is_quoted_in_the_option() -> None:
+    page = told(("a", 3, {"the site": "hull"}), ("b", 1, {"the site": "york"}))
+    assert "report --by 'the site'" in line(page)
