@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.cli import values
-from drivelint.engine import batch, margins
+from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY, Memory
 from drivelint.errors import UsageError
@@ -257,6 +257,30 @@ def test_the_memory_limit_is_really_lifted() -> None:
             con.execute(large)
         store.lift_memory_limit(con)
         con.execute(large)
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_tables_that_are_set_aside_on_disk_give_the_same_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, full: bool
+) -> None:
+    mapped: list[str] = []
+    usual = files(overtakes("collision", out=tmp_path / "a"))
+    memory_map = pa.memory_map
+
+    def noted(path: str) -> pa.MemoryMappedFile:
+        mapped.append(Path(path).name)
+        return memory_map(path)
+
+    def no_room(path: str, _mode: str) -> pa.OSFile:
+        Path(path).touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(set_aside, "LEAST_BYTES", -1)
+    monkeypatch.setattr(pa, "memory_map", noted)
+    if full:
+        monkeypatch.setattr(pa, "OSFile", no_room)
+    same(files(overtakes("collision", out=tmp_path / "b")), usual)
+    assert ("actor_state.arrow" in mapped) is not full
 
 
 @pytest.mark.parametrize("lifted", [False, True])

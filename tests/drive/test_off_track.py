@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pytest
 
+from drivelint.drive import outliers
+from drivelint.drive.order import steps
+from drivelint.drive.trace import States
 from tests.ingested import ingested
 from tests.scenes import Actor, drive, judged, moving, road, times
 
@@ -175,3 +178,20 @@ def test_no_finding_comes_of_a_jump() -> None:
         row["drive_id"] for row in found if row["rule_id"] == "ukhc.contact-signature" and row["verdict"] == "unknown"
     }
     assert {one.trace.drive_id for one in drives if teleports(one.trace)} <= unknown
+
+
+@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("piece_rows", [1, 7, 100])
+def test_pieces_do_not_decide(piece_rows: int, monkeypatch: pytest.MonkeyPatch, *, told: bool) -> None:
+    """A long drive is looked at in pieces: a sample at the edge of one is as in the middle."""
+    rng = np.random.default_rng(7)
+    t_ns = np.tile(np.arange(150) * 100_000_000, 2)
+    x = t_ns * 1e-8 + np.where(rng.random(300) < 0.1, rng.normal(0, 2.0, 300), 0.0)
+    y = np.where(rng.random(300) < 0.02, np.nan, 0.0)
+    speed = np.full(300, 10.0 if told else np.nan)
+    numbers = {"x_m": x, "y_m": y, "vx_mps": speed, "vy_mps": 0 * speed}
+    states = States(["a", "b"], np.repeat([0, 1], 150).astype(np.int32), t_ns, numbers, {}, np.zeros(300, np.bool_))
+    usual = outliers.outlier_samples(states, steps(states))
+    assert usual.any()
+    monkeypatch.setattr(outliers, "PIECE_ROWS", piece_rows)
+    assert (outliers.outlier_samples(states, steps(states)) == usual).all()

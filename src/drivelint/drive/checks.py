@@ -139,14 +139,13 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
 
     Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
     """
-    error, told, moved, usable = _against_positions(states, step, jump, 1)
     wrong = np.zeros(len(states), np.bool_)
-    wrong[1:] = usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+    wrong[1:] = _disagree(*_against_positions(states, step, jump, 1))
     second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
     for n_steps in {second: None, 1: None}:
         error, told, moved, usable = _against_positions(states, step, jump, n_steps)
         moving = usable & (np.maximum(moved, told) > YAW_CHECK_LEAST_MPS)
-        off = moving & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+        off = moving & _disagree(error, told, moved, usable)
         n, n_moving = int(off.sum()), int(moving.sum())
         if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
@@ -162,6 +161,11 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
+def _disagree(error: Floats, told: Floats, moved: Floats, usable: Mask) -> Mask:
+    """Say which of the steps that `_against_positions` compared are further apart than the two ways of measuring explain."""
+    return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+
+
 def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
     """Compare the mean velocity from positions over every `n_steps` steps with the mean of the velocities, in m/s.
 
@@ -171,7 +175,9 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
     went, led, usable, span_s = displacements(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
     told = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
-    return np.hypot(*(went / span_s - led / span_s)), told, np.hypot(*(went / span_s)), usable
+    went /= span_s
+    led /= span_s
+    return np.hypot(*(went - led)), told, np.hypot(*went), usable
 
 
 def _cause(ratio: float) -> str:

@@ -182,6 +182,13 @@ def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Fl
     return went, led, np.hypot(*slack)
 
 
+def _apart(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
+    """Return how far positions and velocities lead apart in each step (n - 1), and how far off the velocity's way may be."""
+    went, led, slack = _step_by_step(states, step, usable)
+    went -= led
+    return np.hypot(*went), slack
+
+
 def _drifts(rest: Floats, step: Steps) -> bool:
     """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
@@ -198,12 +205,16 @@ def _mismatched(states: States, step: Steps) -> Mask:
     if n <= k:
         return found
     usable = known_motion(states, step)
-    went, led, slack = _step_by_step(states, step, usable)
-    alone = np.hypot(*(went - led))
+    alone, slack = _apart(states, step, usable)
     went, led, whole, span = displacements(states, step, usable, k)
     span = np.where(whole, span, np.nan)
-    went, led = went / span, led / span
-    off, fastest = np.hypot(*(went - led)), np.hypot(*np.maximum(np.abs(went), np.abs(led)))
+    went /= span
+    led /= span
+    off = np.hypot(*(went - led))
+    # in place: these are the largest arrays of all, for a long drive
+    np.maximum(np.abs(went, out=went), np.abs(led, out=led), out=went)
+    fastest = np.hypot(*went)
+    del went, led
     allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _most(slack, k) / span
     wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():

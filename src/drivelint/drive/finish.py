@@ -49,9 +49,10 @@ TRACE_TABLES = (
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     _refuse_no_drive(path, recording.states)
-    states, restarts = unknown_at_restarts(recording.states)
-    states, repeated = without_duplicates(sorted_states(states))
+    pa.default_memory_pool().release_unused()  # else it keeps what the reader's tables took until the next table is made
     lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
+    states, restarts = unknown_at_restarts(recording.hand_over_states())
+    states, repeated = without_duplicates(sorted_states(states))
     findings = [*recording.findings, *lost, *restarts, *repeated]
     assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]

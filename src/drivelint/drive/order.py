@@ -128,13 +128,19 @@ def time_derivative(values: Floats, step: Steps) -> Floats:
 
 def known_motion(states: States, step: Steps) -> Mask:
     """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
-    known: Mask = np.logical_and.reduce(np.isfinite([*states.place, *states.velocity]))
+    known = np.ones(len(states), np.bool_)
+    for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
+        known &= np.isfinite(states.numbers[name])
     return step.continuous & known[1:] & known[:-1]
 
 
 def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
     """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not `known`."""
-    return np.where(known, 0.5 * (rate[..., 1:] + rate[..., :-1]) * step.dt_s, 0.0)
+    led: Floats = rate[..., 1:] + rate[..., :-1]
+    led *= 0.5
+    led *= step.dt_s
+    np.copyto(led, 0.0, where=~known)
+    return led
 
 
 def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
@@ -142,9 +148,10 @@ def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Flo
 
     Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
     """
-    place = states.place
-    went = place[:, k:] - place[:, :-k]
-    led = sums_over(integral_per_step(states.velocity, step, known), k)
+    went, led = np.empty((2, 2, len(states) - k))
+    for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
+        np.subtract(states.numbers[place][k:], states.numbers[place][:-k], out=went[axis])
+        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known), k)
     whole: Mask = sums_over(~known, k) == 0
     return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
 

@@ -32,6 +32,10 @@ LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
 """With derived velocities a step counts if longer than 24 m/s2 dt2, clipped to these bounds: shorter ones cause no jolt of 12 m/s2."""
 LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
 """With recorded velocities a step only moves the position; below this it is within the accuracy of boxes."""
+PIECE_ROWS = 1 << 18
+"""Samples that are looked at together."""
+_REACH: Final = 8
+"""Samples of a piece's neighbours that decide on its own: two of a step, each beside a sample that two others tell."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
@@ -47,17 +51,26 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     place = states.place
     told = _told(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
-    moves = np.diff(place, axis=1) / dt_s, dt_s
     # noise is costly to estimate: skip it if no sample is off even with zero noise
-    exact, any_error = np.zeros(n), np.full(n, np.inf)
-    if not (
-        _beside(place, moves, told, exact, any_error).any() or _stepped(moves, told, exact, any_error, nothing).any()
-    ):
+    if not _found(place, dt_s, told, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
         return nothing
     runs = Tracklets.from_samples(states.t_ns, place, step)
     sigma = sample_noise(place, runs, states.actor)
-    beside = _beside(place, moves, told, sigma, sigma)
-    return beside | _stepped(moves, told, sigma, sigma, beside)
+    return _found(place, dt_s, told, sigma, sigma)
+
+
+def _found(place: Floats, dt_s: Floats, told: Mask, sigma: Floats, error: Floats) -> Mask:
+    """Return the outliers; found in pieces, because some thirty arrays of their length stand in between."""
+    n = len(told)
+    found = np.zeros(n, np.bool_)
+    for first in range(0, n, PIECE_ROWS):
+        begin, end = max(0, first - _REACH), min(n, first + PIECE_ROWS + _REACH)
+        rows, dt = slice(begin, end), dt_s[begin : end - 1]
+        moves = np.diff(place[:, rows], axis=1) / dt, dt
+        beside = _beside(place[:, rows], moves, told[rows], sigma[rows], error[rows])
+        piece = beside | _stepped(moves, told[rows], sigma[rows], error[rows], beside)
+        found[first : first + PIECE_ROWS] = piece[first - begin :][:PIECE_ROWS]
+    return found
 
 
 def _told(states: States, place: Floats) -> Mask:

@@ -201,8 +201,8 @@ class States:
         """The velocities along x and y (2, n) in m/s."""
         return np.stack([self.numbers["vx_mps"], self.numbers["vy_mps"]])
 
-    def take(self, rows: Indices | Mask) -> States:
-        """Return the chosen rows (indices or a mask), ids unchanged."""
+    def take(self, rows: Indices | Mask | slice) -> States:
+        """Return the chosen rows (indices, a mask or a slice), ids unchanged."""
         return States(
             self.ids,
             self.actor[rows],
@@ -274,3 +274,8 @@ class Recording:
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def hand_over_states(self) -> States:
+        """Return the states and keep none: memory has to hold those of a long drive once, not twice."""
+        states, self.states = self.states, self.states.take(slice(0))
+        return states

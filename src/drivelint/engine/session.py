@@ -17,6 +17,7 @@ from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
 from drivelint.engine.robustness import Robustness
+from drivelint.engine.set_aside import set_aside
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
@@ -229,6 +230,9 @@ class JudgingSession:
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
+        del rows
+        for drive in drives:
+            set_aside(self._con, drive.trace)
 
     def _attach(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -96,6 +96,12 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
             con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 
+def spill_folder(con: duckdb.DuckDBPyConnection) -> str:
+    """Return the folder to which a database spills; empty: to none."""
+    (folder,) = con.execute("SELECT current_setting('temp_directory')").fetchall()[0]
+    return str(folder or "")
+
+
 _cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
 """Id of a connection -> those of its cursors that are open: interrupting the one does not interrupt the others."""
 
