@@ -14,6 +14,7 @@ from drivelint import run
 from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge, worker
 from drivelint.audit import run as audit_run
 from drivelint.audit.ask import ask
+from drivelint.audit.compact import compact
 from drivelint.audit.driver import MOST_ATTEMPTS
 from drivelint.audit.executors import Outcome
 from drivelint.audit.lock import locked
@@ -165,6 +166,26 @@ def test_kills_lose_nothing_and_double_nothing(
     parts = {"parts/begun/all", "parts/ended/all"}
     files = {".lock", "audit.json", "rules.parquet", "summary.json"}
     assert {name for name in left if not name.startswith("tables/")} == parts | files
+
+
+def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
+    drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker of a lost cluster may have written a batch, and not yet its receipts, when the audit is given again."""
+    create = LocalFolder.create
+    batches: list[str] = []
+
+    def create_after_another_began(results: LocalFolder, name: str, content: bytes) -> bool:
+        if name.startswith("receipts/") and not batches:
+            batches.extend(results.names("batches"))
+            compact(results)
+            assert not list(results.names("batches"))
+        return create(results, name, content)
+
+    monkeypatch.setattr(LocalFolder, "create", create_after_another_began)
+    counted = judged(drives, tmp_path / "out")
+    assert len(batches) == len(worker.TABLES)
+    assert (counted.n_drives, counted.digest) == (N_DRIVES, undisturbed[1].digest)
 
 
 def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged(

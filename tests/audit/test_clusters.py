@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import signal
 import subprocess
 import sys
 import threading
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.audit.executors import ClusterError
+from drivelint.audit.executors import ClusterError, Outcome
 from drivelint.audit.executors.choice import open_executor
 from drivelint.errors import ExitCode, UsageError
 from tests.audit import fleet
@@ -20,7 +21,11 @@ from tests.audit.clusters import dask
 from tests.audit.here import judged
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
+
+    from drivelint.audit.executors.dask import DaskCluster
+    from tests.audit.clusters import DaskProcesses
 
 N_DRIVES = 16
 
@@ -64,6 +69,67 @@ def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
     assert "scheduler" in said
     assert "Traceback" not in said, said
     assert judged(drives, tmp_path / "out").digest == digest
+
+
+@pytest.fixture
+def sleepers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[DaskProcesses, DaskCluster]]:
+    """Two workers that sleep for as many seconds as a task says, with the executor that hands out such tasks."""
+    monkeypatch.setattr("drivelint.audit.executors.dask.run_task", time.sleep)
+    monkeypatch.setattr("drivelint.audit.executors.dask.WORKERLESS_S", 1.0)
+    monkeypatch.setattr("drivelint.audit.executors.dask._LOOK_S", 0.5)
+    with dask(tmp_path, 2) as cluster:
+        executor: Any = _on(cluster.address)
+        yield cluster, executor
+        executor.close()
+
+
+def _submitted(executor: Any, seconds: float) -> Any:
+    executor.submit(seconds)
+    return next(reversed(executor._running))
+
+
+def _until(future: Any, status: str) -> None:
+    for _ in range(600):
+        if future.status == status:
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"a task is {future.status} and not {status}")
+
+
+def test_a_result_that_is_lost_with_its_worker_is_made_again(sleepers: tuple[DaskProcesses, Any]) -> None:
+    _, executor = sleepers
+    long = _submitted(executor, 5.0)
+    short = _submitted(executor, 1.0)
+    _until(short, "finished")
+    ((holder,),) = executor._client.who_has([short]).values()
+    os.kill(executor._client.run(os.getpid)[holder], signal.SIGKILL)
+    _until(short, "lost")
+    assert executor.wait() == [Outcome(5.0, None)]  # type: ignore[arg-type]
+    assert long.status == "finished"
+    assert executor.wait() == [Outcome(1.0, None)]  # type: ignore[arg-type]
+
+
+def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) -> None:
+    cluster, executor = sleepers
+    executor.submit(60.0)
+    for worker in cluster.workers:
+        worker.send_signal(signal.SIGKILL)
+    (outcome,) = executor.wait()
+    assert "the worker died" in outcome.lost
+    executor.submit(60.0)
+    with pytest.raises(ClusterError, match="no worker for 1 s: start some and give the same command"):
+        executor.wait()
+
+
+def test_a_scheduler_that_dies_while_a_result_is_fetched(sleepers: tuple[DaskProcesses, Any]) -> None:
+    cluster, executor = sleepers
+    _until(_submitted(executor, 0.0), "finished")
+    cluster.scheduler.send_signal(signal.SIGSTOP)
+    death = threading.Timer(1.0, cluster.scheduler.send_signal, [signal.SIGKILL])
+    death.start()
+    with pytest.raises(ClusterError, match="the scheduler is gone"):
+        executor.wait()
+    death.join()
 
 
 def test_workers_with_threads_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -253,8 +253,9 @@ def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Se
     Where another worker was first, its receipt counts. Errors: `OutputError`; `DriveLintError` where its rows are others.
     """
     batch = digest(sorted(receipt.key for receipt in receipts))[:32]
-    for table in TABLES:
-        results.write(batch_name(table, batch), _parquet(rows[table]))
+    files = {batch_name(table, batch): _parquet(rows[table]) for table in TABLES}
+    for name, content in files.items():
+        results.write(name, content)
     counted: list[Receipt] = []
     for receipt in receipts:
         own = replace(receipt, batch=batch, n_in_batch=len(receipts))
@@ -267,6 +268,10 @@ def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Se
                 f"{own.log}: two workers got different results for one key ({own.key}): use one machine image for all workers"
             )
         counted.append(replace(there, reused=True))
+    if results.read(next(reversed(files))) is None:
+        # An audit that began before there were receipts has taken the files for those of a killed worker.
+        for name, content in files.items():
+            results.write(name, content)
     return counted
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import time
+from concurrent.futures import CancelledError
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,9 +17,11 @@ if TYPE_CHECKING:
 distributed: Any = import_module("distributed")  # not typed
 ANSWER_S = 30.0
 """Seconds in which a scheduler must answer."""
+WORKERLESS_S = 120.0
+"""Seconds for which an audit waits for a worker when there is none."""
 _LOOK_S: Final = 5.0
-"""Seconds after which a wait looks whether the scheduler is still there."""
-_GONE: Final = frozenset({"cancelled", "lost"})
+"""Seconds after which a wait looks whether the scheduler and workers are still there."""
+_ENDED: Final = frozenset({"finished", "error"})
 
 
 class DaskCluster:
@@ -42,6 +46,7 @@ class DaskCluster:
         self._address = address
         self._capacity = len(workers)
         self._running: dict[Any, Task] = {}
+        self._workerless_since: float | None = None
 
     @property
     def capacity(self) -> int:
@@ -59,12 +64,19 @@ class DaskCluster:
                 ended = distributed.wait(list(self._running), timeout=_LOOK_S, return_when="FIRST_COMPLETED").done
             except TimeoutError:
                 ended = set()
+            except CancelledError as error:  # whose text names all tasks
+                lost = self._client.status != "running"
+                raise self._gone("the connection was lost" if lost else "its tasks were cancelled") from error
             except Exception as error:
                 raise self._gone(str(error)) from error
-            if self._client.status != "running" or any(future.status in _GONE for future in ended):
-                raise self._gone("its tasks were cancelled")
+            if self._client.status != "running":
+                raise self._gone("the connection was lost")
+            # a result that was lost with its worker is among them: another worker makes it again
+            ended = {future for future in ended if future.status in _ENDED}
             if ended:
-                return [_outcome(future, self._running.pop(future)) for future in ended]
+                self._workerless_since = None
+                return [self._outcome(future, self._running.pop(future)) for future in ended]
+            self._require_workers()
         return []
 
     def close(self) -> None:
@@ -73,16 +85,33 @@ class DaskCluster:
             future.cancel()
         self._client.close(timeout=5)
 
+    def _outcome(self, future: Any, task: Task) -> Outcome:
+        try:
+            return Outcome(task, future.result())
+        except distributed.KilledWorker as error:
+            where = error.last_worker.address if error.last_worker else "unknown"
+            return Outcome(task, lost=f"the worker died ({where})")
+        except Exception as error:
+            if future.status != "error":  # the task has not failed: its result cannot be fetched
+                raise self._gone("a result could not be fetched") from error
+            return Outcome(task, error=error)  # the driver tells them apart
+
+    def _require_workers(self) -> None:
+        try:
+            workers = self._client.nthreads(callback_timeout=_LOOK_S)
+        except OSError:  # Dask finds out whether the connection is lost, and then cancels the tasks
+            return
+        now = time.monotonic()
+        if workers:
+            self._workerless_since = None
+        elif self._workerless_since is None:
+            self._workerless_since = now
+        elif now - self._workerless_since >= WORKERLESS_S:
+            raise ClusterError(
+                f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and give the same command"
+            )
+
     def _gone(self, why: str) -> ClusterError:
         return ClusterError(
             f"--cluster {self._address}: the scheduler is gone ({why}): start it and give the same command"
         )
-
-
-def _outcome(future: Any, task: Task) -> Outcome:
-    try:
-        return Outcome(task, future.result())
-    except distributed.KilledWorker as error:
-        return Outcome(task, lost=f"the worker died ({error.last_worker.address if error.last_worker else 'unknown'})")
-    except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
-        return Outcome(task, error=error)
