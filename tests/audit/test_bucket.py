@@ -8,8 +8,9 @@ import obstore
 import pytest
 from deltalake import DeltaTable
 
-from drivelint.audit import bucket
+from drivelint.audit import bucket, merge
 from drivelint.errors import TraceError
+from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.faulty import faults, s3
 from tests.audit.here import judged
@@ -78,6 +79,12 @@ def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet
     judged(drives, "s3://fleet/packed", delta=lake, sources=one, road=road, prune=True)
     assert DeltaTable("s3://fleet/lake/drives", storage_options=options).to_pyarrow_table()["log"].to_pylist() == [one]
     assert former.to_pyarrow_table().num_rows == N_DRIVES, "a reader of the former version keeps it"
+    with faults(server, 0.1) as (url, failed), pytest.MonkeyPatch.context() as patch:
+        _use(patch, url)
+        merge("s3://fleet/packed", Silent(), "s3://fleet/faulty-lake")
+    bucket._store.cache_clear()
+    assert sum(failed.values()) > 0
+    assert DeltaTable("s3://fleet/faulty-lake/receipts", storage_options=options).count() == 1
 
 
 def test_a_store_that_fails_now_and_then_gives_the_same_tables(

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import time
-from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -26,19 +27,24 @@ from drivelint.phrases import plural
 from drivelint.result.files import OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable
 
     import duckdb
     from deltalake import DeltaTable
 
     from drivelint.audit.store import ResultStore
 
+T = TypeVar("T")
+
 NAMES: Final = ("rules", *TABLES, "receipts")
 """The Delta tables, in the order in which they are written: as in a chunk, receipts are the last."""
 DIGEST: Final = "drivelint.digest"
 """The member of a commit that has the `digest` of the audit's summary."""
-_OPTIONS: Final = {"allow_http": "true", "conditional_put": "etag"}
-"""A commit creates a file that must not be there: without the second option, an S3 store would need a service that locks."""
+_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
+_ATTEMPTS: Final = 6
+"""Six attempts of 20 s are the two minutes after which a store that is busy ends a run."""
+_COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
+"""The texts of deltalake's errors are coloured."""
 
 
 class Written(NamedTuple):
@@ -66,7 +72,8 @@ def ready(dest: str, out: str, run: str) -> None:
     if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
         raise UsageError(f"--delta {dest}: lies within the audit: choose a place outside {out}")
     for table in NAMES:
-        _opened(f"{dest.rstrip('/')}/{table}", table, run)
+        where = _where(dest, table)
+        _persistent(where, partial(_opened, where, table, run))
 
 
 def write(
@@ -81,9 +88,11 @@ def write(
     added = removed = 0
     for table in NAMES:
         names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
-        files = {_content_name(file): file for name in names for file in [results.fetch(name, home)]}
+        files = {_content_name(file): file for file in (results.fetch(name, home) for name in names)}
         schema = con.table(table).limit(0).to_arrow_table().schema
-        done = _write_table(f"{dest.rstrip('/')}/{table}", table, files, schema, run=run, digest=digest)
+        where = _where(dest, table)
+        job = partial(_write_table, where, table, files, schema, run=run, digest=digest)
+        done = _persistent(where, job)
         added, removed = added + done.added, removed + done.removed
     return Written(added, removed)
 
@@ -95,7 +104,7 @@ def _write_table(
     from deltalake.transaction import AddAction, RemoveAction, create_table_with_add_actions
 
     store, there = open_store(where), _opened(where, table, run)
-    active = {} if there is None else _active(there, where)
+    active = {} if there is None else _active(there)
     now = int(time.time() * 1000)
     added = []
     for name in sorted(files.keys() - active.keys()):
@@ -105,43 +114,40 @@ def _write_table(
         added.append(AddAction(name, len(content), {}, now, data_change=True, stats=stats))
     removed = [RemoveAction(name, True, now, active[name], {}) for name in sorted(active.keys() - files.keys())]
     about = CommitProperties(custom_metadata={DIGEST: digest})
-    with _told(where):
-        if there is None:
-            create_table_with_add_actions(
-                _uri(where),
-                Schema.from_arrow(schema),
-                added,
-                name=_name(table),
-                description=_description(run),
-                storage_options=_OPTIONS,
-                commit_properties=about,
-            )
-        elif added or removed or _last_digest(store, there.version()) != digest:
-            there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
+    if there is None:
+        create_table_with_add_actions(
+            _uri(where),
+            Schema.from_arrow(schema),
+            added,
+            name=_name(table),
+            description=_description(run),
+            storage_options=_OPTIONS,
+            commit_properties=about,
+        )
+    elif added or removed or _last_digest(store, there.version()) != digest:
+        there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
     return Written(len(added), len(removed))
 
 
 def _opened(where: str, table: str, run: str) -> DeltaTable | None:
-    """Return the Delta table that is there; None: there is none. Errors: `UsageError` for that of another audit; `OutputError`."""
+    """Return the Delta table that is there; None: there is none. Errors: `UsageError` for that of another audit."""
     from deltalake import DeltaTable
     from deltalake.exceptions import TableNotFoundError
 
-    with _told(where):
-        try:
-            found = DeltaTable(_uri(where), storage_options=_OPTIONS)
-        except TableNotFoundError:
-            return None
-        about = found.metadata()
+    try:
+        found = DeltaTable(_uri(where), storage_options=_OPTIONS)
+    except TableNotFoundError:
+        return None
+    about = found.metadata()
     if (about.name, about.description) != (_name(table), _description(run)):
         of = "by other rules, parameters or versions" if about.name == _name(table) else "that drivelint did not write"
         raise UsageError(f"{where}: has a Delta table {of}: choose another --delta")
     return found
 
 
-def _active(table: DeltaTable, where: str) -> dict[str, int]:
+def _active(table: DeltaTable) -> dict[str, int]:
     """Return the files of the newest version and their sizes in bytes."""
-    with _told(where):
-        told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
+    told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
     return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
 
 
@@ -165,6 +171,10 @@ def _description(run: str) -> str:
     return f"audit {run}"
 
 
+def _where(dest: str, table: str) -> str:
+    return f"{dest.rstrip('/')}/{table}"
+
+
 def _uri(where: str) -> str:
     """Return the URI of a place; of a folder, its name may have any character."""
     return where if is_url(where) else Path(where).absolute().as_uri()
@@ -174,12 +184,18 @@ def _absolute(place: str) -> str:
     return place.rstrip("/") if is_url(place) else str(Path(place).resolve())
 
 
-@contextmanager
-def _told(where: str) -> Iterator[None]:
+def _persistent(where: str, job: Callable[[], T]) -> T:
+    """Run a job on a Delta table, and again where it fails: deltalake does not ask again for an answer that was cut off.
+
+    The job looks anew at the table each time. Errors: `OutputError`.
+    """
     from deltalake.exceptions import DeltaError
 
-    try:
-        yield
-    except (DeltaError, OSError) as error:
-        why = " ".join(str(error).split())[:300]
-        raise OutputError(f"{where}: cannot write the Delta table: {why}: give the same command again") from error
+    for attempt in range(_ATTEMPTS):
+        try:
+            return job()
+        except (DeltaError, OSError) as error:
+            if attempt + 1 == _ATTEMPTS:
+                why = " ".join(_COLOUR.sub("", str(error)).split())[:300]
+                raise OutputError(f"{where}: the Delta table failed: {why}: give the same command again") from error
+    raise AssertionError("unreachable")
