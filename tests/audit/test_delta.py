@@ -281,6 +281,13 @@ def test_a_place_within_the_audit_is_refused(out: Path, within: str) -> None:
     merge(str(out), Silent(), f"{out}-2/lake")
 
 
+def test_a_file_is_no_place_for_tables(drives: fleet.Fleet, tmp_path: Path) -> None:
+    (tmp_path / "lake").write_text("a file", encoding="ascii")
+    with pytest.raises(UsageError, match="lake: is a file: give a folder for the Delta tables"):
+        judged(drives, tmp_path / "out", delta=str(tmp_path / "lake"))
+    assert not (tmp_path / "out").exists()
+
+
 def test_without_deltalake_one_line_says_what_to_install(
     drives: fleet.Fleet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

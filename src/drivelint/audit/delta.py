@@ -63,7 +63,8 @@ class Written(NamedTuple):
 def ready(dest: str, out: str, run: str) -> None:
     """Make sure, before anything is judged, that the tables of the audit in `out` can be written to `dest`. `run`: the audit's run id.
 
-    Errors: `UsageError` where deltalake is not installed, or where `dest` is within `out` or has other tables; `OutputError`.
+    Errors: `UsageError` where deltalake is not installed, or where `dest` is a file, is within `out`, or has other tables;
+    `OutputError`.
     """
     try:
         import deltalake  # noqa: F401 - only whether it is there
@@ -71,6 +72,8 @@ def ready(dest: str, out: str, run: str) -> None:
         raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
     if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
         raise UsageError(f"--delta {dest}: lies within the audit: choose a place outside {out}")
+    if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
+        raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
     for table in NAMES:
         where = _where(dest, table)
         _persistent(where, partial(_opened, where, table, run))
