@@ -19,7 +19,7 @@ ACCEPTED = re.compile(
     re.IGNORECASE,
 )
 COPYLEFT = re.compile(r"(?<!L)GPL|(?<!Lesser )General Public License|AGPL|SSPL|EUPL|CC-BY-SA", re.IGNORECASE)
-USED = ("dask", "lanelet2", "ray", "timestamp", "viewers")
+USED = ("dask", "delta", "lanelet2", "ray", "timestamp", "viewers")
 """The extras of users; `dev` is what tests need."""
 
 

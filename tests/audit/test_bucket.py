@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import obstore
 import pytest
+from deltalake import DeltaTable
 
-from drivelint.audit import bucket
+from drivelint.audit import bucket, merge
 from drivelint.audit.store import open_store
 from drivelint.errors import TraceError
 from drivelint.fleet_report import page
+from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.faulty import faults, s3
 from tests.audit.here import judged
@@ -63,6 +65,30 @@ def test_logs_map_manifest_and_results_in_a_bucket_give_the_tables_of_a_folder(
     assert (counted.judged, counted.digest) == (N_DRIVES, digest)
     again = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     assert (again.reused, again.digest) == (N_DRIVES, digest)
+
+
+def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet, server: str) -> None:
+    options, lake = {"allow_http": "true"}, "s3://fleet/lake/"
+    (logs, road) = ("s3://fleet/data/logs/", "s3://fleet/data/ring.xodr")
+    for n in range(2):
+        counted = judged(drives, "s3://fleet/packed", delta=lake, sources=logs, road=road)
+        former = DeltaTable("s3://fleet/lake/drives", storage_options=options)
+        assert (former.version(), former.count()) == (0, N_DRIVES), f"given {n + 1} times"
+    commit = bucket.Bucket(lake).read(
+        f"drives/_delta_log/{0:020}.json"
+    )  # history() would wait for the server of this process
+    assert commit is not None
+    assert f'"drivelint.digest":"{counted.digest}"'.encode() in commit
+    one = f"{logs}drive-00000.parquet"
+    judged(drives, "s3://fleet/packed", delta=lake, sources=one, road=road, prune=True)
+    assert DeltaTable("s3://fleet/lake/drives", storage_options=options).to_pyarrow_table()["log"].to_pylist() == [one]
+    assert former.to_pyarrow_table().num_rows == N_DRIVES, "a reader of the former version keeps it"
+    with faults(server, 0.1) as (url, failed), pytest.MonkeyPatch.context() as patch:
+        _use(patch, url)
+        merge("s3://fleet/packed", Silent(), "s3://fleet/faulty-lake")
+    bucket._store.cache_clear()
+    assert sum(failed.values()) > 0
+    assert DeltaTable("s3://fleet/faulty-lake/receipts", storage_options=options).count() == 1
 
 
 def test_a_store_that_fails_now_and_then_gives_the_same_tables(

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit import listing, parts
+from drivelint.audit import delta, listing, parts
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
@@ -73,6 +73,8 @@ class AuditRequest(DriveInput):
     prune: bool = False
     """Take out results of logs that are not among the sources any more."""
     cluster: str | None = None
+    delta: str | None = None
+    """Folder or prefix of Delta tables of the packed tables."""
 
 
 def audit(request: AuditRequest, progress: Progress, executor: Executor | None = None) -> AuditSummary:
@@ -83,8 +85,14 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     """
     id_ = run_id(request.settings)
     results = open_store(request.out)
-    _begin(request, results, id_)
     alone = request.shard is None and not request.claim
+    if request.delta is not None:
+        if not alone:
+            raise UsageError(
+                "--delta has tables that are packed: give drivelint merge --delta, when all parts have ended"
+            )
+        delta.ready(request.delta, request.out, id_)
+    _begin(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune take results out: give them without --shard and --claim")
     part = parts.name_of(request.shard, claim=request.claim)
@@ -124,6 +132,8 @@ def _audited(
         if not alone:
             return replace(counted.plus(summed_receipts(con, _LISTED)), reused=n_reused)
         counted = _close(con, results, Path(home), n_reused)
+        if request.delta is not None:
+            _write_delta(request.delta, con, results, Path(home), progress, id_=id_, counted=counted)
         return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
 
@@ -214,20 +224,45 @@ def _close(
     return counted
 
 
-def merge(out: str, progress: Progress) -> AuditSummary:
+def _write_delta(
+    dest: str,
+    con: duckdb.DuckDBPyConnection,
+    results: ResultStore,
+    home: Path,
+    progress: Progress,
+    *,
+    id_: str,
+    counted: AuditSummary,
+) -> None:
+    """Make the Delta tables have what was packed. Of an audit without all its parts they would look like those of a whole one."""
+    if counted.missing_parts:
+        progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
+        return
+    progress.stage("writing Delta tables", None)
+    progress.note(delta.write(con, results, home, dest, run=id_, digest=counted.digest).text(dest))
+
+
+def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditSummary:
     """Pack the results of shards and claims, when none of them runs any more, and sum them up.
 
-    Errors: `UsageError`, `OutputError`.
+    `delta_dest`: folder or prefix of Delta tables of the packed tables. Errors: `UsageError`, `OutputError`.
     """
     results = open_store(out)
-    if results.read(AUDIT_FILE) is None:
+    told = results.read(AUDIT_FILE)
+    if told is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
+    id_ = json.loads(told)["run_id"]
+    if delta_dest is not None:
+        delta.ready(delta_dest, out, id_)
     progress.stage("packing", None)
     with locked(results, shared=False), database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         if isinstance(results, LocalFolder):
             results.sweep()
         results.delete(list(results.names("claims")))
-        return replace(_close(con, results, Path(home), 0, parts.missing(results)), n_asked=parts.asked(results))
+        counted = _close(con, results, Path(home), 0, parts.missing(results))
+        if delta_dest is not None:
+            _write_delta(delta_dest, con, results, Path(home), progress, id_=id_, counted=counted)
+        return replace(counted, n_asked=parts.asked(results))
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:

@@ -14,6 +14,15 @@ from drivelint.cli.options import Texts, argument, option
 from drivelint.errors import DriveLintError
 from drivelint.phrases import inert, inert_line, plural
 
+Delta = Annotated[
+    str | None,
+    option(
+        "--delta",
+        "PATH",
+        "At the end, also write the packed tables as Delta tables into this folder or URL (s3://, gs://, az://). Needs drivelint[delta].",
+    ),
+]
+
 
 @options.takes_drive_input
 def audit(
@@ -83,6 +92,7 @@ def audit(
         str | None,
         option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
     ] = None,
+    delta: Delta = None,
     evidence: options.Evidence = None,
     sign: options.Sign = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
@@ -122,6 +132,7 @@ def audit(
         retry_errors=retry_errors,
         prune=prune,
         cluster=cluster,
+        delta=delta,
     )
     pack = packs.asked_pack(evidence, sign, out, whole=shard is None and not claim)
     with bar(quiet) as progress:
@@ -154,7 +165,9 @@ def _kept(out: str) -> str:
     return f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
 
 
-def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")]) -> None:
+def merge(
+    dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")], *, delta: Delta = None
+) -> None:
     """Pack the results of audits with --shard or --claim, when all of them have ended.
 
     Exit codes: 0; 4 where a shard is missing or drives could not be judged; 3 for lossy input. Findings are no matter of it.
@@ -163,7 +176,7 @@ def merge(dest: Annotated[str, argument("DEST", "What the shards of audit --out 
     from drivelint.audit.text import summary_text
 
     with bar(False) as progress:
-        counted = run_interruptible(lambda: merged(dest, progress))
+        counted = run_interruptible(lambda: merged(dest, progress, delta))
     code = counted.exit_code("never", strict=False)
     typer.echo(inert(summary_text(counted, dest, code)))
     raise typer.Exit(int(code))

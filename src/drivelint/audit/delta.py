@@ -1,0 +1,204 @@
+"""Keeps Delta tables of an audit's packed tables, for Spark, Databricks, Trino and others that read them.
+
+A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files,
+named by the hash of what they hold. One commit adds the files that are new and takes out those that the audit has no more, so that
+a reader sees the former version or the next one, also where the writer is killed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import time
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from drivelint.audit.bucket import is_url
+from drivelint.audit.compact import chunk_name, chunks
+from drivelint.audit.store import open_store
+from drivelint.audit.worker import TABLES
+from drivelint.errors import UsageError
+from drivelint.phrases import plural
+from drivelint.result.files import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import duckdb
+    from deltalake import DeltaTable
+
+    from drivelint.audit.store import ResultStore
+
+T = TypeVar("T")
+
+NAMES: Final = ("rules", *TABLES, "receipts")
+"""The Delta tables, in the order in which they are written: as in a chunk, receipts are the last."""
+DIGEST: Final = "drivelint.digest"
+"""The member of a commit that has the `digest` of the audit's summary."""
+_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
+_ATTEMPTS: Final = 6
+"""Six attempts of 20 s are the two minutes after which a store that is busy ends a run."""
+_COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
+"""The texts of deltalake's errors are coloured."""
+
+
+class Written(NamedTuple):
+    """How many files a writing has added and taken out, in all tables."""
+
+    added: int
+    removed: int
+
+    def text(self, dest: str) -> str:
+        """Return the sentence for a person."""
+        if not self.added and not self.removed:
+            return f"{dest}: the Delta tables were up to date"
+        return f"{dest}: {plural(self.added, 'file')} added to the Delta tables, {self.removed} taken out"
+
+
+def ready(dest: str, out: str, run: str) -> None:
+    """Make sure, before anything is judged, that the tables of the audit in `out` can be written to `dest`. `run`: the audit's run id.
+
+    Errors: `UsageError` where deltalake is not installed, or where `dest` is a file, is within `out`, or has other tables;
+    `OutputError`.
+    """
+    try:
+        import deltalake  # noqa: F401 - only whether it is there
+    except ModuleNotFoundError as error:
+        raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
+    if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
+        raise UsageError(f"--delta {dest}: lies within the audit: choose a place outside {out}")
+    if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
+        raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
+    for table in NAMES:
+        where = _where(dest, table)
+        _persistent(where, partial(_opened, where, table, run))
+
+
+def write(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
+) -> Written:
+    """Make the Delta tables in `dest` have what the packed tables have, each by one commit, where they differ.
+
+    `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
+    an audit's tables at a time. Errors: `UsageError` for a table of somebody else; `OutputError`.
+    """
+    ids = chunks(results)
+    added = removed = 0
+    for table in NAMES:
+        names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
+        files = {_content_name(file): file for file in (results.fetch(name, home) for name in names)}
+        schema = con.table(table).limit(0).to_arrow_table().schema
+        where = _where(dest, table)
+        job = partial(_write_table, where, table, files, schema, run=run, digest=digest)
+        done = _persistent(where, job)
+        added, removed = added + done.added, removed + done.removed
+    return Written(added, removed)
+
+
+def _write_table(
+    where: str, table: str, files: dict[str, Path], schema: pa.Schema, *, run: str, digest: str | None
+) -> Written:
+    from deltalake import CommitProperties, Schema
+    from deltalake.transaction import AddAction, RemoveAction, create_table_with_add_actions
+
+    store, there = open_store(where), _opened(where, table, run)
+    active = {} if there is None else _active(there)
+    now = int(time.time() * 1000)
+    added = []
+    for name in sorted(files.keys() - active.keys()):
+        content = files[name].read_bytes()
+        store.write(name, content)
+        stats = json.dumps({"numRecords": pq.read_metadata(pa.BufferReader(content)).num_rows})
+        added.append(AddAction(name, len(content), {}, now, data_change=True, stats=stats))
+    removed = [RemoveAction(name, True, now, active[name], {}) for name in sorted(active.keys() - files.keys())]
+    about = CommitProperties(custom_metadata={DIGEST: digest})
+    if there is None:
+        create_table_with_add_actions(
+            _uri(where),
+            Schema.from_arrow(schema),
+            added,
+            name=_name(table),
+            description=_description(run),
+            storage_options=_OPTIONS,
+            commit_properties=about,
+        )
+    elif added or removed or _last_digest(store, there.version()) != digest:
+        there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
+    return Written(len(added), len(removed))
+
+
+def _opened(where: str, table: str, run: str) -> DeltaTable | None:
+    """Return the Delta table that is there; None: there is none. Errors: `UsageError` for that of another audit."""
+    from deltalake import DeltaTable
+    from deltalake.exceptions import TableNotFoundError
+
+    try:
+        found = DeltaTable(_uri(where), storage_options=_OPTIONS)
+    except TableNotFoundError:
+        return None
+    about = found.metadata()
+    if (about.name, about.description) != (_name(table), _description(run)):
+        of = "by other rules, parameters or versions" if about.name == _name(table) else "that drivelint did not write"
+        raise UsageError(f"{where}: has a Delta table {of}: choose another --delta")
+    return found
+
+
+def _active(table: DeltaTable) -> dict[str, int]:
+    """Return the files of the newest version and their sizes in bytes."""
+    told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
+    return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
+
+
+def _last_digest(store: ResultStore, version: int) -> str | None:
+    """Return the digest that the newest commit has; None: it has none, or its file was cleaned up."""
+    lines = (store.read(f"_delta_log/{version:020}.json") or b"").splitlines()
+    found = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
+    return found[0].get(DIGEST) if found else None
+
+
+def _content_name(file: Path) -> str:
+    with file.open("rb") as content:
+        return f"{hashlib.file_digest(content, 'sha256').hexdigest()}.parquet"
+
+
+def _name(table: str) -> str:
+    return f"drivelint {table}"
+
+
+def _description(run: str) -> str:
+    return f"audit {run}"
+
+
+def _where(dest: str, table: str) -> str:
+    return f"{dest.rstrip('/')}/{table}"
+
+
+def _uri(where: str) -> str:
+    """Return the URI of a place; of a folder, its name may have any character."""
+    return where if is_url(where) else Path(where).absolute().as_uri()
+
+
+def _absolute(place: str) -> str:
+    return place.rstrip("/") if is_url(place) else str(Path(place).resolve())
+
+
+def _persistent(where: str, job: Callable[[], T]) -> T:
+    """Run a job on a Delta table, and again where it fails: deltalake does not ask again for an answer that was cut off.
+
+    The job looks anew at the table each time. Errors: `OutputError`.
+    """
+    from deltalake.exceptions import DeltaError
+
+    for attempt in range(_ATTEMPTS):
+        try:
+            return job()
+        except (DeltaError, OSError) as error:
+            if attempt + 1 == _ATTEMPTS:
+                why = " ".join(_COLOUR.sub("", str(error)).split())[:300]
+                raise OutputError(f"{where}: the Delta table failed: {why}: give the same command again") from error
+    raise AssertionError("unreachable")
