@@ -111,6 +111,7 @@ def check(
                     strict=settings.strict,
                     required=required,
                     note=progress.note,
+                    release=memory.release,
                 )
             )
         session = JudgingSession(

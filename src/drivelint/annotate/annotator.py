@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
+LARGE_STATES = 1_000_000
+"""States of drives beside whose channels the database's tables are not to be in memory."""
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
 
@@ -42,7 +44,7 @@ class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
     `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result. A drive that cannot be
-    annotated is judged all the same: `note` is told which, and why.
+    annotated is judged all the same: `note` is told which, and why. `release` gives back memory that the database can do without.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class Annotator:
         strict: bool,
         required: tuple[str, ...] = (),
         note: Callable[[str], None],
+        release: Callable[[], None],
     ) -> None:
         self._folder = folder
         self._rules = rules
@@ -61,6 +64,7 @@ class Annotator:
         self._strict = strict
         self._required = required
         self._note = note
+        self._release = release
         self._roads: dict[str, Road] = {}
         self._parts: list[list[pa.Table]] = []
         self._series: set[Series] = set()
@@ -81,6 +85,8 @@ class Annotator:
         tables.append(con.execute(statement("evidence/least_margin"), {"ids": ids}).to_arrow_table())
         self._series |= series_of(tables[-1], self._rules.to_pylist())
         self._parts.clear()
+        if sum(drive.n_states for drive in drives) > LARGE_STATES:
+            self._release()
         for drive in drives:
             name = drive.trace.drive_id
             mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
