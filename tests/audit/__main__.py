@@ -1,7 +1,7 @@
 """`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables.
 
 `python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of the
-driver and of one worker grows with the drives: the most of either since the line before. `workers DRIVES`: what a second worker brings.
+driver and of one worker grows with the drives: the mean and the most of either since the line before. `workers DRIVES`: what a second worker brings.
 """
 
 from __future__ import annotations
@@ -42,27 +42,28 @@ def kills(n_drives: int, n_kills: int) -> None:
 
 
 def memory(n_drives: int) -> None:
-    """Print the most memory that the driver and its one worker took, again and again as the audit goes on."""
+    """Print the mean and the most memory of the driver and its one worker, again and again as the audit goes on."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         drives = fleet.write(Path(home) / "fleet", n_drives)
         out = Path(home) / "out"
         words = drives.command(out, "--workers", "1")
         running = subprocess.Popen([sys.executable, "-m", "drivelint", *words], stdout=subprocess.DEVNULL)
-        told, most = 0, dict[int, float]()
+        told, sizes = 0, dict[int, list[float]]()
         while running.poll() is None:
             for _ in range(10):
                 time.sleep(0.1)
                 for pid in (running.pid, *children(running.pid)):
-                    most[pid] = max(most.get(pid, 0.0), _rss(pid))
+                    sizes.setdefault(pid, []).append(_rss(pid))
             loose = sum(1 for _ in out.glob("receipts/*/*.json"))
             packed = sum(pq.read_metadata(file).num_rows for file in out.glob("tables/receipts/*.parquet"))
             n = max(loose, packed) if loose + packed > n_drives else loose + packed  # while it packs, both have some
             if n >= told + n_drives // 20:
                 told = n
                 # beside the worker, a process that packs, and one of Python's own
-                driver, *others = (f"{most[pid]:.0f}" for pid in (running.pid, *children(running.pid)) if pid in most)
+                seen = [sizes[pid] for pid in (running.pid, *children(running.pid)) if pid in sizes]
+                driver, *others = (f"{sum(each) / len(each):.0f} (most {max(each):.0f})" for each in seen)
                 print(f"{n:>7} drives: driver {driver} MB, its processes {', '.join(others)} MB", flush=True)
-                most.clear()
+                sizes.clear()
 
 
 def workers(n_drives: int) -> None:
