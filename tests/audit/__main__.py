@@ -1,7 +1,7 @@
 """`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables.
 
 `python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of the
-driver and of one worker grows with the drives: the mean and the most of either since the line before. `workers DRIVES`: what a second worker brings.
+driver and of one worker grows with the drives, its mean and the most since the line before. `workers DRIVES`: what a second worker brings.
 """
 
 from __future__ import annotations

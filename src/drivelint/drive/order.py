@@ -148,7 +148,7 @@ def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Flo
 
     Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
     """
-    went, led = np.empty((2, 2, len(states) - k))
+    went, led = np.empty((2, 2, max(0, len(states) - k)))
     for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         np.subtract(states.numbers[place][k:], states.numbers[place][:-k], out=went[axis])
         led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known), k)
