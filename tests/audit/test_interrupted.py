@@ -107,7 +107,7 @@ if __name__ == "__main__":
 
 
 def test_ctrl_c_is_heard_by_the_driver_and_by_no_worker_that_begins(tmp_path: Path) -> None:
-    """What multiprocessing starts first must not take the block off, and the main thread must not keep it."""
+    """The resource tracker of multiprocessing ends a block of signals when it starts; and the main thread must not stay blocked."""
     script = tmp_path / "blocked.py"
     script.write_text(BLOCKED, encoding="utf-8")
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)

@@ -35,7 +35,7 @@ LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
 LARGE_STATES = 1_000_000
-"""States of drives beside whose channels the database's tables are not to be in memory."""
+"""Where drives have more states, the database gives memory back before their annotated logs are written."""
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
 

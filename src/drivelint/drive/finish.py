@@ -49,7 +49,7 @@ TRACE_TABLES = (
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     _refuse_no_drive(path, recording.states)
-    pa.default_memory_pool().release_unused()  # else it keeps what the reader's tables took until the next table is made
+    pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
     lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
     states, restarts = unknown_at_restarts(recording.hand_over_states())
     states, repeated = without_duplicates(sorted_states(states))

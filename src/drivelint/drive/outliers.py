@@ -35,7 +35,7 @@ LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
 PIECE_ROWS = 1 << 18
 """Samples that are looked at together."""
 _REACH: Final = 8
-"""Samples of a piece's neighbours that decide on its own: two of a step, each beside a sample that two others tell."""
+"""Samples on each side of a piece that are looked at with it: more than decide whether a sample is an outlier."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
@@ -60,7 +60,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
 
 
 def _found(place: Floats, dt_s: Floats, told: Mask, sigma: Floats, error: Floats) -> Mask:
-    """Return the outliers; found in pieces, because some thirty arrays of their length stand in between."""
+    """Return the outliers. Pieces are looked at one by one, because each needs some thirty arrays of its length."""
     n = len(told)
     found = np.zeros(n, np.bool_)
     for first in range(0, n, PIECE_ROWS):

@@ -27,7 +27,7 @@ _LOOK_S: Final = 0.05
 _MEMORY_GRACE_S: Final = 0.5
 """How long a rule may take to heed an interrupt for its memory, unless it takes too much more meanwhile."""
 _MOST_EXCESS: Final = 1.25
-"""So many times its memory ends the grace."""
+"""A rule that has taken this many times its memory limit is not waited for any longer."""
 
 Excess = Literal["rule_timeout", "out_of_memory"]
 """The limit that a rule went beyond, as the reason code of its verdicts."""

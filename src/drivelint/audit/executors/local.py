@@ -81,9 +81,9 @@ class LocalPool:
 
 @contextmanager
 def deaf_to_ctrl_c() -> Iterator[None]:
-    """Make the threads and processes that are started within not hear Ctrl-C, which is for the main thread alone."""
+    """Block Ctrl-C in threads and processes that start inside this block: the main thread alone handles it."""
     sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
-    resource_tracker.ensure_running()  # its start would take the block below off again
+    resource_tracker.ensure_running()  # its start inside the block would end the block
     sys.warnoptions.pop()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
