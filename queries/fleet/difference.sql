@@ -5,7 +5,7 @@ WITH known AS (
     SELECT drive, new_no, base_no, false AS is_part FROM pair UNION ALL SELECT drive, new_no, base_no, true FROM part
 ), both_sides AS (
     SELECT n.finding_id, b.finding_id AS base_id, n.key AS new_key, b.key AS base_key, n.drive_id, n.ego_id, n.rule_id, n.profile, n.object_id,
-        n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why, b.severity AS base_severity,
+        n.severity, n.worst_s AS t_s, n.margin, b.margin AS base_margin, n.unit, 'fail' AS there, NULL AS why_code, b.severity AS base_severity,
         n.from_s, n.to_s, b.from_s AS base_from_s, b.to_s AS base_to_s, k.is_part,
         CASE WHEN n.margin IS NULL OR b.margin IS NULL THEN n.margin IS DISTINCT FROM b.margin WHEN n.margin = b.margin THEN false
             ELSE coalesce(abs(n.margin - b.margin) > greatest({margin_tolerance},
@@ -20,13 +20,13 @@ WITH known AS (
     FROM both_sides
     UNION ALL BY NAME
     SELECT 'new' AS standing, finding_id, key AS new_key, base_key, drive_id, ego_id, rule_id, profile, object_id, severity, worst_s AS t_s,
-        margin, unit, there, why, false AS worse
+        margin, unit, there, why_code, false AS worse
     FROM new_only
     UNION ALL BY NAME
     SELECT CASE WHEN there IN ('pass', 'not_applicable') THEN 'fixed' WHEN there = 'none' THEN 'lost'
             WHEN there = 'fail' THEN 'elsewhere' ELSE 'unknown' END AS standing,
         finding_id, finding_id AS base_id, new_key, key AS base_key, drive_id, ego_id, rule_id, profile, object_id, severity, worst_s AS t_s,
-        margin, margin AS base_margin, unit, there, why, false AS worse
+        margin, margin AS base_margin, unit, there, why_code, false AS worse
     FROM base_only
 ), base_rule AS (
     -- a rule that an audit has in several versions, or with several parameters, has no known one

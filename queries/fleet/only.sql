@@ -69,4 +69,4 @@ WITH lone AS (
         WHEN w.weight = 4 THEN ['pass', 'judged'] ELSE ['not_applicable', 'not_applicable'] END AS answer
     FROM placed p LEFT JOIN weighed w ON w.key = p.key AND w.no = p.no
 )
-SELECT * EXCLUDE (answer), answer[1] AS there, answer[2] AS why FROM answered
+SELECT * EXCLUDE (answer), answer[1] AS there, answer[2] AS why_code FROM answered

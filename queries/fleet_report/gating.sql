@@ -7,7 +7,7 @@ SELECT
     count(*) FILTER (standing IN ('unknown', 'lost', 'elsewhere') AND was_stable AND severity = 'major') AS gone_major,
     count(*) FILTER (standing IN ('unknown', 'lost', 'elsewhere') AND was_stable AND severity = 'minor') AS gone_minor,
     count(*) FILTER (worse) AS worse,
-    count(*) FILTER (standing = 'new' AND why = 'drive_not_checked') AS of_new_drives,
+    count(*) FILTER (standing = 'new' AND why_code = 'drive_not_checked') AS of_new_drives,
     count(*) FILTER (standing = 'fixed' AND there = 'pass') AS passes,
     count(*) FILTER (standing = 'fixed' AND there = 'not_applicable') AS not_applicable
 FROM (SELECT *, rule_id IN (SELECT rule_id FROM {new}rules WHERE status = 'stable') AS stable,

@@ -1,4 +1,4 @@
--- What is known of each drive with a page, besides its verdicts; `same_content`: other logs of the audit with the same bytes.
+-- The facts of each drive that has a page. `same_content` counts the other logs of the audit that have the same bytes.
 CREATE OR REPLACE TEMP TABLE page_facts AS
 WITH content AS (
     SELECT sha256, count(*) AS n FROM drives WHERE sha256 IS NOT NULL GROUP BY sha256

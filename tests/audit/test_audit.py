@@ -37,11 +37,6 @@ N_DRIVES = 24
 
 
 @pytest.fixture(scope="module")
-def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
-    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
-
-
-@pytest.fixture(scope="module")
 def undisturbed(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, AuditSummary]:
     out = tmp_path_factory.mktemp("undisturbed") / "audit"
     return out, judged(drives, out)

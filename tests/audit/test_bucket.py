@@ -27,11 +27,6 @@ N_DRIVES = 12
 
 
 @pytest.fixture(scope="module")
-def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
-    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
-
-
-@pytest.fixture(scope="module")
 def server(drives: fleet.Fleet) -> Iterator[str]:
     with s3() as url, pytest.MonkeyPatch.context() as patch:
         _use(patch, url)

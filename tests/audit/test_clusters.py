@@ -30,16 +30,6 @@ if TYPE_CHECKING:
 N_DRIVES = 16
 
 
-@pytest.fixture(scope="module")
-def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
-    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
-
-
-@pytest.fixture(scope="module")
-def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
-    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
-
-
 def _on(address: str) -> object:
     return open_executor(address, workers=None, memory=None, timeout_s=None)
 

@@ -43,16 +43,6 @@ def network() -> Iterator[Hosts]:
         yield made
 
 
-@pytest.fixture(scope="module")
-def drives(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
-    return fleet.write(tmp_path_factory.mktemp("fleet"), N_DRIVES)
-
-
-@pytest.fixture(scope="module")
-def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
-    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
-
-
 @contextmanager
 def _audit(network: Hosts, drives: fleet.Fleet, out: Path, address: str) -> Iterator[subprocess.Popen[str]]:
     """Run an audit on host 0, which ends with the block."""

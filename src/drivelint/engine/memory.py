@@ -58,12 +58,14 @@ class Memory:
         return True
 
     def release(self) -> None:
-        """Give memory back to the system that nothing needs; called between statements. Limits stay as they are."""
-        store.release_memory(self._con)
-        if self.limited:
-            self._con.execute("SET memory_limit=?", [f"{self._limit}B"])
-        else:
-            store.lift_memory_limit(self._con)
+        """Return unused memory to the system. It is called between statements, and the limits stay as they are."""
+        try:
+            store.release_memory(self._con)
+        finally:  # an interrupt must not leave the database without memory
+            if self.limited:
+                self._con.execute("SET memory_limit=?", [f"{self._limit}B"])
+            else:
+                store.lift_memory_limit(self._con)
 
     def most_growth(self) -> int | None:
         """Return by how many bytes the process may grow while a rule runs; None where that tells nothing of the rule.

@@ -218,7 +218,7 @@ def _finding(row: Row) -> ComparedFinding:
 def _why(row: Row) -> str:
     """Return how a finding changed, or why the other audit does not have it."""
     if row["standing"] != "changed":
-        return _JUDGED[row["there"]] if row["why"] == "judged" else _WHY[row["why"]]
+        return _JUDGED[row["there"]] if row["why_code"] == "judged" else _WHY[row["why_code"]]
     if row["is_part"]:
         whole, part = (
             ("base_id", "finding_id") if _length(row, "base_") > _length(row, "") else ("finding_id", "base_id")

@@ -165,7 +165,7 @@ def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
 
 
 def release_memory(con: duckdb.DuckDBPyConnection) -> None:
-    """Give memory back to the system that no table needs. The caller sets the memory limit anew.
+    """Return unused memory to the system. Afterwards the memory limit is 1 byte: the caller must set it again.
 
     DuckDB keeps a record of every block that it has freed, 200 bytes each and scattered, until it has to evict blocks. A limit that
     it cannot keep makes it evict all it can: for a few milliseconds, with tables of some megabytes written to the spill folder.

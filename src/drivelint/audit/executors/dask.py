@@ -64,7 +64,7 @@ class DaskCluster:
                 ended = distributed.wait(list(self._running), timeout=_LOOK_S, return_when="FIRST_COMPLETED").done
             except TimeoutError:
                 ended = set()
-            except CancelledError as error:  # whose text names all tasks
+            except CancelledError as error:  # our words replace its text, which lists all tasks
                 lost = self._client.status != "running"
                 raise self._gone("the connection was lost" if lost else "its tasks were cancelled") from error
             except Exception as error:
