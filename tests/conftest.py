@@ -19,6 +19,8 @@ settings.load_profile("drivelint")
 
 # pytest-xdist sets the width of its terminal, which would be that of every command that a test runs
 os.environ.pop("COLUMNS", None)
+# hundreds of tests start a process: each would compile the package anew
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 

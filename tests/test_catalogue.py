@@ -25,7 +25,7 @@ RULES = load_rules()
 IDS = list(RULES)
 SAMPLE = sorted(
     (rule.id for rule in RULES.values() if rule.status == "stable"), key=lambda i: sha256(i.encode()).digest()
-)[:3]
+)[:1]
 AS_DRIVES = {"drive_id": MERGE_KEYS["drive_id"]}
 
 

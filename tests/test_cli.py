@@ -164,6 +164,7 @@ def test_fail_on_never(ran: Ran) -> None:
     assert ran("check", TRACES[2], *ON_ROAD, *SDA, "--fail-on", "never")[0] == 0
 
 
+@pytest.mark.slow
 def test_margins_and_database_are_kept_where_asked(tmp_path: Path, ran: Ran) -> None:
     code, _, err = ran("check", TRACES[0], *ON_ROAD, *SDA, "--margins", "--keep-db", "--out", str(tmp_path))
     assert code == 0, err
@@ -279,7 +280,9 @@ def _cells(line: str) -> list[str]:
     return line.split(",")
 
 
-@pytest.mark.parametrize("name", ["ghost", "restart", "restart before"])
+@pytest.mark.parametrize(
+    "name", ["ghost", *(pytest.param(name, marks=pytest.mark.slow) for name in ("restart", "restart before"))]
+)
 def test_data_known_to_be_bad_make_no_pass_of_a_fail(name: str, tmp_path: Path, ran: Ran) -> None:
     """A second oncoming car of the same id, far away; another drive over the same time: 3, never 0."""
     bad, good = spoilt(tmp_path, name)
@@ -331,16 +334,14 @@ def test_rules_list_takes_the_selectors_of_check(ran: Ran) -> None:
 @pytest.mark.parametrize("begins", ["r162", "ukhc.r162", "r162.return-gap"])
 def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
     code, out, _ = ran("rules", "show", begins)
-    shown = [
-        line for line in out.splitlines() if line in {f"{rule.id}: {rule.title}" for rule in load_rules().values()}
-    ]
+    rules = load_rules()
+    titles = {f"{rule.id}: {rule.title}" for rule in rules.values()}
+    shown = [line for line in out.splitlines() if line in titles]
     assert code == 0
     assert (
         [line.split(":")[0] for line in shown]
         == [
-            rule_id
-            for rule_id in load_rules()
-            if begins in (rule_id[: len(begins)], rule_id.partition(".")[2][: len(begins)])
+            rule_id for rule_id in rules if begins in (rule_id[: len(begins)], rule_id.partition(".")[2][: len(begins)])
         ]
         != []
     )

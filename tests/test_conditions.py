@@ -70,6 +70,7 @@ def checked(tmp_path: Path, *env: str) -> Result:
     return check(settings, Silent())
 
 
+@pytest.mark.slow
 def test_a_drive_is_judged_in_the_conditions_given(tmp_path: Path) -> None:
     def verdict(*env: str) -> tuple[str, str]:
         (row,) = checked(tmp_path, *env).verdicts.to_pylist()

@@ -121,6 +121,7 @@ def test_esmini(name: str) -> None:
     assert {t: said for t, m in compared.items() if (said := differences(found[ego, t], m))} == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(COMMONROAD))
 def test_commonroad(name: str) -> None:
     file = shared(f"commonroad/{name}.xml")

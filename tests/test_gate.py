@@ -132,6 +132,7 @@ class Workflow:
         return done.returncode
 
 
+@pytest.mark.slow
 def test_the_guides_workflow_stops_what_is_new_and_nothing_else(tmp_path: Path) -> None:
     demo = tmp_path / "demo"
     demo_files.write(demo)
@@ -181,6 +182,7 @@ def test_tables_do_not_depend_on_the_gate(results: dict[str, Path], ran: Ran) ->
     assert not (results["new"] / "gate.json").exists()
 
 
+@pytest.mark.slow
 def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None:
     text = '[[waiver]]\nrule = "ukhc.r162.*"\nreason = "r"\nowner = "jo"\nexpires = 2027-03-31\n'
     Path("drivelint.toml").write_text(f'quiet = true\n{text}drive = "collision*"\n', encoding="utf-8")

@@ -96,7 +96,10 @@ def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = Non
     )
 
 
-@pytest.mark.parametrize("later_s", [0.0, 1.0], ids=["between two drives", "while one is judged"])
+@pytest.mark.parametrize(
+    "later_s",
+    [pytest.param(0.0, id="between two drives", marks=pytest.mark.slow), pytest.param(1.0, id="while one is judged")],
+)
 def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
     pack: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, later_s: float
 ) -> None:
@@ -140,7 +143,7 @@ def run(code: str, *args: str) -> subprocess.Popen[str]:
     )
 
 
-@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("sign", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
 def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack: Path, tmp_path: Path) -> None:
     if signal.getsignal(sign) is signal.SIG_IGN:
         pytest.skip("the signal is ignored where these tests run")

@@ -181,6 +181,7 @@ def test_order_of_drives_and_of_their_rows() -> None:
     assert judged(mixed, rules=RULES, profiles=PROFILES) == list(expected())
 
 
+@pytest.mark.slow
 def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     """As many as fit in 10,000 states: two to seven drives. One alone has its own test."""
     monkeypatch.setattr(batch, "BATCH_STATES", 10_000)
@@ -195,6 +196,7 @@ def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
     return {t: con.execute(f"SELECT count(*), sum(hash(t)::HUGEINT) FROM {t} t").fetchall()[0] for t in tables}
 
 
+@pytest.mark.slow
 def test_every_derived_row_is_the_same_on_any_threads() -> None:
     first = prints(derived(*crowd()))
     assert all(first[table][0] for table in derivations()), [t for t in derivations() if not first[t][0]]
@@ -295,6 +297,7 @@ elsewhere = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=2)
 @given(st.lists(elsewhere, min_size=4, max_size=4))
 def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:

@@ -143,6 +143,7 @@ def usual(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return files(overtakes("near_miss", out=tmp_path_factory.mktemp("usual") / "a", **MANY))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("step", "fits"),
     [*((step, "one ego") for step in STEPS), ("drivelint.engine.session.evaluate", "no limit")],
@@ -172,6 +173,7 @@ def test_memory_that_does_not_do_is_no_error(
         assert len(notes.said) == 1
 
 
+@pytest.mark.slow
 def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     other = tmp_path / "other.csv"
     other.write_text((FIXTURE / "safe.csv").read_text(encoding="utf-8") + "\n", encoding="utf-8")
@@ -260,7 +262,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
         con.execute(large)
 
 
-@pytest.mark.parametrize("full", [False, True])
+@pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_tables_that_are_set_aside_on_disk_give_the_same_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, full: bool
 ) -> None:
@@ -314,6 +316,7 @@ def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatc
     assert not Path(spill).exists()
 
 
+@pytest.mark.slow
 def test_margins_have_the_same_bytes_however_batches_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(margins, "ROW_GROUP_ROWS", 100)
     found = []

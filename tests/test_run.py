@@ -316,6 +316,7 @@ def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
     assert rows["ukhc.no-collision"]["verdict"] == "pass"
 
 
+@pytest.mark.slow
 def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "BATCH_STATES", 1)  # several batches, and two maps that take turns
     result = check(settings(*logs(), out=tmp_path, keep_db=True, margins=True), Silent())

@@ -72,6 +72,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *args: str) -> object:
     return left.value.code
 
 
+@pytest.mark.slow
 def test_the_file_sets_options_and_the_command_line_overrides_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

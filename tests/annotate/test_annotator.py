@@ -274,6 +274,7 @@ def test_a_recorded_log_keeps_every_message_and_ours_lie_at_its_frames(logged: t
     assert shown(path, "markers", ours.log_time)
 
 
+@pytest.mark.slow
 def test_an_annotated_log_can_be_checked_and_annotated_again(logged: tuple[Path, Path], tmp_path: Path) -> None:
     _, once = logged
     twice = the(run(tmp_path, once, map=SCENE / "overtake-road.xodr", mapping=None), once.stem)
@@ -330,6 +331,7 @@ def test_the_layout_shows_every_topic_that_is_there(out: Path) -> None:
     assert others == {"/drivelint/log", "/drivelint/findings"}
 
 
+@pytest.mark.slow
 def test_a_trace_that_begins_before_zero_lies_at_zero_and_says_so(tmp_path: Path) -> None:
     lines = (CASE / "safe.csv").read_text(encoding="utf-8").splitlines()
     at = lines[0].split(",").index("time_s")

@@ -173,6 +173,7 @@ def test_what_is_not_known_is_left_out(tmp_path: Path) -> None:
     assert "accel_mps2" not in said[0], "the first step has none before it"
 
 
+@pytest.mark.slow
 def test_of_a_long_drive_every_nth_step_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = content(messages(the(run(tmp_path / "a", CASE / "safe.csv"), "safe"), "measures"))
     monkeypatch.setattr(measures, "MAX_STEPS", 50)

@@ -66,6 +66,7 @@ def test_the_keywords_are_the_options_with_their_defaults() -> None:
             assert (keywords[name].default or None) == (option.default or None), name
 
 
+@pytest.mark.slow
 def test_write_writes_the_bytes_of_the_command_line(
     checked: drivelint.CheckResult, drives: Path, tmp_path: Path
 ) -> None:
@@ -181,6 +182,7 @@ def test_geometries_are_those_of_the_files(checked: drivelint.CheckResult, tmp_p
         checked.verdicts.geo()
 
 
+@pytest.mark.slow
 def test_an_explanation_is_that_of_the_command_line(
     checked: drivelint.CheckResult, drives: Path, tmp_path: Path
 ) -> None:
@@ -200,6 +202,7 @@ def test_an_explanation_is_that_of_the_command_line(
         checked.explain("nowhere")
 
 
+@pytest.mark.slow
 def test_a_comparison_is_that_of_the_command_line(drives: Path, tmp_path: Path) -> None:
     road = drives / "road.xodr"
     for run, name in (("base", "safe"), ("new", "near-miss")):
@@ -300,6 +303,7 @@ def test_a_mistake_is_an_error_that_can_be_caught(given: dict[str, Any], says: s
         drivelint.check(**{"traces": drives / "safe.mcap", **given})
 
 
+@pytest.mark.slow
 def test_the_gate_takes_what_the_command_line_takes(drives: Path, tmp_path: Path) -> None:
     """confidence lets findings through that too few copies keep; require asks for what the log lacks; as on the command line."""
     log, road = drives / "near-miss.mcap", drives / "road.xodr"
@@ -330,6 +334,7 @@ def test_files_that_are_not_drivelints_stay(drives: Path, tmp_path: Path) -> Non
         assert (tmp_path / "report.html").read_text("utf-8").startswith("<!doctype html>")
 
 
+@pytest.mark.slow
 def test_margins_need_no_folder(drives: Path, tmp_path: Path) -> None:
     asked: dict[str, Any] = {"traces": drives / "safe.mcap", "map": drives / "road.xodr", "rules": "ukhc.no-collision"}
     found = drivelint.check(**asked, margins=True)

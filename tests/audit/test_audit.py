@@ -73,6 +73,7 @@ def test_the_rows_are_those_of_check(
         assert own.sort_by(order).to_pylist() == rows.sort_by(order).to_pylist()
 
 
+@pytest.mark.slow
 def test_copies_are_judged_where_asked(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 6, seed=3)
     assert few.planted
@@ -110,7 +111,7 @@ def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     assert (again.reused, again.n_drives) == (3, 4)
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_processes_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, workers: int
 ) -> None:
@@ -163,6 +164,7 @@ def test_kills_lose_nothing_and_double_nothing(
     assert {name for name in left if not name.startswith("tables/")} == parts | files
 
 
+@pytest.mark.slow
 def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -183,6 +185,7 @@ def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
     assert (counted.n_drives, counted.digest) == (N_DRIVES, undisturbed[1].digest)
 
 
+@pytest.mark.slow
 def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged(
     drives: fleet.Fleet, tmp_path: Path
 ) -> None:
@@ -211,6 +214,7 @@ def test_a_drive_that_takes_too_long_is_quarantined(drives: fleet.Fleet, tmp_pat
     assert (counted.n_drives, counted.quarantined) == (1, 1)
 
 
+@pytest.mark.slow
 def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"
@@ -258,6 +262,7 @@ def test_a_renamed_log_is_judged_again_and_the_old_result_can_be_pruned(tmp_path
     assert (pruned.n_drives, pruned.n_asked, pruned.n_absent, pruned.reused) == (2, 2, 0, 2)
 
 
+@pytest.mark.slow
 def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_path: Path) -> None:
     judged(drives, tmp_path / "out", shard=(1, 3))
     judged(drives, tmp_path / "out", shard=(3, 3))
@@ -327,6 +332,7 @@ def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_
         judged(few, tmp_path / "few", shard=(1, 1))
 
 
+@pytest.mark.slow
 def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path: Path) -> None:
     with (
         locked(LocalFolder(tmp_path / "out"), shared=False),

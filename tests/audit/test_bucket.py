@@ -62,6 +62,7 @@ def test_logs_map_manifest_and_results_in_a_bucket_give_the_tables_of_a_folder(
     assert (again.reused, again.digest) == (N_DRIVES, digest)
 
 
+@pytest.mark.slow
 def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet, server: str) -> None:
     options, lake = {"allow_http": "true"}, "s3://fleet/lake/"
     (logs, road) = ("s3://fleet/data/logs/", "s3://fleet/data/ring.xodr")
@@ -86,6 +87,7 @@ def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet
     assert DeltaTable("s3://fleet/faulty-lake/receipts", storage_options=options).count() == 1
 
 
+@pytest.mark.slow
 def test_a_store_that_fails_now_and_then_gives_the_same_tables(
     drives: fleet.Fleet, digest: str | None, server: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -97,6 +99,7 @@ def test_a_store_that_fails_now_and_then_gives_the_same_tables(
     assert (got.judged, got.digest) == (N_DRIVES, digest)
 
 
+@pytest.mark.slow
 def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_removed(
     drives: fleet.Fleet, server: str
 ) -> None:

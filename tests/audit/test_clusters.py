@@ -34,6 +34,7 @@ def _on(address: str) -> object:
     return open_executor(address, workers=None, memory=None, timeout_s=None)
 
 
+@pytest.mark.slow
 def test_dask_with_a_killed_worker_gives_the_same_tables(
     drives: fleet.Fleet, digest: str | None, tmp_path: Path
 ) -> None:
@@ -46,6 +47,7 @@ def test_dask_with_a_killed_worker_gives_the_same_tables(
     assert (counted.n_drives, counted.quarantined, counted.digest) == (N_DRIVES, 0, digest)
 
 
+@pytest.mark.slow
 def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
     drives: fleet.Fleet, digest: str | None, tmp_path: Path
 ) -> None:

@@ -201,6 +201,7 @@ def test_what_was_pruned_or_judged_again_is_not_in_the_next_version(
     assert len(set(again["key"].to_pylist()) - set(pruned["key"].to_pylist())) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("when", ["copy", "table"])
 def test_killed_in_the_middle_every_table_is_as_before_or_as_after(
     drives: fleet.Fleet, out: Path, tmp_path: Path, when: str

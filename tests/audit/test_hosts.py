@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 N_DRIVES = 6
 SMALL_TASKS = """
 from drivelint.audit import driver

@@ -23,6 +23,7 @@ from tests.shared_data import ROOT
 STAGES = ["ingest", "map", "derive", "rules", "the rest", "to the verdict tables"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("section", [section for section in SECTIONS if section != "before"])
 def test_a_section_measures_something(section: str, tmp_path: Path) -> None:
     try:
@@ -85,6 +86,7 @@ def test_a_module_is_not_watched_as_a_function() -> None:
         pass
 
 
+@pytest.mark.slow
 def test_head_against_the_present_tree(tmp_path: Path) -> None:
     try:
         first, *rows = SECTIONS["before"](Place(tmp_path, TINY))
@@ -112,6 +114,7 @@ def _counted(place: Place, out: Path) -> str:
     return ", ".join(f"{n} {verdict}" for verdict, n in sorted(verdicts.items()))
 
 
+@pytest.mark.slow
 def test_the_stages_of_an_old_commit_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its modules and functions have other names than now."""
     monkeypatch.setattr(

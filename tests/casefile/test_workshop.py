@@ -89,6 +89,7 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
         workshop.new_rule("mine.one", tmp_path, "invariant")
 
 
+@pytest.mark.slow
 def test_a_copy_of_the_shipped_rules_can_be_worked_on(tmp_path: Path) -> None:
     from drivelint.resources import folder
 

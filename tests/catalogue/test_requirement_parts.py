@@ -29,6 +29,7 @@ def test_there_are_rules_with_parts() -> None:
     assert {rule.id for rule in WITH_PARTS} > OF_A_TABLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", WITH_PARTS, ids=lambda rule: rule.id)
 def test_the_parts_add_up_to_what_is_required(rule: Rule) -> None:
     compared = sum(_compared(rule, case) for case in read_cases(rule))

@@ -76,6 +76,7 @@ def expected() -> dict[str, pa.Table]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("to", TO)
 def test_verdicts_stay(tmp_path: Path, expected: dict[str, pa.Table], to: Target) -> None:
     for log in (*STUDY, *SINGLE):

@@ -25,6 +25,7 @@ def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, env=dict(os.environ))
 
 
+@pytest.mark.slow
 def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Path) -> None:
     shown = run([*PROGRAM, "demo", "--out", "a new folder"], tmp_path)
     assert shown.returncode == 0, shown.stderr

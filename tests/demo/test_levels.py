@@ -153,6 +153,7 @@ def test_at_the_same_place_on_the_ego_s_level_it_is_a_contact(name: str, heights
         assert {row["object_id"] for row in failed} == hit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deck_m", [3.0, 4.2])
 def test_bodies_as_high_as_the_deck_are_not_taken_to_be_apart(deck_m: float) -> None:
     """Under a deck that a car passes, the lorry on the lower one may touch the lorry on the upper one."""

@@ -206,6 +206,7 @@ MEETINGS = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=4)
 @given(st.lists(MEETINGS, min_size=12, max_size=12))
 @example([Meeting(90, 15.0, late, 0.0, 0.0, 0.5) for late in np.linspace(-6, 6, 25)])

@@ -68,6 +68,7 @@ def verdicts(folder: Path, road: Path) -> list[dict[str, Any]]:
     return list(check(options, Silent()).verdicts.to_pylist())
 
 
+@pytest.mark.slow
 def test_the_same_drive_in_another_zone_gives_the_same_verdicts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

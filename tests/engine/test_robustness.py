@@ -136,6 +136,7 @@ def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
     assert asked.n_copies == 0  # the copies before these are still to be judged
 
 
+@pytest.mark.slow
 def test_the_same_drive_in_another_file_is_as_sure(tmp_path: Path) -> None:
     """Blank lines and the name of the file change the log's hash and the drive's id, and nothing else."""
     csv = (OVERTAKE / "collision.csv").read_bytes()

@@ -109,6 +109,7 @@ def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not
         assert result.verdicts["verdict"].to_pylist() == [expected]
 
 
+@pytest.mark.slow
 def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_path: Path) -> None:
     found = of(folder, "contact-signature@collision")
     assert {p["name"]: p["value"] for p in found.params}["within_m"] == 0.4
@@ -245,6 +246,7 @@ def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     assert "(oncoming, parked): after a jump they stand in one place" in flat(said(found))
 
 
+@pytest.mark.slow
 def test_an_object_whose_track_has_ended_is_shown_where_it_was_last(tmp_path: Path) -> None:
     head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
     at = {name: i for i, name in enumerate(head.split(","))}
@@ -261,6 +263,7 @@ def test_an_object_whose_track_has_ended_is_shown_where_it_was_last(tmp_path: Pa
     assert "pair at 6.90 s (object parked has no row then; this is its last one before):" in flat(said(found))
 
 
+@pytest.mark.slow
 def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path) -> None:
     errors = MeasurementErrors(position_m=0.6, time_s=0.2, map_m=0.1, samples=20, seed=3)
     order = ExplainRequest("r126.ds-av-out-of-ov@near_miss", folder, VerdictFilter(), errors=errors)
@@ -276,6 +279,7 @@ def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path)
     assert any(other is not None and other.counts != first.counts for other in others)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("n_stays", "told"), [(97, "Sure: a finding in 97"), (53, "Only possible: a finding in 53")])
 def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_stays: int, told: str) -> None:
     check(tmp_path, traces=(str(OVERTAKE / "collision.csv"),), rules=("ukhc.no-collision",), params=())
@@ -298,6 +302,7 @@ def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_sta
     assert (other.samples, other.certainty) == (2, None)
 
 
+@pytest.mark.slow
 def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
     for name in ("no-collision@safe", "r126.ds-av-out-of-ov@near_miss"):
         found = of(folder, name, errors=MeasurementErrors(0.0, 0.0, 0.0, 3))

@@ -68,6 +68,7 @@ SOME = (
 RULES_OF_BASE = tuple(part for name in SOME for part in ("--rules", f"ukhc.{name}"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "logs"),
     [

@@ -53,7 +53,13 @@ def own_rules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("values", [(0.1, 5.0, 2.0), (-2.0, 14.0, 9.0), (0.24, 30.0, 60.0)])
+@pytest.mark.parametrize(
+    "values",
+    [
+        (0.1, 5.0, 2.0),
+        *(pytest.param(values, marks=pytest.mark.slow) for values in ((-2.0, 14.0, 9.0), (0.24, 30.0, 60.0))),
+    ],
+)
 def test_it_is_what_a_new_check_says(checked: Checked, own_rules: Path, values: tuple[float, ...]) -> None:
     asked = dict(zip((ZONE, "own.slow", "own.apart"), values, strict=True))
     options = ["--rules-dir", str(own_rules), *(part for name in asked for part in ("--rules", name))]

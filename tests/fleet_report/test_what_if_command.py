@@ -66,6 +66,7 @@ def by_release(out: Path) -> Counter[tuple[str, str]]:
     return Counter({(row["r"], row["verdict"]): row["n"] for row in json.loads(ask(str(out), query, "json"))})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", ["11", "11.99", "12.05", "20"])
 def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, limit: str) -> None:
     done = ran("what-if", judged, f"own.slow.limit={limit}", "--by", "release", "--format", "json")

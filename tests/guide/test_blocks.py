@@ -99,6 +99,7 @@ def missing(shown: str, printed: str) -> list[str]:
     return [line for line in shown.splitlines() if line != "..." and line.rstrip() not in rest]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_marked_blocks_run(name: str, folder: Path) -> None:
     (page,) = (page for page in PAGES if page.name == name)
@@ -192,6 +193,7 @@ def test_readmes_first_workflow_passes_the_safe_drive(drive: str, code: int, fol
     assert (folder / "results" / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_the_settings_of_the_ci_guide_are_taken(folder: Path) -> None:
     (settings,) = (block.body for block in blocks(FOLDER / "ci.md") if block.mark == "file: drivelint.toml")
     (folder / "drivelint.toml").write_text(settings, encoding="utf-8")
@@ -202,6 +204,7 @@ def test_the_settings_of_the_ci_guide_are_taken(folder: Path) -> None:
     assert "at or above severity major" in done.stdout
 
 
+@pytest.mark.slow
 def test_the_hooks_stop_a_commit(folder: Path) -> None:
     (config,) = (b.body for b in blocks(FOLDER / "ci.md") if b.mark == "workflow: pre-commit")
     hooks: list[dict[str, Any]] = yaml.safe_load(config)["repos"][0]["hooks"]

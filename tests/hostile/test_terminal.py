@@ -76,6 +76,7 @@ def test_rules(nasty: Nasty, words: tuple[str, ...]) -> None:
     assert_quiet(assert_said(ran(*words, "--rules-dir", nasty.files.rules), 0))
 
 
+@pytest.mark.slow
 def test_explain_and_inspect(nasty: Nasty) -> None:
     assert_quiet(assert_said(ran("explain", "evil.near", "--in", nasty.result, "--samples", 0), 0))
     told = ran("explain", "evil.near", "--in", nasty.result, "--samples", 0, "--format", "json")

@@ -68,6 +68,7 @@ def worst_per_rule(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return list({row["rule_id"]: row for row in sorted(rows, key=lambda row: -(row["margin"] or 0))}.values())
 
 
+@pytest.mark.slow
 def test_demo_findings_come_again(tmp_path: Path) -> None:
     files = {path.name: path for path in demo.write(tmp_path / "demo")}
     log = files["collision-25mph.mcap"]
@@ -80,6 +81,7 @@ def test_demo_findings_come_again(tmp_path: Path) -> None:
         assert same(judged_alone(path, row["rule_id"]), row), row["rule_id"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("to", ["mcap", "parquet"])
 def test_case_study_findings_come_again(tmp_path: Path, to: Literal["mcap", "parquet"]) -> None:
     log = shared("overtake_case_study/near_miss.csv")

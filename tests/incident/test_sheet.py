@@ -115,6 +115,7 @@ def test_it_says_that_the_log_gives_the_same_finding(collision: dict[str, Any]) 
     assert collision["again"]["finding_id"] == collision["row"]["finding_id"]
 
 
+@pytest.mark.slow
 def test_commands_give_the_same_sheet_again(
     case_of: CaseOf, collision: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -235,6 +236,7 @@ def test_pdf_without_a_browser(folder: Path, monkeypatch: pytest.MonkeyPatch) ->
         write_incident(IncidentRequest("no-collision@collision", folder, pdf=True))
 
 
+@pytest.mark.slow
 def test_a_log_that_is_gone(tmp_path: Path) -> None:
     """Without the log, the kept database does; without both, the error says what to give."""
     log = tmp_path / "collision.csv"
@@ -255,6 +257,7 @@ def test_a_log_that_is_gone(tmp_path: Path) -> None:
         moved.rename(log)
 
 
+@pytest.mark.slow
 def test_case_study_before_the_impact(tmp_path: Path) -> None:
     log = shared("overtake_case_study/collision.csv")
     road = shared("overtake_case_study/t_junction.xodr")

@@ -69,6 +69,7 @@ def test_no_unit_is_written_in_two_ways(text: str) -> None:
     assert "m/s2" not in text.partition("To check it")[0]
 
 
+@pytest.mark.slow
 def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None:
     told = content(case_of("safe-distance-ahead@collision"))
     (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]

@@ -98,6 +98,7 @@ def test_a_file_that_is_no_drive_is_exit_code_4_and_its_content_is_shown() -> No
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_convert_says_how_to_check(tmp_path: Path) -> None:
     done = run(
         "convert",
@@ -128,6 +129,7 @@ def test_names_are_shown_as_they_are(tmp_path: Path) -> None:
     assert "[red]x.mcap" in shown
 
 
+@pytest.mark.slow
 def test_a_projects_settings_count_here_too(tmp_path: Path) -> None:
     settings = f'map = "{ON_ROAD["map"]}"\nmapping = "{ON_ROAD["mapping"]}"\nout = "results"\nfail-on = "never"\nformat = "json"\n'
     (tmp_path / "drivelint.toml").write_text(settings, encoding="utf-8")

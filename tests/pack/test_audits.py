@@ -136,6 +136,7 @@ def test_an_untouched_pack_is_said_to_be_so_in_one_line(
     assert (found.returncode, found.stdout.strip()) == (0, "untouched since it was signed")
 
 
+@pytest.mark.slow
 def test_without_the_logs_the_sql_is_run_and_the_note_says_so(packed: PackedAudit, without_logs: Path) -> None:
     found = verify(VerifyRequest(without_logs, packed.public))
     assert not found.problems
@@ -170,6 +171,7 @@ def test_only_the_worst_findings_are_packed_where_that_is_asked(
     assert "1 finding of less weight: no rows in the pack" in found.notes
 
 
+@pytest.mark.slow
 def test_the_evidence_of_an_audit_in_one_go_is_that_of_pack(packed: PackedAudit, tmp_path: Path) -> None:
     """The exit code stays that of the audit. The same audit gives the same bytes."""
     asked = packed.drives.command(packed.audit, "--evidence", str(tmp_path / "once"), "--sign", str(packed.key))
@@ -395,6 +397,7 @@ def turned(pack: Path) -> None:
     audited.follow_tables(pack)
 
 
+@pytest.mark.slow
 def test_rows_that_do_not_follow_from_the_log_are_named(packed: PackedAudit, tmp_path: Path) -> None:
     """Everything in the pack agrees: only the log tells."""
     pack = copied(packed, tmp_path)

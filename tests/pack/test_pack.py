@@ -219,6 +219,7 @@ def test_incident_sheets_that_stay_out_are_named(
     assert line.endswith("not in it, so sign and keep them beside it: incidents/abc.html")
 
 
+@pytest.mark.slow
 def test_logs_that_were_moved_are_known_by_their_hash(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack", packed.key)
     moved = Path(shutil.copy(OVERTAKE / "collision.csv", tmp_path / "elsewhere.csv"))

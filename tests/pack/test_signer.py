@@ -273,6 +273,7 @@ def test_a_log_outside_of_the_pack_is_not_read(packed: Packed, tmp_path: Path) -
     assert found == ("evidence.json not readable", "data/evidence.json leads out of the pack: data/../../outside.csv")
 
 
+@pytest.mark.slow
 def test_a_verdict_that_its_signer_flipped_is_not_reproduced(packed: Packed, tmp_path: Path) -> None:
     """Everything follows from it, and the statement says so: only the log tells."""
     pack = copied(packed, tmp_path)

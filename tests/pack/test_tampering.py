@@ -292,6 +292,7 @@ def test_a_result_that_its_signer_changed_is_not_reproduced(packed: Packed, tmp_
     assert ("result not reproduced", FINDINGS) in found
 
 
+@pytest.mark.slow
 def test_rows_of_a_finding_that_its_signer_changed_are_not_reproduced(packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
     edit(sql_of(pack), "margin, holds", "-0.01 AS margin, holds")

@@ -186,6 +186,7 @@ def test_no_changed_byte_of_a_stamp_gives_another_time(stamped: Stamped) -> None
         assert timestamp.look(other, envelope, stamped.authority.root).problems != []
 
 
+@pytest.mark.slow
 def test_what_is_no_stamp_of_the_pack_is_not_packed(stamped: Stamped, packed: Packed, tmp_path: Path) -> None:
     other = stamped.authority.stamp(packed.other_pack / "statement.dsse.json", tmp_path / "other.tsr")
     (tmp_path / "text.tsr").write_text("yesterday", encoding="utf-8")

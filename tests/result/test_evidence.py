@@ -131,6 +131,7 @@ def test_lanes_near_a_scene_are_kept_once_and_true_to_a_decimetre(
         assert min(area.distance(ego) for area in road) == 0
 
 
+@pytest.mark.slow
 def test_batches_do_not_change_the_evidence(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(batch, "BATCH_STATES", 1)
     single = run(tmp_path)
@@ -187,6 +188,7 @@ def _named(row: dict[str, Any]) -> tuple[Any, ...]:
     return tuple(row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margins", [False, True], ids=["settled in the first pass", "every step"])
 def test_every_near_miss_has_its_course_and_its_worst_step_is_in_it(margins: bool, tmp_path: Path) -> None:
     settings = CheckOptions(
@@ -227,6 +229,7 @@ def test_an_overtake_is_recorded_with_its_profiles_and_stages(result: Result) ->
                 assert said == ("nobody" if worst is None else "fail" if worst >= 0 else "pass")
 
 
+@pytest.mark.slow
 def test_without_an_output_folder_no_evidence_is_gathered() -> None:
     bare = run(None)
     assert bare.scenes.num_rows == bare.lanes.num_rows == 0

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from scipy.special import ndtri
 
 from drivelint.arrays import floats, with_columns
 
@@ -81,6 +80,8 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
 
 def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     """Return (copies, 3) draws of the standard normal distribution; zeros for the copy 0. `actor` None: the map."""
+    from scipy.special import ndtri  # takes longer to load than a rule to judge
+
     key = sha256("\0".join([str(seed), "map" if actor is None else f"actor {actor}"]).encode()).digest()
     rng = np.random.Generator(np.random.PCG64(int.from_bytes(key)))
     ranges = np.tile(np.arange(BLOCK)[:, None], (1, 3))

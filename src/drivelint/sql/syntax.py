@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import re
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
+import msgspec
 
 from drivelint.errors import DriveLintError
-from drivelint.sql.store import create_macros, open_as_is
+from drivelint.sql.store import macro_definitions
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
+_MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
+_INNER: Final = (dict, list)
+"""What a tree is made of; nine tenths of it are single values, which nobody has to visit."""
 
 
 @cache
@@ -45,7 +48,7 @@ def with_values(sql: str, literals: Mapping[str, str]) -> str:
 
 def syntax_tree(sql: str) -> Node:
     """Return what DuckDB makes of a SELECT: `error`, and `error_message` or `statements`."""
-    tree: Node = json.loads(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
+    tree: Node = msgspec.json.decode(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
     return tree
 
 
@@ -71,12 +74,12 @@ def tables_needing_rows(tree: Node) -> Names:
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:
     """Yield every node of a tree with the names of the CTEs in sight of it, without recursion: an expression may be deep."""
-    todo = [(root, _NONE)]
+    todo: list[tuple[Any, Names]] = [(root, _NONE)]
     while todo:
         part, ctes = todo.pop()
         if isinstance(part, list):
-            todo.extend((item, ctes) for item in reversed(part))
-        elif isinstance(part, dict):
+            todo += [(item, ctes) for item in reversed(part) if isinstance(item, _INNER)]
+        else:
             yield part, ctes
             # a CTE sees those before it; only its own SELECT, and what is inside, sees it
             for entry in _ctes(part):
@@ -84,7 +87,7 @@ def walk(root: Any) -> Iterator[tuple[Node, Names]]:
                 ctes |= {_folded(entry["key"])}
             if part.get("type") == "RECURSIVE_CTE_NODE":
                 ctes |= {_folded(part["cte_name"])}
-            todo.extend((part[key], ctes) for key in reversed(part) if key != "cte_map")
+            todo += [(part[key], ctes) for key in reversed(part) if isinstance(part[key], _INNER) and key != "cte_map"]
 
 
 def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
@@ -157,11 +160,13 @@ def _folded(name: str) -> str:
 @cache
 def _aggregates() -> Names:
     """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
-    with open_as_is() as con:
-        create_macros(con)
-        rows = con.execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
+    rows = parser().execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
     found = {name for name, kind, _ in rows if kind == "aggregate"}
-    calls = [(name, set(_CALLED.findall(text.lower()))) for name, kind, text in rows if kind == "macro" and text]
+    # no database is filled with our macros for this: that takes ten times as long as to read them
+    own = [statement.query for statement in parser().extract_statements(macro_definitions())]
+    texts = [(match[1], text) for text in own if (match := _MACRO.search(text))]
+    texts += [(name, text) for name, kind, text in rows if kind == "macro" and text]
+    calls = [(name, set(_CALLED.findall(text.lower()))) for name, text in texts]
     while more := {name for name, called in calls if called & found} - found:
         found |= more
     return frozenset(found)
