@@ -17,9 +17,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from drivelint.catalogue import load_rules
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
 from drivelint.engine import batch
+from drivelint.evaluate.sql_fragments import Binding
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations
 from tests import blinding, scenes
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
+    from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
 
 RULES = ("ukhc", "rss", "criticality")
@@ -257,6 +260,32 @@ def test_a_derivation_that_is_not_run_would_have_had_no_rows(table: str) -> None
         con.execute(f"DELETE FROM {empty}")
         assert con.execute(has_rows).fetchall() == [(0,)], empty
         con.execute("ROLLBACK")
+
+
+OF_OCCASIONS = {rule.id: rule for rule in load_rules().values() if rule.occasion_needs}
+
+
+def occasions(rule: Rule) -> int:
+    """Return the number of reference points, or of steps to judge, that a rule has in the crowd."""
+    con = _filled()
+    sql = f"SELECT count(*) FROM ({rule.sections['applies' if rule.kind == 'invariant' else 'reference']})"
+    values = Binding(rule, 1, {}).values(con.extract_statements(sql)[0].named_parameters)
+    return int(con.execute(sql, values).fetchall()[0][0])
+
+
+@pytest.mark.parametrize("rule_id", OF_OCCASIONS)
+def test_a_rule_that_is_not_run_would_have_had_no_occasion(rule_id: str) -> None:
+    rule, con = OF_OCCASIONS[rule_id], _filled()
+    for empty in sorted(rule.occasion_needs):
+        con.execute(f"BEGIN; DELETE FROM {empty}")
+        assert occasions(rule) == 0, empty
+        con.execute("ROLLBACK")
+
+
+def test_a_rule_that_has_an_occasion_is_run() -> None:
+    met = [rule for rule in OF_OCCASIONS.values() if occasions(rule)]
+    assert len(met) > 30
+    assert [rule.id for rule in met if rule.occasion_needs & store.empty_tables(_filled())] == []
 
 
 @cache

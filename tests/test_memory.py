@@ -12,7 +12,6 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.annotate import annotator
 from drivelint.cli import values
 from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
@@ -279,7 +278,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(set_aside, "LEAST_BYTES", -1)
-    monkeypatch.setattr(annotator, "LARGE_STATES", 0)
+    monkeypatch.setattr(batch, "LARGE_STATES", 0)
     monkeypatch.setattr(pa, "memory_map", noted)
     if full:
         monkeypatch.setattr(pa, "OSFile", no_room)

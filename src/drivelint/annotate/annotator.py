@@ -15,6 +15,7 @@ from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
 from drivelint.engine.barrier import refused
+from drivelint.engine.batch import are_large
 from drivelint.errors import ChangedLogError, DriveLintError
 from drivelint.result import collect
 from drivelint.result.files import OutputError
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
 _BUFFER = 1 << 20
-LARGE_STATES = 1_000_000
-"""Where drives have more states, the database gives memory back before their annotated logs are written."""
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
 
@@ -85,7 +84,7 @@ class Annotator:
         tables.append(con.execute(statement("evidence/least_margin"), {"ids": ids}).to_arrow_table())
         self._series |= series_of(tables[-1], self._rules.to_pylist())
         self._parts.clear()
-        if sum(drive.n_states for drive in drives) > LARGE_STATES:
+        if are_large(drives):
             self._release()
         for drive in drives:
             name = drive.trace.drive_id

@@ -15,7 +15,7 @@ import duckdb
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.sql.syntax import column_name, parser, syntax_tree, walk
+from drivelint.sql.syntax import column_name, parser, syntax_tree, tables_needing_rows, walk
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
@@ -28,6 +28,7 @@ class Query(NamedTuple):
     """What one SELECT is made of.
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
+    `needs`: tables that must have rows for it to have any.
     """
 
     tables: frozenset[str]
@@ -35,6 +36,7 @@ class Query(NamedTuple):
     columns: tuple[str, ...] | None
     places: dict[str, str]
     reasons: tuple[GivenReason, ...] = ()
+    needs: frozenset[str] = frozenset()
 
 
 class GivenReason(NamedTuple):
@@ -77,7 +79,8 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
         found.meet(part, ctes)
     parameters = frozenset(statement.named_parameters)
     places = found.tables | {f"${name}": text.at(_parameter(sql, name)) for name in parameters}
-    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons))
+    needs = tables_needing_rows(node) & found.tables.keys()
+    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs)
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:

@@ -58,6 +58,8 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Section -> its columns; @reference is missing here when it selects a star."""
     reason_codes: frozenset[str]
     """The codes that its SQL names as reasons."""
+    occasion_needs: frozenset[str]
+    """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
 
     @property
     def per_profile(self) -> bool:
@@ -156,6 +158,7 @@ def read_rule(file: Path) -> Rule:
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
         columns={name: query.columns for name, query in queries.items() if query.columns is not None},
         reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
+        occasion_needs=next((queries[name].needs for name in ("reference", "applies") if name in queries), frozenset()),
     )
 
 

@@ -80,7 +80,7 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
 
 def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     """Return (copies, 3) draws of the standard normal distribution; zeros for the copy 0. `actor` None: the map."""
-    from scipy.special import ndtri  # takes longer to load than a rule to judge
+    from scipy.special import ndtri  # loading it takes longer than judging a rule
 
     key = sha256("\0".join([str(seed), "map" if actor is None else f"actor {actor}"]).encode()).digest()
     rng = np.random.Generator(np.random.PCG64(int.from_bytes(key)))

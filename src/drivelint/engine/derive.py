@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 WORKERS: Final = 2
 ONE_WORKER_STATES: Final = 1_000_000
 """States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
-# a table whose rows were deleted may be missing here, which only costs time
-_EMPTY = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
 
 
 def derive(
@@ -48,7 +46,7 @@ def derive(
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
-    empty = {table for (table,) in con.execute(_EMPTY).fetchall()} - todo.keys()
+    empty = store.empty_tables(con) - todo.keys()
     for table in texts("map_shapes").keys() - empty if of_the_map else ():
         con.execute(statement(f"map_shapes/{table}"))
     workers = WORKERS if n_states < ONE_WORKER_STATES else 1

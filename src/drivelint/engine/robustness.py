@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 import pyarrow as pa
 
-from drivelint.engine.batch import BATCH_STATES
+from drivelint.engine.batch import BATCH_STATES, are_large
 from drivelint.engine.copies import copies
 from drivelint.engine.derive import derive
 from drivelint.engine.window import Window, windows
@@ -122,9 +122,14 @@ class Robustness:
         rows = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table().to_pylist()
         questions = [Question(row, self._rules[row["rule_id"]]) for row in rows]
         by_id = {drive.trace.drive_id: drive for drive in drives}
+        most_states = BATCH_STATES
+        if are_large(drives):
+            self._memory.release()
+            most_states //= 2
         open_ = questions
         while open_ and not self._is_stopped():
-            for chunk in takewhile(lambda _chunk: not self._is_stopped(), _chunks(windows(by_id, open_, N_COPIES))):
+            chunks = _chunks(windows(by_id, open_, N_COPIES), most_states)
+            for chunk in takewhile(lambda _chunk: not self._is_stopped(), chunks):
                 self._try(chunk)
             open_ = [q for q in open_ if q.size < Window.SIZES and not q.is_settled]
         self._answer([q for q in questions if q.n_copies and q.is_settled])
@@ -216,12 +221,12 @@ def _asked(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, l
     return {"_copy": copies_, "_question": findings}
 
 
-def _chunks(all_: Sequence[Window]) -> Iterator[list[Window]]:
-    """Cut windows into those whose copies fit into one pass, a larger one being parts of fewer copies."""
+def _chunks(all_: Sequence[Window], most_states: int) -> Iterator[list[Window]]:
+    """Cut windows into those whose copies have at most so many states, a larger one being parts of fewer copies."""
     chunk: list[Window] = []
     n_states = 0
-    for window in (part for whole in all_ for part in whole.parts(BATCH_STATES)):
-        if chunk and n_states + window.n_states > BATCH_STATES:
+    for window in (part for whole in all_ for part in whole.parts(most_states)):
+        if chunk and n_states + window.n_states > most_states:
             yield chunk
             chunk, n_states = [], 0
         chunk.append(window)

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import with_columns
-from drivelint.engine.batch import skipped_egos_by_part
+from drivelint.engine.batch import are_large, skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
@@ -24,7 +24,7 @@ from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.catalogue import Rule
@@ -168,7 +168,10 @@ class JudgingSession:
                 judged = {ego: n for ego, n in drives[0].pairs_by_ego.items() if ego not in set(deferred)}
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
-                    self._judge_part(ids, may_retry=len(drives) > 1 or cuttable or self._memory.limited)
+                    may_retry = len(drives) > 1 or cuttable or self._memory.limited
+                    self._judge_part(
+                        ids, may_retry=may_retry, release=self._memory.release if are_large(drives) else None
+                    )
                     place_rows(self._con, on_earth, "finding")
                     for observer in self._observers:
                         observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
@@ -183,7 +186,7 @@ class JudgingSession:
             undo.pop_all()
         return True
 
-    def _judge_part(self, ids: Sequence[str], *, may_retry: bool) -> None:
+    def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
         """Judge the egos that are not skipped in this part."""
         derive(self._con, self._tables, of_the_map=False)
         margins, series = self._margins is not None, bool(self._observers)
@@ -195,6 +198,7 @@ class JudgingSession:
             keep_measure_series=series,
             may_retry=may_retry,
             limits=self._limits,
+            release=release,
         )
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"

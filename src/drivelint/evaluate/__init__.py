@@ -16,7 +16,7 @@ from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     import duckdb
 
@@ -34,12 +34,14 @@ def evaluate(
     keep_measure_series: bool = False,
     may_retry: bool = False,
     limits: RuleLimits | None = None,
+    release: Callable[[], None] | None = None,
 ) -> None:
     """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
 
     `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
     -> value.
     A failing statement costs its rule only, and so does one beyond `limits` (None: there are none).
+    `release` gives memory back; it is called before the statements that are about all rules.
     With `may_retry`, running out of memory is no failure of the rule but raised, and the
     tables are then of no use. Errors: `UsageError` for parameters of rules or names that do not exist;
     `duckdb.OutOfMemoryException`.
@@ -58,6 +60,7 @@ def evaluate(
         keep_measure_series=keep_measure_series,
         may_retry=may_retry,
         limits=limits or RuleLimits(None),
+        release=release,
     )
     try:
         run.judge()

@@ -18,7 +18,7 @@ from drivelint.sql import store
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from drivelint.evaluate.limits import Excess
     from drivelint.evaluate.sql_fragments import Binding
@@ -39,19 +39,22 @@ class Evaluation:
     keep_measure_series: bool = False
     may_retry: bool = False
     limits: RuleLimits = field(default_factory=lambda: RuleLimits(None))
+    release: Callable[[], None] | None = None
+    """Gives memory back before the statements that are about all rules."""
     alone: bool = True
     """No rule is judged on a second connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
+    _empty: set[str] = field(default_factory=set, init=False)
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
         self.prepare()
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
         # what memory the process takes can be laid to a rule only if no other one runs meanwhile
-        shipped = deque(binding for binding in todo if binding.rule.path.is_relative_to(folder("queries")))
+        shipped = deque(binding for binding in todo if _is_shipped(binding))
         if (
             len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
             and self._count("SELECT count(*) FROM step") < MOST_STEPS_FOR_TWO_CONNECTIONS
@@ -59,6 +62,8 @@ class Evaluation:
             todo = deque(binding for binding in todo if binding not in shipped)
             self._share(shipped)
         self._work(todo)
+        if self.release:
+            self.release()
         self._run("blind", "closed", "named", "failed")
         make_reason_table(
             self.con,
@@ -116,13 +121,19 @@ class Evaluation:
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
         self._run("watched")
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
+        self._empty = store.empty_tables(self.con)
         quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
             objects = any(binding.rule.per_object for binding in quick)
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
-        """Run the statements of one rule."""
+        """Run the statements of one rule; none of a shipped rule that has no occasion here.
+
+        A rule of the user's may have an error in it, which only running it shows.
+        """
+        if binding.rule.occasion_needs & self._empty and _is_shipped(binding) and self._may_stop(0):
+            return
         if binding.rule.kind == "invariant":
             self._invariant(binding)
         else:
@@ -231,6 +242,10 @@ class Evaluation:
     def _record(self, binding: Binding, code: str, told: str | None = None, *, again: bool = False) -> None:
         values = {"no": binding.no, "code": code, "told": told, "again": again, "rule": binding.rule.id}
         self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.seconds})
+
+
+def _is_shipped(binding: Binding) -> bool:
+    return binding.rule.path.is_relative_to(folder("queries"))
 
 
 @dataclass

@@ -324,6 +324,12 @@ def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> 
         con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 
 
+def empty_tables(con: duckdb.DuckDBPyConnection) -> set[str]:
+    """Return the tables without rows. A table whose rows were deleted may be missing: then more is run than needed."""
+    sql = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
+    return {table for (table,) in con.execute(sql).fetchall()}
+
+
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
     """Append an Arrow table by column name; a column that the table does not have is refused."""
     if not rows.num_rows and set(rows.column_names) <= column_comments().get(table, {}).keys():
