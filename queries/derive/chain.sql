@@ -71,7 +71,7 @@ continuation AS (
 chain_visit AS (
     SELECT
         drive_id, ego_id, v, hop,
-        (count(*) FILTER (hop IS NULL) OVER (PARTITION BY drive_id, ego_id ORDER BY v ROWS UNBOUNDED PRECEDING) - (hop IS NULL)::BIGINT)::INTEGER AS chain_id
+        (count(CASE WHEN hop IS NULL THEN 1 END) OVER (PARTITION BY drive_id, ego_id ORDER BY v ROWS UNBOUNDED PRECEDING) - (hop IS NULL)::BIGINT)::INTEGER AS chain_id
     FROM continuation
 ),
 first_visit AS (SELECT drive_id, ego_id, chain_id, min(v) AS v FROM chain_visit GROUP BY ALL),

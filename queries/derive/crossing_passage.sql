@@ -10,7 +10,7 @@ WITH crossing_step AS (
 passage_step AS (
     SELECT
         *, enters_forwards OR enters_backwards AS begins,
-        count(*) FILTER (enters_forwards OR enters_backwards) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
+        count(CASE WHEN enters_forwards OR enters_backwards THEN 1 END) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
     FROM crossing_step
 ),
 -- An ego whose position jitters at the edge enters the crossing only once, see stop_line_crossing.

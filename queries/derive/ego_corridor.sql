@@ -35,9 +35,16 @@ point_on_strip AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
-point_place AS (
-    SELECT b.* EXCLUDE (lanelet_id, lane_s_m), c.chain_id, c.s_start_m + b.lane_s_m AS s_m, c.over_width_m, c.over_against, c.side
-    FROM point_on_strip b JOIN corridor c USING (drive_id, ego_id, lanelet_id)
+-- A chain that comes back to a lanelet, as on a test track, has it once per lap. Each occurrence is the nearest one from halfway to the
+-- occurrence before it.
+occurrence AS (
+    SELECT
+        drive_id, ego_id, chain_id, lanelet_id, s_start_m, over_width_m, over_against, side,
+        coalesce((lag(s_start_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id ORDER BY s_start_m) + s_start_m) / 2, '-infinity'::DOUBLE) AS from_m
+    FROM corridor
+),
+chain_lanelet AS (
+    SELECT DISTINCT drive_id, ego_id, chain_id, lanelet_id FROM corridor
 ),
 -- The certain stations of the ego: the lanelet that it is on is part of the chain.
 certain_station AS (
@@ -47,31 +54,45 @@ certain_station AS (
     JOIN step s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns
     WHERE e.with_direction AND e.t_ns BETWEEN c.t_first_ns AND c.t_last_ns
 ),
-centre_candidate AS (
-    SELECT p.*, g.travel_m, f.station_minus_travel_m
-    FROM point_place p
+centre_on_lane AS (
+    SELECT p.*, l.chain_id, g.travel_m + f.station_minus_travel_m AS expected_s_m
+    FROM point_on_strip p
+    JOIN chain_lanelet l USING (drive_id, ego_id, lanelet_id)
     JOIN ego_box g USING (drive_id, ego_id, t_ns)
-    ASOF LEFT JOIN certain_station f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = p.chain_id AND f.t_ns <= p.t_ns
+    ASOF LEFT JOIN certain_station f ON f.drive_id = p.drive_id AND f.ego_id = p.ego_id AND f.chain_id = l.chain_id AND f.t_ns <= p.t_ns
     WHERE p.p = 0
 ),
 best_centre AS (
     SELECT
-        drive_id, ego_id, chain_id, t_ns,
+        p.drive_id, p.ego_id, p.chain_id, p.t_ns,
         min({
-            'off_m': CASE WHEN station_minus_travel_m IS NULL THEN abs(d_m) ELSE abs(s_m - travel_m - station_minus_travel_m) END,
-            's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'heading_rad': heading_rad,
-            'over_width_m': over_width_m, 'over_against': over_against, 'side': side
+            'off_m': coalesce(abs(o.s_start_m + p.lane_s_m - p.expected_s_m), abs(p.d_m)),
+            's_m': o.s_start_m + p.lane_s_m, 'd_m': p.d_m, 'half_width_m': p.half_width_m, 'heading_rad': p.heading_rad,
+            'over_width_m': o.over_width_m, 'over_against': o.over_against, 'side': o.side
         }) AS b
-    FROM centre_candidate
+    FROM centre_on_lane p
+    ASOF JOIN occurrence o
+        ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id AND o.chain_id = p.chain_id AND o.lanelet_id = p.lanelet_id
+            AND o.from_m <= coalesce(p.expected_s_m - p.lane_s_m, '-infinity'::DOUBLE)
     GROUP BY ALL
+),
+corner_on_lane AS (
+    SELECT p.*, b.chain_id, b.b.s_m AS centre_s_m
+    FROM best_centre b
+    JOIN point_on_strip p ON p.drive_id = b.drive_id AND p.ego_id = b.ego_id AND p.t_ns = b.t_ns AND p.p > 0
 ),
 best_corner AS (
     SELECT
-        b.drive_id, b.ego_id, b.chain_id, b.t_ns, p.p,
-        min({'off_m': abs(p.s_m - b.b.s_m), 's_m': p.s_m, 'd_m': p.d_m, 'half_width_m': p.half_width_m}) AS c
-    FROM best_centre b
-    JOIN point_place p ON p.drive_id = b.drive_id AND p.ego_id = b.ego_id AND p.chain_id = b.chain_id AND p.t_ns = b.t_ns AND p.p > 0
-    WHERE abs(p.s_m - b.b.s_m) < 30
+        p.drive_id, p.ego_id, p.chain_id, p.t_ns, p.p,
+        min({
+            'off_m': abs(o.s_start_m + p.lane_s_m - p.centre_s_m), 's_m': o.s_start_m + p.lane_s_m,
+            'd_m': p.d_m, 'half_width_m': p.half_width_m
+        }) AS c
+    FROM corner_on_lane p
+    ASOF JOIN occurrence o
+        ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id AND o.chain_id = p.chain_id AND o.lanelet_id = p.lanelet_id
+            AND o.from_m <= p.centre_s_m - p.lane_s_m
+    WHERE abs(o.s_start_m + p.lane_s_m - p.centre_s_m) < 30
     GROUP BY ALL
 ),
 box_extent AS (

@@ -41,7 +41,7 @@ WITH footway_step AS (
 ),
 -- The steps of a stretch on the footway have the number of the last step before the stretch. The first step after it has the next number.
 numbered_step AS (
-    SELECT *, count(*) FILTER (NOT is_on_footway) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS stretch_no FROM footway_step
+    SELECT *, count(CASE WHEN NOT is_on_footway THEN 1 END) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS stretch_no FROM footway_step
 ),
 footway_stretch AS (
     SELECT n.drive_id, n.ego_id, n.stretch_no, bool_and(n.is_slow) AND count(b.stretch_no) > 0 AS may_be_access
