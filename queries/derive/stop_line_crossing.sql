@@ -3,7 +3,7 @@ WITH stop_line_step AS (SELECT * FROM near_mark WHERE kind = 'stop_line'),
 numbered_step AS (
     SELECT
         *, front_m >= 0 AND front_before_m < 0 AND running AS is_crossing,
-        count(*) FILTER (front_m >= 0 AND front_before_m < 0 AND running)
+        count(CASE WHEN front_m >= 0 AND front_before_m < 0 AND running THEN 1 END)
             OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
     FROM stop_line_step
 ),

@@ -69,6 +69,6 @@ _COUNTED_ANEW = re.compile(r"count\(\*\)\s+FILTER\s*\((?:[^()]|\([^()]*\))*\)\s+
 
 def test_no_filtered_count_of_rows_stands_over_a_window() -> None:
     """DuckDB counts the whole frame anew for each row: 32 s for a drive of 8 h. `count(CASE WHEN ... THEN 1 END)` takes a moment."""
-    files = [file for file in sorted((SOURCE.parents[1] / "queries").rglob("*.sql"))]
+    files = sorted((SOURCE.parents[1] / "queries").rglob("*.sql"))
     assert [file.name for file in files if _COUNTED_ANEW.search(file.read_text("utf-8"))] == []
     assert _COUNTED_ANEW.search("SELECT count(*) FILTER (NOT a AND (b OR c)) OVER w FROM t")
