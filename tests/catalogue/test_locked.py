@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import duckdb
@@ -11,6 +12,7 @@ import pytest
 
 from drivelint.casefile import Case, judge
 from drivelint.catalogue import Rule, allowed
+from drivelint.catalogue.check import check_query
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import RuleError
 from drivelint.sql import store
@@ -212,3 +214,16 @@ def test_a_variable_of_the_program_is_no_table_on_any_of_its_connections() -> No
             with pytest.raises(duckdb.CatalogException, match="secret"):
                 each.execute("SELECT * FROM secret")
     assert secret.num_rows == 1
+
+
+def test_joins_too_deep_for_what_they_need_are_refused_by_name() -> None:
+    """A chain of joins costs the checker a frame each; how many fit depends on what called it."""
+
+    def deeper(frames: int) -> None:
+        if frames:
+            deeper(frames - 1)
+        else:
+            check_query(of("ego_state" + " CROSS JOIN step" * 900, "1"), "rule.sql")
+
+    with pytest.raises(RuleError, match="too deeply nested"):
+        deeper(sys.getrecursionlimit() - 400)

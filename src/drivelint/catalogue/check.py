@@ -79,7 +79,10 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
         found.meet(part, ctes)
     parameters = frozenset(statement.named_parameters)
     places = found.tables | {f"${name}": text.at(_parameter(sql, name)) for name in parameters}
-    needs = tables_needing_rows(node) & found.tables.keys()
+    try:
+        needs = tables_needing_rows(node) & found.tables.keys()
+    except RecursionError as error:
+        raise RuleError(f"{text.at(0)}: {_DEEP}") from error
     return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs)
 
 

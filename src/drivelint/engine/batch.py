@@ -148,11 +148,6 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
         yield batch
 
 
-def batches_of(drives: Iterable[Drive]) -> float:
-    """Return how many full batches the drives are as large as; at least 1."""
-    return max(1.0, sum(drive.n_states for drive in drives) / BATCH_STATES)
-
-
 def are_large(drives: Iterable[Drive]) -> bool:
     """Whether drives take so much memory themselves that the database must do with less of it."""
     return sum(drive.n_states for drive in drives) > LARGE_STATES

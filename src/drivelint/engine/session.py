@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import with_columns
-from drivelint.engine.batch import are_large, batches_of, skipped_egos_by_part
+from drivelint.engine.batch import are_large, skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
@@ -154,7 +154,6 @@ class JudgingSession:
         """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""
         ids = [drive.trace.drive_id for drive in drives]
         on_earth = [drive.trace.drive_id for drive in drives if drive.geo]
-        self._limits.batches = batches_of(drives)
         with ExitStack() as undo:
             undo.callback(self._forget, ids)
             self._load(drives)

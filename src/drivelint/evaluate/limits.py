@@ -58,8 +58,8 @@ class DeafRules(Protocol):
 class RuleLimits:
     """The limits of every rule of a run, and which rules have lost their turn.
 
-    `seconds`: per rule and batch, None: no limit; a drive that is as large as several batches has the time of as many.
-    `deaf`: for rules that did not heed the interrupt within the same time again; None: the interrupt is repeated until the rule ends.
+    `seconds`: per rule and batch, None: no limit. `deaf`: for rules that did not heed the interrupt within the same time again; None:
+    the interrupt is repeated until the rule ends.
     """
 
     def __init__(
@@ -69,9 +69,7 @@ class RuleLimits:
         task: str = "drives",
         deaf: DeafRules | None = None,
     ) -> None:
-        self._seconds = seconds
-        self.batches = 1.0
-        """As many batches what is judged at present is as large as; at least 1."""
+        self.seconds = seconds
         self.memory: Callable[[], int | None] = lambda: None
         """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
@@ -79,11 +77,6 @@ class RuleLimits:
         self._lost: dict[str, Excess] = {}
         self._excesses: Counter[str] = Counter()
         self.forget()
-
-    @property
-    def seconds(self) -> float | None:
-        """The time that a rule has at present; None: any."""
-        return None if self._seconds is None else self._seconds * self.batches
 
     def lost(self, rule_id: str) -> Excess | None:
         """Return the limit because of which a rule is not tried any more; None: it is tried."""
