@@ -113,23 +113,24 @@ class RuleLimits:
     def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool) -> None:
         seconds = self.seconds or 0.0
         until, before = monotonic() + seconds, resident_bytes()
-        patience, most = 0.0, 0
+        patience = 0.0
+        most: int | None = None  # what the process may have at most before the rule is not waited for
         while not held.over.wait(min(_LOOK_S, seconds)):
-            now = monotonic()
+            now, resident = monotonic(), resident_bytes()
             excess = held.excess
             if excess is None:
                 memory = self.memory() if alone else None
                 if memory is None:
-                    before = resident_bytes()
-                if memory is not None and resident_bytes() - before > memory:
+                    before = resident
+                most = None if memory is None else before + int(_MOST_EXCESS * memory)
+                if memory is not None and resident - before > memory:
                     excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
-                    most = before + int(_MOST_EXCESS * memory)
                 elif now >= until:
                     excess, patience = "rule_timeout", now + seconds
                 else:
                     continue
-            elif excess == "out_of_memory" and resident_bytes() > most:
-                patience = now
+            elif most is not None and resident > most:
+                patience = now  # also of a rule that is interrupted for its time, and goes on growing
             with held.lock:
                 if held.over.is_set():
                     return
