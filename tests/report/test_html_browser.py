@@ -128,10 +128,11 @@ def test_a_findings_link_lands_on_it_though_its_drive_is_folded(opened: Page, ov
     anchor = f"finding-{overtakes.findings['finding_id'][-1].as_py()}"
     opened.value("document.querySelectorAll('details').forEach(d => { d.open = false; })")
     assert not opened.value(f"document.getElementById('{anchor}').checkVisibility()")
-    top = f"document.getElementById('{anchor}').getBoundingClientRect().top"
-    # a busy machine scrolls late: five seconds are enough
-    look = f"const look = n => {top} >= -1 && {top} < 900 || !n ? done() : setTimeout(look, 50, n - 1); setTimeout(look, 700, 100)"
-    opened.value(f"new Promise(done => {{ location.hash = '{anchor}'; {look}; }})")
+    # hashchange, then whatever is laid out as it comes into sight
+    frames = "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 300)))"
+    opened.value(
+        f"new Promise(done => {{ addEventListener('hashchange', () => {frames}); location.hash = '{anchor}'; }})"
+    )
     assert opened.value(f"document.getElementById('{anchor}').checkVisibility()")
     box = opened.value(f"document.getElementById('{anchor}').getBoundingClientRect().toJSON()")
     assert box["height"] > 10

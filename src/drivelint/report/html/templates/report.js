@@ -1,3 +1,8 @@
+// sections out of sight have an estimated height: what is on the way to the target would move it as it is laid out
+const goTo = (target) => {
+  document.body.classList.add("laid-out");
+  target.scrollIntoView();
+};
 const reveal = () => {
   let name = location.hash.slice(1);
   try { name = decodeURIComponent(name); } catch { return; }
@@ -7,7 +12,7 @@ const reveal = () => {
     if (e.tagName === "DETAILS") e.open = true;
     if (e.dataset && e.dataset.k !== undefined) e.hidden = false;
   }
-  target.scrollIntoView();
+  goTo(target);
 };
 addEventListener("hashchange", reveal);
 reveal();
@@ -63,7 +68,7 @@ reveal();
     sorted = chosen.get("sort") || "";
     if (table && sorted) table.dispatchEvent(new CustomEvent("sort-table", { bubbles: true, detail: sorted }));
     apply();
-    document.getElementById("findings").scrollIntoView();
+    goTo(document.getElementById("findings"));
   };
   const changed = () => { apply(); remember(); };
   form.hidden = false;
