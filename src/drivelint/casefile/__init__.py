@@ -81,7 +81,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # a build without libyaml has no CSafeLoader
     """YAML in which `off` and `on` are words: an indicator is off, not false."""
 
 
@@ -99,16 +99,21 @@ def read_cases(rule: Rule) -> list[Case]:
     """
     file = cases_path(rule)
     try:
-        cases = _parsed(file, file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise RuleError(
             f"{file}:1: rule {rule.id} has no cases; write clean, violation, boundary, not applicable and unknown"
         ) from error
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}:1: not UTF-8 at byte {error.start}") from error
+    try:
+        cases = _parsed(file, text)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        raise RuleError(f"{file}:{mark.line + 1 if mark else 1}: not YAML: {' '.join(str(error).split())}") from error
+        line = (
+            min(mark.line + 1, len(text.splitlines())) if mark else 1
+        )  # what ends too early is missed in a line after the last
+        raise RuleError(f"{file}:{line}: not YAML: {' '.join(str(error).split())}") from error
     seen: dict[str, Case] = {}
     for case in cases:
         if case.name in seen:
@@ -133,11 +138,12 @@ def cases_path(rule: Rule) -> Path:
 
 def _parsed(file: Path, text: str) -> list[Case]:
     """Return the cases of a file, each with its line. Errors: `RuleError`, `yaml.YAMLError`."""
-    raw = yaml.load(text, Loader=_Loader)  # noqa: S506 - a safe loader with fewer booleans
+    loader = _Loader(text)
+    root = loader.get_single_node()
+    raw = loader.construct_document(root) if root else None
     if not isinstance(raw, list):
         raise RuleError(f"{file}:1: cases are a list: each begins with '- name: ...'")
-    root = yaml.compose(text, Loader=_Loader)
-    lines = [item.start_mark.line + 1 for item in root.value] if root else []
+    lines = [item.start_mark.line + 1 for item in root.value]
     cases = []
     for line, item in zip(lines, raw, strict=True):
         if not isinstance(item, dict) or "line" in item:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -124,14 +124,17 @@ def rule_id_of(file: Path) -> str:
 
 def read_rule(file: Path) -> Rule:
     """Read and check one rule file. Errors: `RuleError` with file and line."""
-    pack = file.resolve().parent.name
+    return _checked_rule(file, file.resolve().parent.name, _title(file.resolve().parent), file.read_bytes())
+
+
+@lru_cache(maxsize=1024)  # a process that checks many times reads its rules each time, and they seldom change
+def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes) -> Rule:
     for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
             raise RuleError(
                 f"{file}: the {what} name {part!r} makes no rule id: "
                 "lower-case letters, digits, '-', '_' (and '.' in the file name) only"
             )
-    content = file.read_bytes()
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -150,9 +153,9 @@ def read_rule(file: Path) -> Rule:
     _check_reasons(header, queries, file, toml)
     return Rule(
         **msgspec.structs.asdict(header),
-        id=rule_id_of(file),
+        id=f"{pack}.{file.stem}",
         pack=pack,
-        pack_title=_title(file.resolve().parent),
+        pack_title=pack_title,
         path=file,
         version=hashlib.sha256(content).hexdigest()[:16],
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
