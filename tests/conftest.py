@@ -27,16 +27,22 @@ SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked slow are left out
 def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
-    """Mark one side of the road slow for each test of both: every run has half of them on the left, half on the right."""
-    by_test: dict[tuple[str, str], list[tuple[pytest.Item, int]]] = defaultdict(list)
+    """Mark what a quick run leaves out of tests with many cases.
+
+    Of a test of both sides of the road one side is slow: every run has half of the tests on the left, half on the right. Of a test marked
+    `sample(n)` all cases but n are.
+    """
+    by_test: dict[tuple[str, str], list[pytest.Function]] = defaultdict(list)
     for item in items:
         if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
-            side = SIDES.get(str(item.callspec.params.get("hand")))
-            if side is not None:
-                by_test[str(item.path), item.originalname].append((item, side))
-    for (_, name), mine in by_test.items():
-        if len({side for _, side in mine}) == 2:
-            quick = zlib.crc32(name.encode()) % 2
-            for item, side in mine:
-                if side != quick:
-                    item.add_marker(pytest.mark.slow)
+            by_test[str(item.path), item.originalname].append(item)
+    for (_, name), cases in by_test.items():
+        sides = {id(case): SIDES.get(str(case.callspec.params.get("hand"))) for case in cases}
+        quick = cases
+        if {0, 1} <= set(sides.values()):
+            quick = [case for case in cases if sides[id(case)] in {None, zlib.crc32(name.encode()) % 2}]
+        if sample := cases[0].get_closest_marker("sample"):
+            quick = sorted(quick, key=lambda case: zlib.crc32(case.name.encode()))[: sample.args[0]]
+        for case in cases:
+            if case not in quick:
+                case.add_marker(pytest.mark.slow)

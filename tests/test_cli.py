@@ -26,7 +26,7 @@ from tests.shared_data import ROOT
 OVERTAKE = ROOT / "fixtures" / "overtake"
 TRACES = [str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision")]
 ON_ROAD = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml")]
-SDA = ["--rules", "ukhc.r162.safe-distance-ahead"]
+SDA = ["--rules", "ukhc.r162.safe-distance-ahead", "--no-robustness"]
 PROFILES = ["--profile", "relaxed", "--profile", "nominal", "--profile", "aggressive"]
 
 

@@ -109,6 +109,7 @@ def told(found: Judged) -> bool:
     return all(applies is not None for _, applies, _ in found.values())
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", sorted(ESMINI))
 def test_esmini(name: str) -> None:
     road, ego, least = ESMINI[name]

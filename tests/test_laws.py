@@ -157,6 +157,7 @@ def expected() -> tuple[Row, ...]:
     return tuple(judged(crowd(), rules=RULES, profiles=PROFILES))
 
 
+@pytest.mark.slow
 def test_the_crowd_has_something_to_say() -> None:
     """Every verdict but error, and every rule decided somewhere, or the laws below would be about little."""
     assert {row["verdict"] for row in expected()} == {"pass", "fail", "unknown", "not_applicable"}
@@ -164,6 +165,7 @@ def test_the_crowd_has_something_to_say() -> None:
     assert len(decided) >= 35, sorted({row["rule_id"] for row in expected()} - decided)
 
 
+@pytest.mark.slow
 def test_alone_or_in_a_crowd() -> None:
     by_drive = of_each(expected())
     assert by_drive.keys() == {one.trace.drive_id for one in crowd()}
@@ -171,6 +173,7 @@ def test_alone_or_in_a_crowd() -> None:
         assert judged([one], rules=RULES, profiles=PROFILES) == by_drive[one.trace.drive_id]
 
 
+@pytest.mark.slow
 def test_order_of_drives_and_of_their_rows() -> None:
     dice = np.random.default_rng(0)
     shuffled = [crowd()[i] for i in dice.permutation(len(crowd()))]

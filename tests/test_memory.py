@@ -61,7 +61,10 @@ def overtakes(*names: str, **options: Any) -> CheckOptions:
     given: dict[str, Any] = {"rules": FEW, **options}
     mapping = str(FIXTURE / "mapping.toml")
     return CheckOptions(
-        tuple(str(FIXTURE / f"{n}.csv") for n in names), map=FIXTURE / "road.xodr", mapping=mapping, **given
+        tuple(str(FIXTURE / f"{n}.csv") for n in names),
+        map=FIXTURE / "road.xodr",
+        mapping=mapping,
+        **{"robustness": False, **given},
     )
 
 
@@ -86,7 +89,7 @@ def crowd(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 def crowded(crowd: tuple[Path, Path], **options: Any) -> CheckOptions:
-    return CheckOptions((str(crowd[0]),), map=crowd[1], ego="all", **options)
+    return CheckOptions((str(crowd[0]),), map=crowd[1], ego="all", **{"robustness": False, **options})
 
 
 @pytest.mark.slow
@@ -115,11 +118,17 @@ def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path
     same(files(CheckOptions(**asked, out=tmp_path / "b", memory=limit)), wanted)
 
 
+@pytest.mark.slow
 def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, halved: list[int]) -> None:
     """For real: the limit is so low that the table of pairs of all egos does not fit."""
     (tmp_path / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
     log = traffic.write_folder(tmp_path / "crowd", traffic.Shape(5.0, 10, 30))
-    asked: dict[str, Any] = {"map": tmp_path / "ring.xodr", "ego": "all", "rules": ("ukhc.no-collision",)}
+    asked: dict[str, Any] = {
+        "map": tmp_path / "ring.xodr",
+        "ego": "all",
+        "rules": ("ukhc.no-collision",),
+        "robustness": False,
+    }
     short = check(CheckOptions((str(log),), memory=60_000_000, **asked), Silent())
     assert halved
     usual = check(CheckOptions((str(log),), memory=None, **asked), Silent())
@@ -209,6 +218,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.Monke
     assert check(overtakes("safe"), Silent()).verdicts.equals(usual.verdicts)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("memory", [DEFAULT_MEMORY, None])
 def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     memory: int | None, monkeypatch: pytest.MonkeyPatch

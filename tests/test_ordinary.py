@@ -46,6 +46,7 @@ def by_the_works(hand: str, kind: str | None, cones: list[float], **more: Any) -
     return drive([moving("ego", way, t, s, d), *row], way.environment)
 
 
+@pytest.mark.slow
 @HANDS
 @pytest.mark.parametrize("kind", ["object", None, "car"])
 def test_past_a_row_of_cones_the_ego_is_not_on_the_wrong_side(hand: str, kind: str | None) -> None:

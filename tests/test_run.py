@@ -119,6 +119,7 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert batch.skipped_egos_by_part([drive, drive]) == [[]]
 
 
+@pytest.mark.slow
 def test_a_drive_of_which_a_part_fails_leaves_nothing(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -238,6 +239,7 @@ def test_a_map_of_the_log_itself_that_cannot_be_used_leaves_the_other_rules(
     assert any("the log's own map" in note for note in again.notes)
 
 
+@pytest.mark.slow
 def test_the_map_and_the_host_that_an_omega_prime_table_holds(tmp_path: Path) -> None:
     """Without --map and --ego the distance ahead is that of the CSV with both."""
     rows = read_trace(FIXTURE / "near_miss.csv", IngestOptions(mapping=str(FIXTURE / "mapping.toml")))
@@ -270,6 +272,7 @@ def test_the_map_and_the_host_that_an_omega_prime_table_holds(tmp_path: Path) ->
     assert result.verdicts["ego_id"].unique().to_pylist() == ["3"]
 
 
+@pytest.mark.slow
 def test_objects_at_half_the_rate_change_no_verdict(tmp_path: Path) -> None:
     """They move evenly: at the ego's steps they are where they were."""
     head, *rows = (FIXTURE / "near_miss.csv").read_text("utf-8").splitlines()
@@ -285,6 +288,7 @@ def test_objects_at_half_the_rate_change_no_verdict(tmp_path: Path) -> None:
     assert "aligned" in {row["check_id"] for row in found}
 
 
+@pytest.mark.slow
 def test_a_map_whose_lanes_run_the_other_way_is_refused() -> None:
     """Everybody drives against their lane, both ways: read so, the ego would overtake all along, and nothing be said of it."""
     side = check(settings(FIXTURE / "near_miss.csv"), Silent()).drives["handedness"][0].as_py()
@@ -296,6 +300,7 @@ def test_a_map_whose_lanes_run_the_other_way_is_refused() -> None:
     check(settings(FIXTURE / "near_miss.csv", handedness=side), Silent())
 
 
+@pytest.mark.slow
 def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     log = tmp_path / "alone.csv"
     head, *rows = (FIXTURE / "near_miss.csv").read_text("utf-8").splitlines()

@@ -285,6 +285,7 @@ def test_an_annotated_log_can_be_checked_and_annotated_again(logged: tuple[Path,
     verify(twice)
 
 
+@pytest.mark.slow
 def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -295,6 +296,7 @@ def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
         assert path.read_bytes() == (out / "annotated" / path.name).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_drive_with_too_many_boxes_shows_every_nth_step(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -42,7 +42,9 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def checked(drives: Path) -> drivelint.CheckResult:
-    return drivelint.check([drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr")
+    return drivelint.check(
+        [drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr", robustness=False
+    )
 
 
 def command_line(*args: object, code: int) -> None:
@@ -89,6 +91,7 @@ def test_evidence_is_a_pack_of_the_result(drives: Path, tmp_path: Path) -> None:
         drivelint.check(drives / "safe.mcap", **asked, evidence=tmp_path / "none")
 
 
+@pytest.mark.slow
 def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Path) -> None:
     """With every kind of option: the logs with their verdicts, each judged step, a baseline, waivers."""
     waivers = tmp_path / "waivers.toml"
@@ -318,6 +321,7 @@ def test_the_gate_takes_what_the_command_line_takes(drives: Path, tmp_path: Path
     assert plain.findings["n_copies"].null_count() == len(plain.findings) > 0
 
 
+@pytest.mark.slow
 def test_files_that_are_not_drivelints_stay(drives: Path, tmp_path: Path) -> None:
     asked: dict[str, Any] = {"traces": drives / "safe.mcap", "map": drives / "road.xodr", "rules": "ukhc.no-collision"}
     (tmp_path / "report.html").write_text("mine", encoding="utf-8")
@@ -349,7 +353,9 @@ def test_margins_need_no_folder(drives: Path, tmp_path: Path) -> None:
 
 def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.mcap").write_bytes(b"\x89MCAP")
-    found = drivelint.check([drives / "safe.mcap", tmp_path / "bad.mcap"], map=drives / "road.xodr", fail_on="never")
+    found = drivelint.check(
+        [drives / "safe.mcap", tmp_path / "bad.mcap"], map=drives / "road.xodr", fail_on="never", robustness=False
+    )
     assert found.exit_code == 4
     assert any("bad.mcap" in note for note in found.notes)
     assert "not judged: 1 drive" in repr(found)
@@ -359,7 +365,7 @@ def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: p
 
 
 def test_a_drive_without_a_map_looks_like_one(drives: Path) -> None:
-    found = drivelint.check(drives / "safe.mcap", rules="ukhc.no-collision")
+    found = drivelint.check(drives / "safe.mcap", rules="ukhc.no-collision", robustness=False)
     assert "map: none" in repr(found)
     assert "map: none | log: complete" in found._repr_html_()
 

@@ -44,6 +44,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
     assert list(PROGRAMS) == ["gap.py", "plot.py", "room.py", "fastest.py", "way.py"]

@@ -121,6 +121,7 @@ def test_processes_give_the_same_tables(
     assert audit(request, Silent()).digest == undisturbed[1].digest
 
 
+@pytest.mark.slow
 def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -250,6 +251,7 @@ def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp
         assert "1 log of the name and content of another" in summary_text(counted, "out", ExitCode.OK)
 
 
+@pytest.mark.slow
 def test_a_renamed_log_is_judged_again_and_the_old_result_can_be_pruned(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     logs = tmp_path / "fleet" / "logs"
@@ -275,6 +277,7 @@ def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_pa
     assert judged(drives, tmp_path / "out", shard=(2, 3)).reused > 0
 
 
+@pytest.mark.slow
 def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     assert judged(few, tmp_path / "whole").exit_code("never", strict=False) == ExitCode.OK

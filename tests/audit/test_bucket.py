@@ -116,6 +116,7 @@ def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_remove
         assert bool(linked) == bool(due)
 
 
+@pytest.mark.slow
 def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:
     counted = judged(drives, "s3://fleet/prefix", sources="s3://fleet/data/logs/", road="s3://fleet/data/ring.xodr")
     assert counted.judged == N_DRIVES

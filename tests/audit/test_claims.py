@@ -89,6 +89,7 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
     assert sorted(done[0] + done[1]) == sorted(f"log{i}" for i in range(n))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_killed", [0, 1])
 def test_three_audits_give_the_tables_of_one(tmp_path: Path, n_killed: int) -> None:
     drives = fleet.write(tmp_path / "fleet", N_DRIVES)

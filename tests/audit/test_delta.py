@@ -178,6 +178,7 @@ def test_given_again_it_changes_nothing_and_a_grown_audit_adds_to_it(
     assert {path for path, _ in before} <= set(lake.rglob("*")), "no file of a former version is gone"
 
 
+@pytest.mark.slow
 def test_what_was_pruned_or_judged_again_is_not_in_the_next_version(
     drives: fleet.Fleet, out: Path, tmp_path: Path
 ) -> None:

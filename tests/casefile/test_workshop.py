@@ -29,6 +29,7 @@ def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
     return code, "\n".join(said)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Path, kind: str) -> None:
     sql, cases = workshop.new_rule(f"mine.r1.{kind}", tmp_path, kind)
@@ -101,6 +102,7 @@ def test_a_copy_of_the_shipped_rules_can_be_worked_on(tmp_path: Path) -> None:
     assert (code, said.split(":")[0]) == (ExitCode.OK, "ok   ukhc.r145.off-road")
 
 
+@pytest.mark.slow
 def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
     with_cases(measured(tmp_path), CASES)
     broken = tmp_path / "pack" / "broken.sql"
@@ -135,6 +137,7 @@ def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str,
     assert message in said
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [
@@ -169,6 +172,7 @@ def test_what_is_wrong_in_cases_is_said_with_its_line(
     assert "\n" not in said
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [

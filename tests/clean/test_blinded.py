@@ -126,6 +126,7 @@ def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
     assert clear == {what for what, rule in EVIDENCE if rule == planted.rule and what in mine}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", ["ukhc.overtake-zone", "ukhc.r180.right-turn-gap", "ukhc.r163.cyclist"])
 def test_what_is_kept_is_never_broken_by_not_being_seen(rule: str) -> None:
     """The same drives without what was planted, by every stable rule of these packs."""

@@ -48,6 +48,7 @@ def of(nation: str) -> list[Row]:
     return verdicts([drive], PACKS[nation])[drive.trace.drive_id]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nation", ["gb", "de"])
 def test_ten_clean_minutes_break_nothing(nation: str) -> None:
     failed = {

@@ -133,6 +133,7 @@ def test_without_the_heights_of_the_log_what_depends_on_them_is_unknown(
     assert not any(row["verdict"] in {"pass", "fail"} and row["object_id"] is not None for row in found)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "heights"),
     [
@@ -179,6 +180,7 @@ def test_the_ego_is_on_the_deck_at_its_height(upper: bool) -> None:
     }
 
 
+@pytest.mark.sample(2)
 @EACH
 @pytest.mark.parametrize("height", [0.0, 0.75])
 def test_a_height_that_the_log_does_not_have_rules_nothing_out(name: str, height: float) -> None:
@@ -195,6 +197,7 @@ def test_a_height_that_the_log_does_not_have_rules_nothing_out(name: str, height
     assert verdicts == {"unknown"}
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("road", sorted({scene.map_name for scene in SCENES.values()}))
 def test_check_of_the_files_finds_nobody_on_the_other_level(road: str) -> None:
     folder = ROOT / "fixtures" / "scenes"

@@ -74,6 +74,7 @@ MEDIAN = ((2, "driving"), (1, "median"), (-1, "driving"))
 APART = ((2, "driving"), (1, "restricted"), (-1, "driving"))
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("kind", "lanes", "carriageway", "area"),
     [

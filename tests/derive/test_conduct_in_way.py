@@ -67,6 +67,7 @@ def test_without_anybody_the_same_braking_and_stopping_is_one(hand: str) -> None
         assert "fail" in verdicts(drive([ego, far], way.environment), rule), rule
 
 
+@pytest.mark.sample(1)
 @HANDS
 @pytest.mark.parametrize(("kind", "rule"), [("animal", "stvo.rg2"), ("pedestrian", "stvo.rg2"), (None, "stvo.rg2")])
 def test_who_runs_across_is_a_reason_by_his_velocity_not_by_his_heading(hand: str, kind: str | None, rule: str) -> None:

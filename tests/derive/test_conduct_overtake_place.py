@@ -189,6 +189,7 @@ def sign(s: float, code: str, number: int = 1) -> str:
     )
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("signs", "holds"),
     [

@@ -115,6 +115,7 @@ def divided(hand: str, kind: str, width: float, road_type: str = "rural", centre
     return Road(load_map(MapSource(name, text.encode())), ((600.0, 0.0),))
 
 
+@pytest.mark.sample(2)
 @HANDS
 @pytest.mark.parametrize(
     ("kind", "width", "expected"),

@@ -110,6 +110,7 @@ def way(egos: Sequence[int]) -> dict[int, list[float]]:
         return dict(found)
 
 
+@pytest.mark.slow
 def test_the_way_is_the_same_to_the_last_bit_beside_other_egos() -> None:
     crowd = way(range(len(SAMPLES)))
     for ego, n in enumerate(SAMPLES):

@@ -458,6 +458,7 @@ def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]
     return {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:

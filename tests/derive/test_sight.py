@@ -208,6 +208,7 @@ def test_a_rule_about_the_ego_alone_assumes_nothing() -> None:
     assert {r["assumes"] for r in judged([everybody], rules=["ukhc.no-collision", *AHEAD])} == {None}
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.floats(5, 60), st.floats(-8, 8), st.floats(2, 12), st.floats(0.3, 8), st.sampled_from([-1.5, -0.5, 0.5, 1.5]))
 def test_what_is_decided_without_the_assumption_is_decided_alike_with_it(

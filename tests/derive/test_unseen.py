@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 FOLLOWING = ("criticality.ttc", "criticality.thw", "ukhc.r126.thinking-gap")
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("gap", [52.0, 99.0])
 def test_a_braking_lead_that_is_lost_is_not_nobody(hand: str, gap: float) -> None:

@@ -59,6 +59,7 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
     assert certainty(contact) == POSSIBLE
 
 
+@pytest.mark.slow
 def test_windows_tell_what_whole_copies_tell(judged: tuple[Path, list[Row]]) -> None:
     """`explain` judges whole copies of these drives by a path of its own: the same copies keep the finding."""
     folder, rows = judged

@@ -51,6 +51,7 @@ def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
     return scene | ({} if at is None else {"exit_taken": {"t_s": at}})
 
 
+@pytest.mark.sample(12)
 @pytest.mark.parametrize(
     ("applies", "given", "expected"),
     [
@@ -124,6 +125,7 @@ def test_the_words_of_an_unknown_condition(tmp_path: Path, applies: str, words: 
     assert row["reason"] == words
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("law", "nation", "judged"),
     [
@@ -250,6 +252,7 @@ def test_one_ego_by_hand_leaves_the_others_alone(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(
     ("quantifier", "speeds", "engaged", "expected"),
     [

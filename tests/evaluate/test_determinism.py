@@ -115,6 +115,7 @@ def test_a_drive_alone_has_the_same_rows_as_in_a_crowd(
             assert rows == [row for row in crowd[table] if drive in row[:2]]
 
 
+@pytest.mark.slow
 def test_rules_are_judged_on_two_connections_as_on_one(
     crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -71,6 +71,7 @@ def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_pat
     }
 
 
+@pytest.mark.slow
 def test_a_rule_loses_its_turn_after_three_times(tmp_path: Path) -> None:
     """Once for the batch, then for two of its drives alone: the time that a bomb takes does not grow with the drives."""
     drives = ("collision", "near_miss", "safe")
@@ -113,6 +114,7 @@ def assert_contained(tmp_path: Path, names: tuple[str, ...]) -> subprocess.Compl
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="a process cannot be replaced here")
 def test_the_command_starts_again_without_a_rule_that_heeds_no_interrupt(tmp_path: Path) -> None:
     found = assert_contained(tmp_path, ("nested_lambda",))

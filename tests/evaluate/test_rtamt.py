@@ -73,6 +73,7 @@ def check(spec: Spec, trace: Trace, outcome: CaseOutcome) -> str:
     return verdict
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.rule)
 def test_the_catalogue_and_rtamt_agree(spec: Spec) -> None:
     seen: set[str] = set()
@@ -88,6 +89,7 @@ def test_the_catalogue_and_rtamt_agree(spec: Spec) -> None:
     assert seen >= {"pass", "fail"}, "the traces show both"
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("rule", "formula"),
     [

@@ -167,6 +167,7 @@ def random_result(rng: np.random.Generator, n_drives: int, side: str) -> Result:
     return result(verdicts, findings, drives=drives, rules=rules)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -186,6 +187,7 @@ def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
     }
 
 
+@pytest.mark.slow
 def test_an_audit_against_itself_has_nothing(checked: Checked) -> None:
     base = load_result(checked(*RULES_OF_BASE))
     told = by_sql(base, base)

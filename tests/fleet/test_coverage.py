@@ -69,6 +69,7 @@ def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
     assert found.cannot_tell
 
 
+@pytest.mark.slow
 def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Checked) -> None:
     folder = checked()
     verdicts = pq.read_table(folder / "verdicts.parquet").to_pylist()
@@ -101,6 +102,7 @@ def of_check(folder: Any) -> Missing:
         return missing(con)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rules", ["alks-r157"])
 def test_the_forecast_of_a_signal_is_what_is_judged_when_it_is_supplied(checked: Checked, rules: str) -> None:
     before, after = checked("--rules", rules), checked("--rules", rules, "--env", "engaged=yes")

@@ -93,6 +93,7 @@ def test_an_audit_against_itself_has_nothing(filled: lake.Lake) -> None:
     assert (found["opened"], found["rates"]) == ([], [])
 
 
+@pytest.mark.slow
 def test_lists_are_cut_and_say_so_and_the_rows_are_all_there(filled: lake.Lake, tmp_path: Path) -> None:
     """Other logs of the same names, so that drives are matched and findings are not."""
     other = lake.write(tmp_path / "other", 1_500, seed=1)

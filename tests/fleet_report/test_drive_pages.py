@@ -122,6 +122,7 @@ def test_unknown_verdicts_are_grouped_by_reason(lake_copy: Path) -> None:
     assert "indicator: no indicators" in words(page.xpath("//section[@aria-labelledby='data']")[0])
 
 
+@pytest.mark.slow
 def test_all_are_all_drives_of_the_audit(lake_copy: Path) -> None:
     drives = table(lake_copy, "drives")
     assert ran("report", lake_copy, "--drive-pages", "all").code == 0
@@ -176,6 +177,7 @@ def test_the_same_audit_gives_the_same_bytes(lake_copy: Path) -> None:
     assert made(lake_copy, 20) == made(lake_copy, 20)
 
 
+@pytest.mark.slow
 def test_more_pages_take_no_more_statements_and_do_not_change(lake_copy: Path) -> None:
     few, many = Counted(), Counted()
     assert made(lake_copy, 3, few).items() <= made(lake_copy, 90, many).items()
@@ -263,6 +265,7 @@ def test_markdown_leaves_the_pages_as_they_are(ten: Path) -> None:
     assert "drives/0" not in (ten / "fleet.md").read_text(encoding="utf-8").replace("--out drives/", "")
 
 
+@pytest.mark.slow
 def test_the_baseline_leads_to_the_pages(lake_copy: Path, tmp_path: Path) -> None:
     base = lake.write(tmp_path / "base", 1_200)
     found = pq.read_table(base.folder / "tables" / "findings")

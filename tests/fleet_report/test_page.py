@@ -183,6 +183,7 @@ def test_the_command_of_the_worst_drive_opens_it(
     assert (tmp_path / words[-1] / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3, seed=1)
     log = min((tmp_path / "fleet" / "logs").iterdir())
@@ -217,6 +218,7 @@ def test_a_baseline_says_what_is_new(audited: Audited) -> None:
     assert {title.rpartition("/")[2] for title in listed.xpath(".//li/@title")} == new
 
 
+@pytest.mark.slow
 def test_the_page_does_not_grow_with_the_drives(filled: lake.Lake, written: Any, tmp_path: Path) -> None:
     more = lake.write(tmp_path / "more", 4 * filled.n_drives)
     ran("report", more.folder, "--by", "site", "--by", "vehicle")

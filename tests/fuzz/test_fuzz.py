@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 JUDGED = ("osi-mcap",)
 
 
+@pytest.mark.slow
 def test_two_hundred_damaged_files_are_refused_flagged_or_as_before() -> None:
     with Driver() as driver:
         work = [*jobs(200, KINDS, 17, judged=False), *jobs(20, JUDGED, 18)]
@@ -68,6 +69,7 @@ def _died(connection: Connection, log: str) -> None:
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_or_hangs_is_a_finding_and_the_rest_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.fuzz.driver.serve", _died)
     monkeypatch.setattr("tests.fuzz.driver.START_LIMIT_S", 4.0)

@@ -147,6 +147,7 @@ def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
     assert [holds for holds, is_clear in found if holds != is_clear] == []
 
 
+@pytest.mark.slow
 def test_the_condition_about_lights_says_what_they_show() -> None:
     (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition: lights")
     found = {}
@@ -181,6 +182,7 @@ def test_readmes_command_prints_what_readme_shows(folder: Path) -> None:
     assert (folder / "demo" / "results" / "report.html").is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("drive", "code"), [("safe", 0), ("near-miss", 1)])
 def test_readmes_first_workflow_passes_the_safe_drive(drive: str, code: int, folder: Path) -> None:
     (workflow,) = (block.body for block in blocks(ROOT / "README.md") if block.mark == "workflow: first")

@@ -148,6 +148,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
         site.write(tmp_path / "file", ())
 
 
+@pytest.mark.sample(1)
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1280])
 def test_pages_fit_the_screen(pages: Path, tmp_path: Path, width: int) -> None:

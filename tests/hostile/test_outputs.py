@@ -38,6 +38,7 @@ def pages(nasty: Nasty) -> list[Path]:
     return [nasty.result / "report.html", sheet, nasty.audit / "fleet.html", drive]
 
 
+@pytest.mark.slow
 def test_every_element_of_a_page_is_ours(nasty: Nasty) -> None:
     for file in pages(nasty):
         page = assert_page_is_ours(file.read_text(encoding="utf-8"))

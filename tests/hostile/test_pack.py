@@ -70,6 +70,7 @@ def test_the_sql_of_each_finding_is_ours_and_gives_its_numbers(pack: Path, monke
         assert (observed, required, margin, holds) == (each["observed"], each["required"], each["margin"], False)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("word", "where"),
     [

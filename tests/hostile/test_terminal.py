@@ -94,6 +94,7 @@ def test_inspect_a_log_with_foreign_topics(tmp_path: Path) -> None:
         assert_quiet(assert_said(ran("inspect", tmp_path / "topics.mcap", "--format", format_), 0))
 
 
+@pytest.mark.slow
 def test_diff(nasty: Nasty) -> None:
     less = nasty.result.with_name("less")
     done = ran(

@@ -36,7 +36,8 @@ MARGIN = 1e-6
 
 def checked(out: Path, *logs: Path, **options: Any) -> Result:
     result = run_check(
-        CheckOptions(tuple(map(str, logs)), rules=("ukhc",), out=out, annotate=False, **options), Silent()
+        CheckOptions(tuple(map(str, logs)), rules=("ukhc",), out=out, annotate=False, robustness=False, **options),
+        Silent(),
     )
     write(result, out)
     return result
@@ -48,7 +49,7 @@ def findings(result: Result) -> list[dict[str, Any]]:
 
 def judged_alone(path: Path, rule_id: str) -> list[dict[str, Any]]:
     """Return the findings of a rule in a clip, by a check as a user runs it: no map and no mapping is given."""
-    return findings(run_check(CheckOptions((str(path),), rules=(rule_id,)), Silent()))
+    return findings(run_check(CheckOptions((str(path),), rules=(rule_id,), robustness=False), Silent()))
 
 
 def same(found: list[dict[str, Any]], wanted: dict[str, Any]) -> bool:
@@ -97,6 +98,7 @@ def test_case_study_findings_come_again(tmp_path: Path, to: Literal["mcap", "par
     assert pc.max(states).as_py() == row["t_end_ns"] + 7 * 10**9
 
 
+@pytest.mark.slow
 def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An overtake that began before the clip is none: a span too short gives way to a longer one."""
     log, out = OVERTAKE / "near_miss.csv", tmp_path / "out"

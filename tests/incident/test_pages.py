@@ -37,6 +37,7 @@ def fits(page: Page) -> None:
         assert beyond < 0
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) -> None:
     html = tmp_path / "sheet.html"

@@ -195,6 +195,7 @@ def test_a_clip_says_so(case_of: CaseOf) -> None:
     assert "of a clip" not in render(case).decode()
 
 
+@pytest.mark.slow
 def test_same_case_same_bytes(folder: Path, case_of: CaseOf) -> None:
     name = "safe-distance-ahead@collision"
     assert render(open_case(IncidentRequest(name, folder))) == render(case_of(name))
@@ -267,6 +268,7 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
         mapping="carla-testbench",
         rules=("ukhc.contact-signature", "ukhc.no-collision"),
         out=tmp_path,
+        robustness=False,
     )
     write(run_check(options, Silent()), tmp_path)
     told = content(open_case(IncidentRequest("contact-signature", tmp_path)))

@@ -61,6 +61,7 @@ def add(folder: Path, name: str, *words: str) -> Path:
     return line
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("agent")
 def test_an_agent_signs_as_the_key_itself_does(packed: Packed, tmp_path: Path) -> None:
     """Ed25519 has no random part: the pack is the same, byte by byte. The signature is of the PAE, and openssl is content with it."""

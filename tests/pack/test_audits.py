@@ -154,6 +154,7 @@ def test_without_the_logs_the_sql_is_run_and_the_note_says_so(packed: PackedAudi
         verify(VerifyRequest(without_logs, packed.public, (logs / LOSSY,)))
 
 
+@pytest.mark.slow
 def test_only_the_worst_findings_are_packed_where_that_is_asked(
     packed: PackedAudit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -378,6 +379,7 @@ def table_beside_the_audit(pack: Path, p: PackedAudit) -> tuple[str, str]:
     return "file that nothing names", f"{AUDIT}/note.txt"
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("name", [*TAMPERED, *FORGED])
 def test_what_is_changed_is_named(name: str, packed: PackedAudit, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)

@@ -84,6 +84,7 @@ def test_a_number_is_written_with_its_type() -> None:
         assert type(found[2]) is type(value)
 
 
+@pytest.mark.slow
 def test_a_check_packs_its_evidence_in_one_go(packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The exit code stays that of the check."""
     command = [

@@ -282,6 +282,7 @@ def test_a_statement_that_does_not_follow_is_named_whoever_signed_it(
     assert found.kind == kind
 
 
+@pytest.mark.slow
 def test_a_result_that_its_signer_changed_is_not_reproduced(packed: Packed, tmp_path: Path) -> None:
     """Every hash and the signature are right: only the log tells."""
     pack = copied(packed, tmp_path)

@@ -26,7 +26,9 @@ PAGES = range(5, 31)
 def busy(tmp_path_factory: pytest.TempPathFactory) -> Result:
     log = shared("commonroad/USA_US101-5_1_T-1.xml")
     out = tmp_path_factory.mktemp("busy")
-    return check(CheckOptions((str(log),), rules=("all",), ego="all", annotate=False, out=out), Silent())
+    return check(
+        CheckOptions((str(log),), rules=("all",), ego="all", annotate=False, robustness=False, out=out), Silent()
+    )
 
 
 @pytest.fixture(scope="module")

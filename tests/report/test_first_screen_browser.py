@@ -135,6 +135,7 @@ def many(run: Result, n: int) -> Result:
     return replace(run, **parts)
 
 
+@pytest.mark.slow
 def test_three_hundred_drives_are_small_and_print_on_few_pages(overtakes: Result, tmp_path: Path) -> None:
     text = page(many(overtakes, 300))
     assert len(text) < 4_000_000

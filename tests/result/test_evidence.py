@@ -160,6 +160,7 @@ def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Pa
         out=tmp_path,
         margins=True,
         rules=("ukhc", "rss"),
+        robustness=False,
     )
     result = check(settings, Silent())
     assert result.margins_file is not None
@@ -198,6 +199,7 @@ def test_every_near_miss_has_its_course_and_its_worst_step_is_in_it(margins: boo
         out=tmp_path,
         margins=margins,
         rules=("ukhc", "criticality"),
+        robustness=False,
     )
     result = check(settings, Silent())
     near = {_named(row): row for row in result.verdicts.to_pylist() if row["near_miss"]}
