@@ -37,10 +37,10 @@ class BadLog(NamedTuple):
     rewrite: Callable[[Path], None] | None = None
     verdicts: Collection[str] = ("pass",)
 
-    def write(self, folder: Path) -> Path:
+    def write(self, folder: Path, name: str = "bad") -> Path:
         """Write the log into a folder."""
         frames = drive() if self.frames is None else self.frames(drive())
-        path = WRITERS[self.format](folder / "bad", frames)
+        path = WRITERS[self.format](folder / name, frames)
         if self.damage:
             file = path / ("b.mcap" if self.format == "bag" else "actor_state.parquet") if path.is_dir() else path
             file.write_bytes(self.damage(file.read_bytes()))

@@ -49,21 +49,59 @@ def mapping(name: str, folder: Path) -> dict[str, str]:
     return {"mapping": str(folder / "mapping.toml")}
 
 
-@pytest.mark.parametrize("bad", BAD_LOGS, ids=lambda bad: f"{bad.fault} {bad.format}")
-def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:
-    good, alone = sound
-    (tmp_path / "in").mkdir()
-    log = bad.write(tmp_path / "in")
-    result = checked(log, good, **mapping(bad.format, tmp_path))
-    by_name = {row["file_name"]: row for row in result.drives.arrow().to_pylist()}
-    told = (by_name[log.name]["status_reason"] or "") + "".join(f["message"] for f in by_name[log.name]["quality"])
+def id_of(bad: BadLog) -> str:
+    return f"{bad.fault} {bad.format}"
+
+
+def assert_told(bad: BadLog, name: str, result: drivelint.CheckResult) -> None:
+    """The log of that name is judged, or not, with what its fault leaves, and the user is told."""
+    (drive,) = (row for row in result.drives.arrow().to_pylist() if row["file_name"].partition(".")[0] == name)
+    told = (drive["status_reason"] or "") + "".join(f["message"] for f in drive["quality"])
     assert bad.told in told
     assert "internal error" not in told
     assert told.count("the log is damaged or cut off") <= 1
-    assert by_name[log.name]["status"] == ("not_judged" if bad.exit_code == 4 else "judged")
-    assert by_name[log.name]["lossy"] == (bad.exit_code == 3)
-    assert result.exit_code == bad.exit_code
+    assert drive["status"] == ("not_judged" if bad.exit_code == 4 else "judged")
+    assert drive["lossy"] == (bad.exit_code == 3)
     rows = result.verdicts.arrow().to_pylist()
-    assert [row for row in rows if row["drive_id"].startswith("sound")] == alone
-    verdicts = {row["verdict"] for row in rows if row["drive_id"].startswith("bad")}
+    verdicts = {row["verdict"] for row in rows if row["drive_id"].startswith(name)}
     assert verdicts == (set() if bad.exit_code == 4 else set(bad.verdicts))
+
+
+def of_sound(result: drivelint.CheckResult) -> list[dict[str, Any]]:
+    return [row for row in result.verdicts.arrow().to_pylist() if row["drive_id"].startswith("sound")]
+
+
+@pytest.mark.sample(8)
+@pytest.mark.parametrize("bad", BAD_LOGS, ids=id_of)
+def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:
+    good, alone = sound
+    (tmp_path / "in").mkdir()
+    result = checked(bad.write(tmp_path / "in"), good, **mapping(bad.format, tmp_path))
+    assert result.exit_code == bad.exit_code
+    assert_told(bad, "bad", result)
+    assert of_sound(result) == alone
+
+
+@pytest.fixture(scope="module")
+def together(tmp_path_factory: pytest.TempPathFactory, sound: tuple[Path, list[dict[str, Any]]]) -> dict[str, Any]:
+    """Return the results of one run over all logs that need no mapping, and of one over the others, by format."""
+    folder = tmp_path_factory.mktemp("bad")
+    found = {}
+    for names in ({bad.format for bad in BAD_LOGS} - {"csv"}, {"csv"}):
+        logs = [bad.write(folder, f"bad{no:02}") for no, bad in enumerate(BAD_LOGS) if bad.format in names]
+        result = checked(*logs, sound[0], **mapping("csv" if "csv" in names else "", folder))
+        found |= dict.fromkeys(names, result)
+    return found
+
+
+@pytest.mark.parametrize("no", range(len(BAD_LOGS)), ids=lambda no: id_of(BAD_LOGS[no]))
+def test_a_bad_log_among_others(no: int, together: dict[str, drivelint.CheckResult]) -> None:
+    assert_told(BAD_LOGS[no], f"bad{no:02}", together[BAD_LOGS[no].format])
+
+
+def test_all_bad_logs_harm_no_other(
+    together: dict[str, drivelint.CheckResult], sound: tuple[Path, list[dict[str, Any]]]
+) -> None:
+    for result in together.values():
+        assert result.exit_code == 4
+        assert of_sound(result) == sound[1]
