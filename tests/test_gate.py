@@ -173,6 +173,7 @@ def test_check_against_a_baseline_exits_1_only_for_what_is_new(results: dict[str
     assert (told["exit"]["code"], told["gate"]["baseline"]["new"]) == (1, 1)
 
 
+@pytest.mark.slow
 def test_tables_do_not_depend_on_the_gate(results: dict[str, Path], ran: Ran) -> None:
     Path("drivelint.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
     base = ["--baseline", str(results["base"]), "--today", "2100-01-01"]
@@ -254,6 +255,7 @@ def test_a_log_of_another_content_is_matched_by_its_name(results: dict[str, Path
     assert entry["finding_id"] != entry["base_id"]
 
 
+@pytest.mark.slow
 def test_a_collision_is_not_fixed_by_a_log_in_which_the_other_car_ends_before_it(ran: Ran) -> None:
     header, *rows = Path(COLLISION).read_text(encoding="utf-8").splitlines()
     Path("cut").mkdir()

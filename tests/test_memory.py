@@ -240,6 +240,7 @@ def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     assert "error" not in {row["verdict"] for row in rows if row["rule_id"] != FEW[0]}
 
 
+@pytest.mark.slow
 def test_results_that_do_not_fit_are_read_with_more(monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
     from drivelint.result import collect

@@ -88,12 +88,14 @@ def slowly(hand: str, what: str) -> Drive:
     return drive([ego, *rest], way.environment)
 
 
+@pytest.mark.sample(1)
 @HANDS
 @pytest.mark.parametrize("what", ["out", "all along", "turned round", "backs"])
 def test_a_slow_drive_on_the_wrong_side_is_one(hand: str, what: str) -> None:
     assert "fail" in said(slowly(hand, what), "ukhc.r143.direction")
 
 
+@pytest.mark.sample(1)
 @HANDS
 @pytest.mark.parametrize("what", ["keeps", "parks", "backs a little"])
 def test_parking_and_reversing_a_little_is_not_driving_on_the_wrong_side(hand: str, what: str) -> None:
@@ -137,6 +139,7 @@ def test_a_parked_car_before_a_zebra_may_be_passed(hand: str) -> None:
 # ---- a response in time
 
 
+@pytest.mark.sample(1)
 @HANDS
 @pytest.mark.parametrize(("after", "verdict"), [(0.75, "pass"), (0.95, "pass"), (1.6, "fail")])
 def test_a_response_in_time_is_one(hand: str, after: float, verdict: str) -> None:
@@ -165,6 +168,7 @@ def test_a_response_in_time_is_one(hand: str, after: float, verdict: str) -> Non
 # ---- trembling positions
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("hertz", [10, 20])
 def test_standing_with_trembling_positions_is_standing(tmp_path: Path, hertz: int) -> None:
     """Two cars in a queue, five centimetres of noise, no velocities in the log: no time to collision, no jolts, no contact, and no pass."""
@@ -204,6 +208,7 @@ def behind_a_cut(hand: str, *, who: str, faster: float = 0.0, stays: bool = Fals
     return drive([moving("ego", way, t, s, own if who == "v" else comes), lead], way.environment)
 
 
+@pytest.mark.slow
 @HANDS
 def test_the_headway_that_another_took_is_made_anew(hand: str) -> None:
     rule = "criticality.thw"

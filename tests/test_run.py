@@ -206,6 +206,7 @@ def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: st
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("road", "told"),
     [

@@ -349,10 +349,12 @@ def test_a_trace_that_begins_before_zero_lies_at_zero_and_says_so(tmp_path: Path
     assert said["time"] == "log time = time of the trace + 2000000000 ns"
 
 
+@pytest.mark.slow
 def test_no_annotate_writes_none(tmp_path: Path) -> None:
     assert not run(tmp_path, CASE / "safe.csv", annotate=False).exists()
 
 
+@pytest.mark.slow
 def test_a_log_that_changes_while_it_is_judged_is_not_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "near-miss.mcap"
     shutil.copy(SCENE / "near-miss.mcap", path)

@@ -291,6 +291,7 @@ def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> No
     assert "4 judged, 1 off their map" in summary_text(told, "out", ExitCode.NOT_JUDGED)
 
 
+@pytest.mark.slow
 def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     (tmp_path / "fleet" / "logs" / "drive-00001.parquet").write_bytes(b"PAR1")
@@ -302,6 +303,7 @@ def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_
     assert again.exit_code("critical", strict=False) == first.exit_code("critical", strict=False) == ExitCode.FAILED
 
 
+@pytest.mark.slow
 def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 20)
 
@@ -322,6 +324,7 @@ def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: P
             assert "has not ended" in found.warning
 
 
+@pytest.mark.slow
 def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="--retry-errors and --prune"):
         judged(drives, tmp_path / "out", shard=(1, 2), retry_errors=True)

@@ -351,6 +351,7 @@ def test_who_crosses_the_egos_way_by_a_lane_of_his_own_is_no_lead(hand: str) -> 
     assert {(row["object_id"], row["oncoming"]) for row in wrong} == {("w", True)}
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("linked", "s", "d", "told"),
     [
@@ -375,6 +376,7 @@ def test_beyond_a_lane_whose_link_is_missing_nobody_knows_who_leads(
     assert {row["object_id"] for row in found} == told
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("s", "d", "told"), [(147.0, -1.75, set()), (160.0, -1.75, {"x"}), (140.0, -1.75, {"x"}), (147.0, 2.5, {None})]
 )

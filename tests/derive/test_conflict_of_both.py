@@ -58,6 +58,7 @@ def drivers(draw: st.DrawFn, name: str) -> Actor:
     return moving(name, road, T, s, 0.0, **size)
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @given(st.lists(st.tuples(drivers("ego"), drivers("other")), min_size=12, max_size=12))
 def test_both_see_the_same(pairs: list[tuple[Actor, Actor]]) -> None:

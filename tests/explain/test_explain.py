@@ -229,6 +229,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert "?" in text[text.index("Margin over time") :]
 
 
+@pytest.mark.slow
 def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     """A simulator takes the two others out of the scene and writes them on, both in one place."""
     head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
@@ -337,6 +338,7 @@ def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path)
         explain(ExplainRequest("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NONE))
 
 
+@pytest.mark.slow
 def test_a_folder_that_moves_with_its_logs_still_finds_them(tmp_path: Path) -> None:
     shutil.copytree(OVERTAKE, tmp_path / "a" / "logs")
     logs = tmp_path / "a" / "logs"

@@ -234,6 +234,7 @@ def test_an_audit_that_does_not_say_when_actors_were_recorded_is_refused() -> No
             compare(con)
 
 
+@pytest.mark.slow
 def test_causes_stand_apart(checked: Checked) -> None:
     base = load_result(checked(*RULES_OF_BASE))
     new = load_result(checked(*RULES_OF_BASE, "--param", "ukhc.overtake-zone.margin_s=0.1"))

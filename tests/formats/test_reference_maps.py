@@ -102,6 +102,7 @@ def test_bounds_agree_with_a_naive_reading(file: str) -> None:
     assert worst < 2e-3
 
 
+@pytest.mark.sample(6)
 @every_map
 def test_areas_agree_with_polygons_of_naive_edges(file: str) -> None:
     naive = NaiveMap(shared(file))

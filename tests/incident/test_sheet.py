@@ -93,6 +93,7 @@ def test_table_second_by_second(collision: dict[str, Any], recorded: Log) -> Non
         assert row["offset"] == pytest.approx([ego.y - 1.75, other.y - 1.75], abs=0.02)
 
 
+@pytest.mark.slow
 def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     """The other party's conduct is what a check with --ego of that party says."""
     case = case_of("no-collision@collision")
@@ -201,6 +202,7 @@ def test_same_case_same_bytes(folder: Path, case_of: CaseOf) -> None:
     assert render(open_case(IncidentRequest(name, folder))) == render(case_of(name))
 
 
+@pytest.mark.slow
 def test_required_distance_is_drawn(case_of: CaseOf) -> None:
     told = content(case_of("safe-distance-ahead@collision"))
     assert not told["contact"]

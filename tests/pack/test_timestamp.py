@@ -204,6 +204,7 @@ def test_what_is_no_stamp_of_the_pack_is_not_packed(stamped: Stamped, packed: Pa
         verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=packed.public))
 
 
+@pytest.mark.slow
 def test_without_the_package_a_stamp_is_not_looked_at(
     packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

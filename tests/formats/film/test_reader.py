@@ -251,6 +251,7 @@ def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
     return found
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("mapping", ["video-detections", "video-detections-sampled"])
 def test_the_timeline_of_table_2(tmp_path: Path, mapping: str) -> None:
     found = judged(tmp_path, mapping)
