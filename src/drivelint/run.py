@@ -90,7 +90,7 @@ def check(
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
-    paths = sorted_logs(expand_traces(settings.traces))
+    paths = sorted_logs(expand_traces(settings.traces, but=settings.map))
     options, library = settings.ingest_options(), MapLibrary(settings)
 
     with store.workspace(settings.memory) as con:

@@ -87,7 +87,7 @@ def test_evidence_is_a_pack_of_the_result(drives: Path, tmp_path: Path) -> None:
     told = verify(VerifyRequest(pack, traces=(drives / "safe.mcap",), map=drives / "road.xodr"))
     assert told.problems == []
     assert "1 drive judged again" in told.sentence
-    with pytest.raises(drivelint.DriveLintError, match="give out, too"):
+    with pytest.raises(drivelint.DriveLintError, match="give out=, too"):
         drivelint.check(drives / "safe.mcap", **asked, evidence=tmp_path / "none")
 
 
@@ -288,15 +288,28 @@ def test_reports_are_texts_or_files(checked: drivelint.CheckResult, tmp_path: Pa
         ({"visibility": "all"}, "visibility='all'"),
         ({"rules": "no-such-rule"}, "no-such-rule"),
         ({"env": {"wether": "dry"}}, "did you mean 'weather'"),
-        ({"map_offset": (1.0,)}, "^map_offset '1.0'"),
+        ({"map_offset": (1.0,)}, "^map_offset='1.0'"),
         ({"map_origin": (91.0, 0.0)}, "^map_origin"),
         ({"ego_size": (0.0, 1.0)}, "^ego_size"),
         ({"memory": "1 byte"}, "memory"),
         ({"today": "tomorrow"}, "today"),
         ({"keep_db": True}, "^keep_db=True writes a file: say where with out=DIR"),
-        ({"confidence": 0.95, "robustness": False}, "^confidence needs what robustness=False leaves out"),
-        ({"confidence": 95}, "^confidence 95: give a share from 0 to 1"),
+        ({"confidence": 0.95, "robustness": False}, "^confidence= needs what robustness=False leaves out"),
+        ({"confidence": 95}, "^confidence=95: give a share from 0 to 1"),
         ({"require": "no-such-rule"}, "no-such-rule"),
+        ({"rules": []}, "rules names none"),
+        ({"rules": 5}, "rules=5: give a text, or several"),
+        ({"rules": [["a"]]}, r"\['a'\] is no text"),
+        ({"traces": 5}, "traces=5: give a path, or several"),
+        ({"map": ["a"]}, "map=.*give a path"),
+        ({"map_offset": 5}, "map_offset=5: give two numbers"),
+        ({"ego": [1, 2]}, r"ego=\[1, 2\]: give a text or a whole number"),
+        ({"robustness": "no"}, "robustness='no': give True or False"),
+        ({"margins": 1}, "margins=1: give True or False"),
+        ({"rule_timeout": "x"}, "rule_timeout='x': give a number"),
+        ({"sensor_range": "40"}, "sensor_range='40': give a number"),
+        ({"memory": 2000}, "memory=2000: give a text"),
+        ({"mapping": "esmin"}, "mapping 'esmin': .* did you mean 'esmini'"),
         ({"sensor_range": -1.0}, "more than 0 m"),
         ({"baseline": "nowhere"}, "nowhere: no result"),
     ],

@@ -37,7 +37,7 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
     ("header", "sections", "tables", "message"),
     [
         ({"senze": '">"'}, {}, "", r":12: unknown key 'senze' in the header; did you mean 'sense'\?"),
-        ({"kind": '"invarient"'}, {}, "", r"Invalid enum value 'invarient'"),
+        ({"kind": '"invarient"'}, {}, "", r"kind = 'invarient': did you mean 'invariant'"),
         ({"title": None}, {}, "", "missing required field `title`"),
         ({"clause": "7"}, {}, "", r":2: header: Expected `str`, got `int`"),
         ({"clause": "broken"}, {}, "", r":2: the header is not TOML"),

@@ -294,7 +294,7 @@ def test_no_ego(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"no ego: the log does not say .*: use --ego ID or --ego all \(ids: a, b\)"):
         load(tmp_path, cars(), unnamed)
     with pytest.raises(
-        TraceError, match=r"no ego: the log's ego q has no states: use --ego ID or --ego all \(ids: a, b\)"
+        TraceError, match=r"no ego: the log's ego 'q' has no states: use --ego ID or --ego all \(ids: a, b\)"
     ):
         load(tmp_path, cars(), LONG.replace('"a"', '"q"'))
     many = cars(2, ids=tuple(f"{i:02}" for i in range(30)))

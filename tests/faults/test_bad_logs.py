@@ -86,7 +86,7 @@ def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str
 def together(tmp_path_factory: pytest.TempPathFactory, sound: tuple[Path, list[dict[str, Any]]]) -> dict[str, Any]:
     """Return the results of one run over all logs that need no mapping, and of one over the others, by format."""
     folder = tmp_path_factory.mktemp("bad")
-    found = {}
+    found: dict[str, Any] = {}
     for names in ({bad.format for bad in BAD_LOGS} - {"csv"}, {"csv"}):
         logs = [bad.write(folder, f"bad{no:02}") for no, bad in enumerate(BAD_LOGS) if bad.format in names]
         result = checked(*logs, sound[0], **mapping("csv" if "csv" in names else "", folder))

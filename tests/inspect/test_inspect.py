@@ -194,7 +194,7 @@ def test_an_ego_without_states_is_told_as_check_tells_it(tmp_path: Path) -> None
     console.print(render(inspect(InspectRequest(str(path))), "log.mcap"))
     assert isinstance(console.file, io.StringIO)
     assert (
-        "none: the log's ego 3 has no states: use --ego ID or --ego all (ids: 7). The longest"
+        "none: the log's ego '3' has no states: use --ego ID or --ego all (ids: 7). The longest"
         in console.file.getvalue()
     )
 

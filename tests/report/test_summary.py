@@ -48,7 +48,7 @@ def test_it_names_inputs_versions_and_the_exit() -> None:
     told = json.loads(summary.render(RUN))
     assert told["output_schema"] >= 1
     assert told["tool"].keys() == {"name", "version", "duckdb"}
-    assert told["exit"] == {"code": 2, "name": "usage", "why": "1 verdict in error: a rule could not be run"}
+    assert told["exit"] == {"code": 2, "name": "usage", "why": "1 verdict in error: could not be run: ukhc.other"}
     assert [row["file_name"] for row in told["drives"]] == ["d1.csv", "d2.csv", "d3.csv"]
     assert told["drives"][0]["sha256"] == "ab" * 32
     assert told["drives"][2]["status_reason"] == "no ego"

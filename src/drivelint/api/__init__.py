@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from drivelint import demo, run
 from drivelint.api import options
+from drivelint.api.arguments import typed
 from drivelint.api.check_result import CheckResult
 from drivelint.api.compared import Comparison, diff
 from drivelint.api.explained import Explained
@@ -47,6 +48,7 @@ __all__ = [
 ]
 
 
+@typed
 def check(
     traces: Paths,
     *,
@@ -96,6 +98,9 @@ def check(
         paths, folder = options.texts(traces), options.path(out)
         if not paths:
             raise UsageError("no traces: give files, globs or folders")
+        chosen = options.texts(rules)
+        if rules is not None and not chosen:
+            raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
             raise UsageError("--keep-db writes a file: say where with --out DIR")
         values.check_confidence(confidence, robustness)
@@ -123,7 +128,7 @@ def check(
                 ego_size=ego_size,
                 env=env,
             ),
-            rules=options.texts(rules),
+            rules=chosen,
             ignore=options.texts(ignore),
             profiles=options.texts(profile),
             params=options.assignments(param),
@@ -164,6 +169,7 @@ def _interruptible(settings: run.CheckOptions, listener: NoteKeeper) -> Result:
         raise
 
 
+@typed
 def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     """Return the result in a folder that `check --out` wrote.
 
@@ -175,6 +181,7 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     return CheckResult(replace(result, asked=asked), place, result.notes)
 
 
+@typed
 def write_demo(folder: AnyPath) -> list[Path]:
     """Write six recorded drives and their road into a folder, and return their paths; the road's name is `road.xodr`.
 
@@ -184,6 +191,7 @@ def write_demo(folder: AnyPath) -> list[Path]:
         return demo.write(Path(folder))
 
 
+@typed
 def read_trace(
     path: AnyPath,
     *,

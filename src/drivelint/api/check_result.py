@@ -8,11 +8,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, overload
 
+from drivelint.api.arguments import typed
 from drivelint.api.explained import Explained
-from drivelint.api.keywords import errors_name_keywords
+from drivelint.api.keywords import errors_name_keywords, in_keywords
 from drivelint.api.notebook import one_line, summary_html
 from drivelint.api.options import ReportFormat, one_of, path
 from drivelint.api.tables import Table, TableSet
+from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
 from drivelint.result.files import publish
@@ -52,10 +54,10 @@ class CheckResult(TableSet):
         notes: tuple[str, ...] = (),
         scratch: TemporaryDirectory[str] | None = None,
     ) -> None:
-        super().__init__({name: getattr(result, name) for name in TABLE_OF_FILE}, shapes=TABLE_OF_FILE)
+        super().__init__({name: getattr(result, name) for name in TABLE_OF_FILE}, schema_tables=TABLE_OF_FILE)
         for name, table in self.tables.items():
             setattr(self, name, table)
-        self.notes = notes
+        self.notes = tuple(map(in_keywords, notes))
         self.folder = folder
         self._result = replace(result, margins_file=None)
         self._scratch = scratch  # its folder, with the margins, goes when nobody has the result any more
@@ -75,7 +77,7 @@ class CheckResult(TableSet):
     @property
     def why(self) -> str:
         """Why the exit code is what it is, in one sentence."""
-        return exit_status(self._result).why
+        return in_keywords(exit_status(self._result).why)
 
     @property
     def margins(self) -> Table | None:
@@ -90,6 +92,7 @@ class CheckResult(TableSet):
     def report(self, path: None = None, *, to: ReportFormat = "html") -> str: ...
     @overload
     def report(self, path: AnyPath, *, to: ReportFormat = "html") -> Path: ...
+    @typed
     def report(self, path: AnyPath | None = None, *, to: ReportFormat = "html") -> str | Path:
         """Return a report as text; or write it to a file and return its path.
 
@@ -100,15 +103,20 @@ class CheckResult(TableSet):
         if path is None:
             return content.decode()
         file = Path(path)
+        if file.is_dir():
+            raise UsageError(f"{file} is a folder: name the file, such as {file / 'report.html'}")
         publish(file.parent, {file.name: content}, {})
         return file
 
+    @typed
     def write(self, folder: AnyPath, *, overwrite: bool = False) -> Path:
         """Write the result files into a folder, as `check --out` does, and return it; into its own, it writes nothing.
 
         The logs with their verdicts and the kept database need the log: `check` writes them itself, into its `out`.
         Errors: `DriveLintError` when the folder cannot be written, or without `overwrite` has such files that are not drivelint's.
         """
+        if not str(folder).strip():
+            raise UsageError("an empty folder name was given: name the folder")
         out = Path(folder)
         if self.folder is not None and out.resolve() == self.folder.resolve():
             return out
@@ -119,6 +127,7 @@ class CheckResult(TableSet):
             outputs.write(replace(self._result, margins_file=margins), out, overwrite=overwrite)
         return out
 
+    @typed
     def explain(
         self,
         name: str,
@@ -150,7 +159,7 @@ class CheckResult(TableSet):
         return queried
 
     def __repr__(self) -> str:
-        return f"<drivelint.CheckResult: {one_line(self._result)}; exit code {self.exit_code}>"
+        return f"<drivelint.CheckResult: {in_keywords(one_line(self._result))}; exit code {self.exit_code}>"
 
     def _repr_html_(self) -> str:
         return summary_html(self._result)

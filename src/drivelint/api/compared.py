@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import reprlib
 from dataclasses import asdict
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drivelint.api.check_result import CheckResult
 from drivelint.api.notebook import block_html
 from drivelint.api.options import FailOn, one_of
+from drivelint.errors import UsageError
 from drivelint.gate import compare_results, descriptions
 from drivelint.result.load import load_result
 
@@ -67,4 +70,6 @@ def _result(given: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
     """Return a result and what it is called: by its folder, if it has one."""
     if isinstance(given, CheckResult):
         return given.result, name if given.folder is None else given.folder.resolve().name
+    if not isinstance(given, str | PathLike):
+        raise UsageError(f"{name}={reprlib.repr(given)}: give a result, or its folder")
     return load_result(Path(given)), Path(given).resolve().name

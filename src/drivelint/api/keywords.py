@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _FLAGS: Final = frozenset({"strict", "overwrite", "margins", "keep-db", "annotate", "robustness"})
 _OPTION: Final = re.compile(
-    r"(?<![\w-])(?P<command>check )?--(?P<no>no-)?(?P<name>[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b)?"
+    r"(?<![\w-])(?P<command>check )?--(?P<no>no-)?(?P<name>[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b| (?=['\"\d]))?"
 )
 
 
@@ -37,4 +37,4 @@ def _keyword(option: re.Match[str]) -> str:
         return option[0]
     name = option["name"].replace("-", "_")
     value = str(not option["no"]) if option["name"] in _FLAGS else option["metavar"]
-    return f"{name}={value}" if value else name
+    return f"{name}={value or ''}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable, Mapping
 from os import PathLike, fspath
 from pathlib import Path
@@ -29,7 +30,10 @@ def texts(given: Paths | None) -> tuple[str, ...]:
     """Return one text or path, or several, as texts."""
     if given is None:
         return ()
-    several = (given,) if isinstance(given, str | PathLike) else given
+    several = (given,) if isinstance(given, str | PathLike) else tuple(given)
+    for each in several:
+        if not isinstance(each, str | PathLike):
+            raise UsageError(f"{reprlib.repr(each)} is no text and no path")
     return tuple(fspath(each) for each in several)
 
 

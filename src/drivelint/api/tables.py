@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import duckdb
@@ -9,6 +10,7 @@ import duckdb
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
 from drivelint.result.geometry import COLUMN, SHAPES, with_geometry
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -25,16 +27,26 @@ _CLOSED = "SET python_enable_replacements = false; SET enable_external_access = 
 class Table:
     """Rows with named columns. pyarrow, polars, pandas and DuckDB take it as it is, too (Arrow's PyCapsule interface)."""
 
-    __slots__ = ("_rows", "_shape")
+    __slots__ = ("_rows", "_schema_table", "_shape")
 
-    def __init__(self, rows: pa.Table, shape: str | None = None) -> None:
+    def __init__(self, rows: pa.Table, schema_table: str | None = None) -> None:
         self._rows = rows
-        self._shape = shape if shape in SHAPES else None
+        self._schema_table = schema_table
+        self._shape = schema_table if schema_table in SHAPES else None
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the columns."""
         return tuple(self._rows.column_names)
+
+    def describe(self) -> Table:
+        """Return what each column is: `column`, `type`, and `meaning` with the unit, empty for what a query made."""
+        import pyarrow as pa
+
+        meanings = store.column_comments().get(self._schema_table or "", {})
+        types = [str(kind) for kind in self._rows.schema.types]
+        said = [meanings.get(column, "") for column in self.columns]
+        return Table(pa.table({"column": list(self.columns), "type": types, "meaning": said}))
 
     def __len__(self) -> int:
         return int(self._rows.num_rows)
@@ -104,22 +116,35 @@ class Table:
 class TableSet:
     """Tables by name, which `sql` queries together."""
 
-    def __init__(self, tables: Mapping[str, pa.Table], shapes: Mapping[str, str]) -> None:
-        """`shapes`: name -> table of the schema that says which geometry its rows have."""
-        self.tables = {name: Table(rows, shapes.get(name)) for name, rows in tables.items()}
+    def __init__(self, tables: Mapping[str, pa.Table], schema_tables: Mapping[str, str]) -> None:
+        """`schema_tables`: name -> table of the schema that describes its columns and the geometry of its rows."""
+        self.tables = {name: Table(rows, schema_tables.get(name)) for name, rows in tables.items()}
+        self._shapes = {name: table for name, table in schema_tables.items() if table in SHAPES}
 
     def sql(self, query: str, params: object = None) -> Table:
         """Return the rows of a DuckDB query over the tables, by their names; `params` fill in `?` or `$name`.
 
-        The tables stay as they are, and nothing that a query creates is there for the next.
-        Errors: `DriveLintError` for a query that DuckDB refuses.
+        A query with `geom` or a function `ST_...` has the spatial extension, and `geom` (a GEOMETRY in the map's metres) in the tables that
+        have one; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
+        Errors: `DriveLintError` for a query that DuckDB refuses, or that returns no rows and columns.
         """
-        with duckdb.connect() as con:
+        spatial = re.search(r"\bgeom\b|\bst_", query, re.IGNORECASE) is not None
+        with store.open_as_is() if spatial else duckdb.connect() as con:
             for name, rows in self._queried().items():
-                con.register(name, rows)
+                shape = self._shapes.get(name) if spatial else None
+                con.register(
+                    name if shape is None else f"{name} as WKB", rows if shape is None else with_geometry(rows, shape)
+                )
+                if shape is not None:
+                    con.execute(
+                        f'CREATE VIEW {name} AS SELECT * REPLACE (ST_GeomFromWKB({COLUMN}) AS {COLUMN}) FROM "{name} as WKB"'
+                    )
             con.execute(_CLOSED)
             try:
-                return Table(con.execute(query, params).to_arrow_table())
+                answer = con.execute(query, params)
+                if answer is None or answer.description is None:
+                    raise UsageError("the query returns nothing: give a SELECT or FROM")
+                return Table(answer.to_arrow_table())
             except duckdb.Error as error:
                 raise UsageError(f"the query failed: {error}") from error
 

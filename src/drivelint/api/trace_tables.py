@@ -34,7 +34,7 @@ class TraceTables(TableSet):
 
     def __init__(self, trace: Trace, lanes: pa.Table | None = None) -> None:
         tables = {**trace.tables, "lanes": empty_table(_LANES) if lanes is None else lanes}
-        super().__init__(tables, shapes={"lanes": _LANES})
+        super().__init__(tables, schema_tables={"lanes": _LANES})
         for name, table in self.tables.items():
             setattr(self, name, table)
         self.drive_id = trace.drive_id

@@ -6,7 +6,7 @@ import re
 import tomllib
 from itertools import chain
 from math import inf
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_type_hints
 
 import msgspec
 
@@ -148,6 +148,9 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     path = place[1] if place else ""
     unknown = re.search(r"unknown field `([^`]+)`", message)
     keys = re.sub(r"\[[^\]]*\]", ".*", path)
+    if not unknown and (word := re.match(r"Invalid enum value '(.*)'", message)) and path in Header.__struct_fields__:
+        words = get_args(get_type_hints(Header)[path])
+        return RuleError(f"{where}:{line_of(text, keys)}: {path} = {word[1]!r}: {hint(word[1], words)}")
     if not unknown:
         return RuleError(f"{where}:{line_of(text, keys)}: header: {message}")
     key = unknown[1]

@@ -93,7 +93,9 @@ def _being(rules: Mapping[str, Rule], part: str) -> list[Rule]:
     found = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
     if not found:
         known = [*rules, *(rule.pack for rule in rules.values())]
-        raise UsageError(f"no rule, pack or glob matches {part!r}{_nearest(part, known)}")
+        raise UsageError(
+            f"no rule, pack or glob matches {part!r}{_nearest(part, known)} (rules of your own: --rules-dir DIR)"
+        )
     return [rule for rule in found if rule.status != "deprecated"]
 
 

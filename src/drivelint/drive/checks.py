@@ -191,7 +191,7 @@ def _cause(ratio: float) -> str:
         if abs(ratio / factor - 1.0) < 0.03:
             return cause
     return (
-        "axes flipped differently for positions and velocities"
+        "axes flipped differently for positions and velocities, or headings that count from north or clockwise"
         if abs(ratio - 1.0) < 0.1
         else "units of speed, position or time are wrong"
     )

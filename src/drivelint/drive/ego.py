@@ -38,9 +38,9 @@ def choose(
         return [asked], []
     egos = sorted(ids.intersection(named))
     if not egos:
-        absent = (
-            f"the log's ego {listed(named)} has no states" if named else "the log does not say which actor is the ego"
-        )
+        absent = "the log does not say which actor is the ego"
+        if named:
+            absent = f"the log's ego {listed([repr(each) for each in named])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
         if not needed:
             return [], [QualityFinding("no_ego", "warning", message)]

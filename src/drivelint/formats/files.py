@@ -49,18 +49,21 @@ def is_drive_folder(path: Path) -> bool:
     return is_canonical_folder(path) or is_bag(path)
 
 
-def expand_traces(traces: Sequence[str]) -> list[Path]:
+def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
     `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI and
     SUMO's FCD files, except for what an earlier check wrote there.
+    `but`: the map, which a glob finds beside the logs; it is left out if anything else is there.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
     found: dict[Path, Path] = {}
     for text in traces:
         for path in _matches(text):
             found.setdefault(path.resolve(), path)
+    if but is not None and len(found) > 1:
+        found.pop(but.resolve(), None)
     return [found[key] for key in sorted(found, key=str)]
 
 

@@ -16,6 +16,7 @@ from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table
+from drivelint.formats.tables.mapping import refuse_if_none
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,6 +60,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         if reader is not mcap and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
             recording.findings.append(UNPROTECTED)
         if options.mapping is not None and not reader.takes_mapping:
+            refuse_if_none(options.mapping)
             recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
         from drivelint.drive.finish import finish_trace
 

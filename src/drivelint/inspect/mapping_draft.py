@@ -27,7 +27,7 @@ _ORDER: Final = (
 
 
 def draft_mapping(columns: Sequence[str]) -> str | None:
-    """Return a mapping as TOML, a comment where something has to be filled in; None where hardly anything is recognised."""
+    """Return a mapping as TOML, a comment where something has to be filled in; None where there are fewer columns than it needs."""
     found: dict[str, str] = {}
     for column in columns:
         meant = _meaning(column)
@@ -38,11 +38,12 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
             found = {name: column for name, column in found.items() if name not in pair}
     if "vx" in found or "yaw" not in found:
         found.pop("speed", None)
-    if sum(name in found for name in REQUIRED_FIELDS) < 3:
+    if len(columns) < len(REQUIRED_FIELDS):
         return None
     of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
     draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
         found=found,
+        others=[column for column in columns if column not in found.values()],
         time_unit=("time" in found and _unit(found["time"], dict(TIME_UNITS))) or "s",
         units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
         order=_ORDER,

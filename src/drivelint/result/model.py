@@ -97,7 +97,9 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
     if errors := _count(result.verdicts, "error"):
-        yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: a rule could not be run")
+        of_errors = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))["rule_id"]
+        rules = listed(sorted(of_errors.unique().to_pylist()))
+        yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: could not be run: {rules}")
     stopped, let_through = _stopped(result), _let_through(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")

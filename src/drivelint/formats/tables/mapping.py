@@ -166,6 +166,13 @@ def shipped_mappings() -> list[str]:
     return sorted(file.stem for file in MAPPINGS_FOLDER.glob("*.toml"))
 
 
+def refuse_if_none(name: str) -> None:
+    """Refuse a name that is neither a file's nor a shipped mapping's. Errors: `UsageError` with the nearest."""
+    known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # those of films too
+    if not Path(name).is_file() and name not in known:
+        raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
+
+
 def load(name: str) -> tuple[str, Mapping]:
     """Return a mapping and its name: that of a file, else of a shipped mapping.
 
@@ -173,10 +180,7 @@ def load(name: str) -> tuple[str, Mapping]:
     """
     path = Path(name)
     if not path.is_file():
-        if name not in shipped_mappings():
-            # those of films too
-            known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))
-            raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
+        refuse_if_none(name)
         path = MAPPINGS_FOLDER / f"{name}.toml"
     raw = read_toml(path)
     _refuse_unknown(path, raw, Mapping, "")

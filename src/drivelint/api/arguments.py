@@ -1,0 +1,70 @@
+"""Refuses arguments of another type than the signature says, by name: what comes from a notebook is often a text."""
+
+from __future__ import annotations
+
+import inspect
+import reprlib
+from collections.abc import Callable, Iterable, Mapping
+from datetime import date
+from functools import wraps
+from numbers import Real
+from os import PathLike
+from typing import Any, Final, ParamSpec, TypeVar
+
+from drivelint.errors import UsageError
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+def _is_path(given: object) -> bool:
+    return isinstance(given, str | PathLike)
+
+
+def _is_number(given: object) -> bool:
+    return isinstance(given, Real) and not isinstance(given, bool)
+
+
+def _are_numbers(given: object) -> bool:
+    return isinstance(given, tuple | list) and all(map(_is_number, given))
+
+
+def _are_paths(given: object) -> bool:
+    return _is_path(given) or isinstance(given, Iterable)  # what an iterator yields is looked at when it is read
+
+
+_KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
+    "None": (lambda given: given is None, "None"),
+    "bool": (lambda given: isinstance(given, bool), "True or False"),
+    "str": (lambda given: isinstance(given, str), "a text"),
+    "int": (lambda given: _is_number(given) and isinstance(given, int), "a whole number"),
+    "float": (_is_number, "a number"),
+    "date": (lambda given: isinstance(given, date), "a date"),
+    "AnyPath": (_is_path, "a path"),
+    "Paths": (_are_paths, "a path, or several"),
+    "Texts": (lambda given: given is None or _are_paths(given), "a text, or several"),
+    "Assignments": (
+        lambda given: given is None or _are_paths(given) or isinstance(given, Mapping),
+        "texts KEY=VALUE, or a dictionary",
+    ),
+    "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
+    "tuple[float, ...]": (_are_numbers, "numbers"),
+}
+"""A type as signatures write it -> whether a value has it, and how it is called. Words to choose from are looked at elsewhere."""
+
+
+def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
+    """Raise `UsageError` for an argument of another type than its annotation, which is a text: its module postpones annotations."""
+    signature = inspect.signature(function)
+    kinds = {name: str(parameter.annotation).split(" | ") for name, parameter in signature.parameters.items()}
+    asked = {name: parts for name, parts in kinds.items() if set(parts) <= _KINDS.keys()}
+
+    @wraps(function)
+    def checked(*args: _P.args, **keywords: _P.kwargs) -> _R:
+        for name, given in signature.bind(*args, **keywords).arguments.items():
+            if name in asked and not any(_KINDS[part][0](given) for part in asked[name]):
+                said = [_KINDS[part][1] for part in asked[name] if part != "None"]
+                raise UsageError(f"{name}={reprlib.repr(given)}: give {' or '.join(said)}")
+        return function(*args, **keywords)
+
+    return checked
