@@ -206,6 +206,24 @@ def test_a_mistake_is_one_line_with_the_right_exit_code(
     assert got == code or (code is None and got in {2, 4})
 
 
+@pytest.mark.parametrize("n", [1, 2])
+def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(n: int, tmp_path: Path, ran: Ran) -> None:
+    out = tmp_path / "out"
+    asked = [*ON_ROAD, *SDA, "--profile", "aggressive", "--no-annotate", "--out", str(out)]
+    assert ran("check", TRACES[0], *asked)[0] == 0
+    empty = [str(tmp_path / f"empty{no}.csv") for no in range(n)]
+    for log in empty:
+        Path(log).touch()
+    code, _, err = ran("check", *empty, *asked)
+    assert code == 4
+    assert "the file is empty" in err
+    told = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert told["exit"]["code"] == 4
+    assert (out / "junit.xml").read_text(encoding="utf-8").count("<error") == n
+    assert ran("report", str(out), "--to", "markdown")[0] == 0
+    assert "NOT JUDGED" in (out / "report.md").read_text(encoding="utf-8")
+
+
 def test_an_unreadable_mapping_is_named_with_its_place(tmp_path: Path, refused: Refused) -> None:
     mapping = tmp_path / "broken.toml"
     mapping.write_text('description = "x"\n[time\n', encoding="utf-8")

@@ -31,7 +31,7 @@ from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
@@ -72,10 +72,12 @@ def check(
     progress: Progress,
     interruption: Interruption | None = None,
     deaf: DeafRules | None = None,
+    keep: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive by every selected rule.
 
-    `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted.
+    `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted. `keep`: takes the result if no
+    drive at all could be judged, before the error is raised: an earlier result in its place would look like that of this run.
 
     After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
     `KeyboardInterrupt`, if none was.
@@ -145,14 +147,10 @@ def check(
         missed = sorted(set(paths) - done) if interruption.requested else []
         if missed and not session.judged:
             raise NothingJudgedError
-        if len(refused) == len(paths):
-            first = refused[0].error
-            many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
-            raise first if len(refused) == 1 else many
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
-        return Result(
+        result = Result(
             verdicts=memory.run_job(collect.verdicts),
             findings=memory.run_job(collect.findings),
             drives=drives.sort_by([("drive_id", "ascending"), ("file_name", "ascending")]),
@@ -168,6 +166,13 @@ def check(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
+        if len(refused) == len(paths):
+            if keep is not None:
+                keep(result)
+            first = refused[0].error
+            many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
+            raise first if len(refused) == 1 else many
+        return result
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:

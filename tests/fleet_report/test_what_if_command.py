@@ -83,10 +83,16 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
     assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
-    assert [line for line in done.out.splitlines() if line.startswith("  ")] == [
+    told, _, which = done.out.partition("which:\n")
+    assert [line for line in told.splitlines() if line.startswith("  ")] == [
         "  v0  6 pass -> fail",
         "  v1  6 pass -> fail",
     ]
+    lines = [line for line in which.splitlines() if line.startswith("  ")]
+    assert len(lines) == 12
+    assert all(line.endswith(".parquet: ego 0: pass -> fail") for line in lines)
+    flipped = json.loads(ran("what-if", judged, "own.slow.limit=11", "--format", "json").out)["flipped"]
+    assert [f"  {each['log']}: ego {each['ego_id']}: {each['was']} -> {each['becomes']}" for each in flipped] == lines
 
 
 def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:

@@ -30,6 +30,8 @@ from drivelint.result.evidence import lanes_of_map
 from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from drivelint.api.options import AnyPath, Assignments, FailOn, Handedness, Pair, Paths, Texts, Visibility
     from drivelint.api.progress import NoteKeeper
     from drivelint.result.model import Result
@@ -147,11 +149,15 @@ def check(
         scratch = TemporaryDirectory(prefix="drivelint-") if margins and folder is None else None
         with outputs.working_folder(folder, overwrite=overwrite) as work, kept_notes(progress) as listener:
             place = work if scratch is None else Path(scratch.name)
-            result = _interruptible(replace(settings, out=place), listener)
-            if gate_inputs is not None:
-                result = gate_inputs.apply_to(result)
-            if folder is not None:
-                outputs.write(result, folder, work, overwrite=overwrite)
+
+            def kept(result: Result) -> Result:
+                if gate_inputs is not None:
+                    result = gate_inputs.apply_to(result)
+                if folder is not None:
+                    outputs.write(result, folder, work, overwrite=overwrite)
+                return result
+
+            result = kept(_interruptible(replace(settings, out=place), listener, kept))
         if pack is not None:
             from drivelint.pack import write_pack
 
@@ -159,10 +165,10 @@ def check(
         return CheckResult(result, folder, tuple(listener.notes), scratch)
 
 
-def _interruptible(settings: run.CheckOptions, listener: NoteKeeper) -> Result:
+def _interruptible(settings: run.CheckOptions, listener: NoteKeeper, keep: Callable[[Result], Result]) -> Result:
     """Run a check; an interrupt is `KeyboardInterrupt`, which DuckDB hides in an error of its own."""
     try:
-        return run.check(settings, listener)
+        return run.check(settings, listener, keep=keep)
     except RuntimeError as error:
         if isinstance(error.__cause__, KeyboardInterrupt):
             raise error.__cause__ from None

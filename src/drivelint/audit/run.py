@@ -25,9 +25,10 @@ from drivelint.audit.model import JudgeSettings
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
+from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
-from drivelint.phrases import plural
+from drivelint.phrases import listed, plural
 from drivelint.result.files import parquet_bytes
 from drivelint.sql.statements import statement
 
@@ -123,6 +124,10 @@ def _audited(
         if n_absent and request.prune:
             create_views(con, results, Path(home))
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
+        if mistaken := _tags_like_conditions(con):
+            progress.note(
+                f"the manifest's {mistaken} is a tag only: what holds in a drive stands in the column environment, such as weather=wet"
+            )
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale(con, retry=False))):
@@ -135,6 +140,12 @@ def _audited(
         if request.delta is not None:
             _write_delta(request.delta, con, results, Path(home), progress, id_=id_, counted=counted)
         return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
+
+
+def _tags_like_conditions(con: duckdb.DuckDBPyConnection) -> str:
+    """Return the names of tags that are names of conditions, which rules read and tags do not give; '' if there are none."""
+    rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
+    return listed([f"column {name}" for (name,) in rows if name in CONDITION_VALUES])
 
 
 def _judge(

@@ -56,7 +56,10 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
         yield f"not judged: {plural(left, 'drive')}"
         for row in counted.not_judged:
             many = f" ({plural(row['n'], 'drive')})" if row["n"] > 1 else ""
-            yield f"  {row['status']}{many}: {row['reason']}"
+            which = "" if str(row["reason"]).startswith(str(row["log"])) else f"{row['log']}: "
+            yield f"  {row['status']}{many}: {which}{row['reason']}"
+        if more := left - sum(row["n"] for row in counted.not_judged):
+            yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'

@@ -169,7 +169,7 @@ def check(
     from drivelint.gate import GateInputs
     from drivelint.report import summary, terminal
     from drivelint.report.outputs import working_folder, write
-    from drivelint.result.model import exit_status
+    from drivelint.result.model import Result, exit_status
     from drivelint.result.one_line import on_one_line
     from drivelint.settings import SETTINGS_FILE
 
@@ -200,15 +200,21 @@ def check(
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         settings = replace(settings, out=work)
         deaf = Restart.if_possible(progress, work)
+
+        def kept(result: Result) -> Result:
+            if gate_inputs is not None:
+                result = gate_inputs.apply_to(result)
+            if out is not None:
+                write(result, out, work, overwrite=overwrite)
+            return result
+
         try:
-            result = run_interruptible(lambda: run.check(settings, progress, interruption, deaf), interruption.request)
+            result = kept(
+                run_interruptible(lambda: run.check(settings, progress, interruption, deaf, kept), interruption.request)
+            )
         except KeyboardInterrupt as stop:
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
-        if gate_inputs is not None:
-            result = gate_inputs.apply_to(result)
-        if out is not None:
-            write(result, out, work, overwrite=overwrite)
         if memory is not None and (most := peak_bytes()) is not None:
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"

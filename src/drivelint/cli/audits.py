@@ -139,7 +139,7 @@ def audit(
         try:
             counted = run_interruptible(lambda: audited(request, progress))
         except KeyboardInterrupt:
-            typer.echo(f"drivelint: {_kept(out)}: the same command goes on with the rest", err=True)
+            typer.echo(f"drivelint: {_kept(out)}", err=True)
             raise
     code = counted.exit_code(fail_on, strict=strict)
     typer.echo(inert(summary_text(counted, out, code)))
@@ -159,10 +159,11 @@ def _kept(out: str) -> str:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
     except (DriveLintError, OSError):  # The user interrupts to stop: an error of the store does not matter then.
-        return f"what was judged stays in {inert_line(out)}"
+        return f"what was judged stays in {inert_line(out)}: the same command goes on with the rest"
     if not n:
-        return f"no drive has a result in {inert_line(out)} yet"
-    return f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
+        return f"no drive has a result in {inert_line(out)} yet (drives are judged some at a time): the same command begins again"
+    kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
+    return f"{kept}: the same command goes on with the rest"
 
 
 def merge(

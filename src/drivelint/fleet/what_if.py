@@ -30,6 +30,18 @@ class Flip(NamedTuple):
     n: int
 
 
+class Flipped(NamedTuple):
+    """One verdict that becomes another; `becomes` None: only a new check can tell."""
+
+    log: str
+    ego_id: str
+    profile: str | None
+    object_id: str | None
+    occurrence: int | None
+    was: str
+    becomes: str | None
+
+
 class WhatIf(NamedTuple):
     """What another value of a parameter does to the verdicts; `needs_check`: why only a new check can tell of any; None: it need not."""
 
@@ -73,6 +85,11 @@ def what_if(
     con.execute(statement("fleet/what_if", of=of, subject=subject, sense=rule.sense), bound | bound_tag(by))
     rows = con.execute(statement("fleet/flips")).fetchall()
     return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
+
+
+def flipped(con: duckdb.DuckDBPyConnection, *, of: str = "") -> tuple[Flipped, ...]:
+    """Return the verdicts of the table `what_if` that become others, or of which only a new check can tell."""
+    return tuple(Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of)).fetchall())
 
 
 def needs_check(rule: Rule, param: str) -> str | None:

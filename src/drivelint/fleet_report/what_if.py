@@ -12,23 +12,23 @@ import msgspec
 from drivelint import catalogue
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet.rates import check_tag
-from drivelint.fleet.what_if import WhatIf, what_if
+from drivelint.fleet.what_if import WhatIf, flipped, what_if
 from drivelint.fleet_report.opened import opened
 from drivelint.phrases import hint, one_line, plural
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     import duckdb
 
     from drivelint.catalogue import Rule
-    from drivelint.fleet.what_if import Flip
+    from drivelint.fleet.what_if import Flip, Flipped
     from drivelint.fleet_report.opened import Audit
 
 WHAT_IF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 MAX_VALUES: Final = 50
-"""Values of a tag that the text shows; the JSON has all."""
+"""Values of a tag, and verdicts, that the text shows; the JSON has all."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,7 @@ class AskedWhatIf:
     was: str
     by: str | None
     found: WhatIf
+    flipped: tuple[Flipped, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
@@ -63,7 +64,8 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
         if version != rule.version:
             why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
             return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
-        return AskedWhatIf(audit, setting, was, by, _answer(con, rule, param, value, by))
+        found = _answer(con, rule, param, value, by)
+        return AskedWhatIf(audit, setting, was, by, found, () if found.needs_check else flipped(con))
 
 
 def _answer(
@@ -102,6 +104,7 @@ def to_text(asked: AskedWhatIf) -> str:
             "only a bound of what was observed"
         )
     lines += _table(asked)
+    lines += _which(asked.flipped)
     lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
     return "\n".join([*lines, _command(asked)] if found.not_known else lines)
 
@@ -130,6 +133,22 @@ def _table(asked: AskedWhatIf) -> list[str]:
     return lines
 
 
+def _which(verdicts: Sequence[Flipped]) -> list[str]:
+    """Return a line per verdict that becomes another, with its log."""
+    lines = ["which:"] if verdicts else []
+    for each in verdicts[:MAX_VALUES]:
+        whom = f" for object {each.object_id}" if each.object_id else ""
+        profile = f" [{each.profile}]" if each.profile else ""
+        lines.append(
+            one_line(
+                f"  {each.log}: ego {each.ego_id}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
+            )
+        )
+    if len(verdicts) > MAX_VALUES:
+        lines.append(f"  ... and {len(verdicts) - MAX_VALUES} more: --format json has them all")
+    return lines
+
+
 def _becomes(flip: Flip) -> str:
     if flip.becomes is None:
         return f"{flip.was} -> needs a new audit"
@@ -154,5 +173,6 @@ def to_json(asked: AskedWhatIf) -> str:
         "not_known": found.not_known,
         "warning": asked.audit.warning,
         "verdicts": [each._asdict() for each in found.verdicts],
+        "flipped": [each._asdict() for each in asked.flipped],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

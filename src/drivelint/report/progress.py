@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+import time
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.phrases import inert_line
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import rich.progress
+
+
+TELL_EVERY_S: Final = 30.0
 
 
 class Progress:
@@ -38,7 +42,22 @@ class Silent(Progress):
 
 
 class NotePrinter(Silent):
-    """A `Progress` for a stderr that is no terminal: only what a person should read, one line each."""
+    """A `Progress` for a stderr that is no terminal: what a person should read, and every half minute how far it is, one line each."""
+
+    def __init__(self) -> None:
+        self._name, self._done, self._told_s = "", 0, time.monotonic()
+        self._total: int | None = None
+
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Begin a stage; nothing is printed yet."""
+        self._name, self._total, self._done = name, total, 0
+
+    def advance(self, n: int = 1) -> None:
+        """Print how far the stage is, if nothing was printed of it for a while."""
+        self._done += n
+        if self._total is not None and time.monotonic() - self._told_s >= TELL_EVERY_S:
+            self._told_s = time.monotonic()
+            self.note(f"{self._name}: {self._done:,} of {self._total:,}")
 
     def note(self, text: str) -> None:
         """Print the note."""

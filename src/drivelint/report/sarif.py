@@ -16,7 +16,7 @@ from drivelint.gate import descriptions
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
 from drivelint.result.certainty import certainty, doubt
-from drivelint.result.model import exit_status
+from drivelint.result.model import exit_status, gating_findings
 from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, with_count
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ class _Run:
         self._logs = result.drives.to_pylist()
         self._drives = {row["drive_id"]: row for row in self._logs}
         self._rule_by_id = {rule["rule_id"]: rule for rule in self._rules}
+        self._gating = frozenset(gating_findings(result)["finding_id"].to_pylist())
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
 
@@ -112,6 +113,7 @@ class _Run:
                 **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
                 **{name: row[name] for name in ("n_copies", "n_stays")},
                 "certainty": certainty(row),
+                "gates": row["finding_id"] in self._gating,
             },
         }
         if gate is not None:
@@ -131,6 +133,8 @@ class _Run:
         artifact = {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
         place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
+            # a log has no lines; code scanning of GitHub shows no result without one
+            place["physicalLocation"]["region"] = {"startLine": 1}
             inside = {"ego": row["ego_id"], "object": row["object_id"], "lanelet": row["lanelet_id"]}
             place["logicalLocations"] = [
                 {"name": drive_id, "kind": "drive", "fullyQualifiedName": drive_id},
