@@ -388,7 +388,7 @@ import os, sys
 import drivelint, drivelint.run
 from drivelint.sql import store
 
-def long_query(*_):
+def long_query(*_, **__):
     with store.workspace(None) as con:
         print("computing", flush=True)
         con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
