@@ -37,3 +37,15 @@ def test_the_nearest_value_is_named(now: float) -> None:
 def test_the_named_value_is_short() -> None:
     assert nearest(20.0, 2.3)[0] == 2.29
     assert nearest(1.0, 0.0)[0] == 0.0
+
+
+def test_the_first_of_two_other_verdicts_is_named() -> None:
+    """Nearer than 0.21 m nobody is hit hard any more, and at 0.14 m and less nobody is near at all."""
+
+    def judge(asked: Sequence[tuple[_Number, float]]) -> list[str]:
+        return ["not_applicable" if value <= 0.14 else "pass" if value < 0.21 else "fail" for _, value in asked]
+
+    (change,) = _search([_Number("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
+    assert (change.becomes, change.beyond) == ("pass", False)
+    assert change.found == pytest.approx(0.21, abs=0.003)
+    assert change.found < 0.21

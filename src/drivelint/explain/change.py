@@ -132,7 +132,7 @@ def _nearest(number: _Number, verdict: str) -> Search:
             if becomes == "error":
                 shut.add(side)  # no value beyond it means anything
             elif not _same(becomes, verdict):
-                value, beyond = yield from _edge(number, values, n, becomes, told)
+                value, becomes, beyond = yield from _edge(number, values, n, verdict, told)
                 edges.append(none._replace(found=value, becomes=becomes, beyond=beyond))
         if edges:
             return min(edges, key=lambda edge: (abs((edge.found or 0.0) - number.now), edge.found))
@@ -151,17 +151,21 @@ def _same(becomes: str, verdict: str) -> bool:
 
 
 def _edge(
-    number: _Number, values: list[float], at: int, becomes: str, told: dict[float, str]
-) -> Generator[Sequence[float], dict[float, str], tuple[float, bool]]:
-    """Return the nearest value on one side that changes the verdict, and whether those further away agree."""
+    number: _Number, values: list[float], at: int, verdict: str, told: dict[float, str]
+) -> Generator[Sequence[float], dict[float, str], tuple[float, str, bool]]:
+    """Return the nearest value on one side that changes the verdict, into which, and whether those further away agree."""
     near, far = (values[at - 1] if at else number.now), values[at]
+    becomes = told[far]
     for n in range(0, _MOST_HALVINGS, number.halvings):
         if n >= _HALVINGS and abs(far - near) <= _EXACT * abs(far):
             break
         halved = yield list(_middles(near, far, number.halvings))
         for _ in range(number.halvings):
             middle = (near + far) / 2
-            near, far = (near, middle) if halved[middle] == becomes else (middle, far)
+            if halved[middle] == "error" or _same(halved[middle], verdict):
+                near = middle
+            else:  # it may be another one than further away: fail, then pass, then not applicable
+                far, becomes = middle, halved[middle]
     further = values[at + 1 : at + 3] or [values[at]]
     short = _short_values(number, far)
     told = told | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in told])
@@ -170,8 +174,8 @@ def _edge(
         if value not in told:
             told |= yield [value]
         if told[value] == becomes:
-            return value, beyond
-    return far, beyond
+            return value, becomes, beyond
+    return far, becomes, beyond
 
 
 def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
