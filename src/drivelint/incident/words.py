@@ -112,11 +112,17 @@ def story(
     if all(steady):
         parts.append("neither slowed by 1 m/s\u00b2 or more before")
     else:
-        for letter, found, still in zip("AB", slowed, steady, strict=True):
+        for party, (letter, found, still) in enumerate(zip("AB", slowed, steady, strict=True)):
             if found:
                 from_s, to_s = (each + offset_s for each in (found[-1].start_s, found[-1].end_s))
                 how = "lost speed faster than tyres brake" if found[-1].sudden else "slowed last"
-                parts.append(f"{letter} {how} from {from_s:.2f} s to {to_s:.2f} s")
+                since_s = until_s - found[-1].end_s
+                then = (
+                    f", and not in the {since_s:.1f} s after"
+                    if since_s >= 1 and slowing_known(motion, party, until_s)
+                    else ""
+                )
+                parts.append(f"{letter} {how} from {from_s:.2f} s to {to_s:.2f} s{then}")
             elif still:
                 parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
     v = [float(each[at]) for each in motion.speed]
