@@ -48,4 +48,5 @@ def test_the_first_of_two_other_verdicts_is_named() -> None:
     (change,) = _search([_Number("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
     assert (change.becomes, change.beyond) == ("pass", False)
     assert change.found == pytest.approx(0.21, abs=0.003)
+    assert change.found is not None
     assert change.found < 0.21

@@ -229,7 +229,7 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
 
 
 def test_a_verdict_that_is_no_finding(folder: Path) -> None:
-    with pytest.raises(UsageError, match="is pass, and no finding"):
+    with pytest.raises(UsageError, match=r"is pass, and no finding: .* failed there \(ukhc\."):
         open_case(IncidentRequest("no-collision@safe", folder))
 
 

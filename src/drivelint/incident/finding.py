@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue.header import CONTACT
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
+from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -62,8 +63,11 @@ def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
     rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _SAME)]
     about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
     if verdict["verdict"] != "fail" or not about:
+        tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}
+        there: set[str] = {row["rule_id"] for row in result.findings.to_pylist() if row["drive_id"] == verdict["drive_id"]}
+        failed = sorted(there, key=lambda rule_id: (CONTACT not in tags[rule_id], rule_id))
         raise UsageError(
             f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict']}, and no finding: "
-            "name a finding by its id, or a rule that failed"
+            f"name a finding by its id, or a rule that failed there ({listed(failed) or 'none did'})"
         )
     return min(about, key=lambda row: (row["margin"] is not None, row["margin"], row["t_worst_ns"], row["finding_id"]))
