@@ -64,7 +64,9 @@ def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
     about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
     if verdict["verdict"] != "fail" or not about:
         tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}
-        there: set[str] = {row["rule_id"] for row in result.findings.to_pylist() if row["drive_id"] == verdict["drive_id"]}
+        there: set[str] = {
+            row["rule_id"] for row in result.findings.to_pylist() if row["drive_id"] == verdict["drive_id"]
+        }
         failed = sorted(there, key=lambda rule_id: (CONTACT not in tags[rule_id], rule_id))
         raise UsageError(
             f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict']}, and no finding: "
