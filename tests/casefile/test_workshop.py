@@ -208,7 +208,7 @@ def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_app
         (('reads = ["ego_state"]', 'reads = ["ego_state", "pair"]'), 11, "remove pair"),
         (("FROM ego_state", "FROM\nego_states"), 19, "there is no table 'ego_states'"),
         (("$limit", "now()"), 18, "function now() is not allowed"),
-        (('"invariant"', '"invarient"'), 8, "Invalid enum value 'invarient'"),
+        (('"invariant"', '"invarient"'), 8, "kind = 'invarient': did you mean 'invariant'"),
         (("FROM ego_state", "FROM ego_state;\nSELECT 1"), 19, "exactly one SELECT, found 2"),
         (("SELECT drive_id", "DROP TABLE step; SELECT drive_id"), 18, "exactly one SELECT, found 2"),
         (("speed_mps AS observed", "speed_mps"), 17, "observed missing"),
