@@ -185,6 +185,7 @@ def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
     same(before, after, FAR.t_s)
 
 
+@pytest.mark.slow
 @settings(max_examples=2, deadline=None, phases=NO_SHRINKING)
 @given(
     st.builds(

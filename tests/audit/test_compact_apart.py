@@ -31,6 +31,7 @@ class Watched(InThisProcess):
         return found
 
 
+@pytest.mark.slow
 def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drives = fleet.write(tmp_path / "fleet", 12)
     whole = judged(drives, tmp_path / "whole")

@@ -39,6 +39,7 @@ def _slurm() -> tuple[list[str], str, int]:
     return ["sh", "-c", _block("slurm")], "SLURM_ARRAY_TASK_ID", 1
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("scheduler", [_kubernetes, _slurm])
 def test_the_parts_of_a_manifest_are_the_whole(
     scheduler: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -12,6 +12,7 @@ MIRRORED = ("near-miss", "collision-25mph", "signal-late", "overtake-two-in-one-
 SAME = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code", "t_ref_ns", "t_start_ns", "t_end_ns")
 
 
+@pytest.mark.slow
 def test_mirrored_scenes_have_the_same_verdicts() -> None:
     scenes = [scene for scene in all_scenes() if scene.name in MIRRORED]
     assert len(scenes) == len(MIRRORED)

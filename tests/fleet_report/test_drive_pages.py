@@ -109,6 +109,7 @@ def test_a_page_says_what_the_tables_say(ten: Path) -> None:
         assert set(page.xpath("//a/@href")) - {"#data", "#main"} == {"../fleet.html"}
 
 
+@pytest.mark.slow
 def test_unknown_verdicts_are_grouped_by_reason(lake_copy: Path) -> None:
     verdicts = [row for row in table(lake_copy, "verdicts") if row["verdict"] == "unknown"]
     assert ran("report", lake_copy, "--drive-pages", "all").code == 0
