@@ -26,7 +26,7 @@ from tests.shared_data import ROOT
 OVERTAKE = ROOT / "fixtures" / "overtake"
 TRACES = [str(OVERTAKE / f"{name}.csv") for name in ("safe", "near_miss", "collision")]
 ON_ROAD = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml")]
-SDA = ["--rules", "ukhc.r162.safe-distance-ahead", "--no-robustness"]
+SDA = ["--rules", "ukhc.r162.safe-distance-ahead"]
 PROFILES = ["--profile", "relaxed", "--profile", "nominal", "--profile", "aggressive"]
 
 
@@ -206,19 +206,22 @@ def test_a_mistake_is_one_line_with_the_right_exit_code(
     assert got == code or (code is None and got in {2, 4})
 
 
-@pytest.mark.parametrize("n", [1, 2])
-def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(n: int, tmp_path: Path, ran: Ran) -> None:
+@pytest.mark.parametrize(("n", "is_there"), [(1, True), (2, True), (1, False)], ids=["one", "two", "a name of nothing"])
+def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(
+    n: int, is_there: bool, tmp_path: Path, ran: Ran
+) -> None:
     out = tmp_path / "out"
     asked = [*ON_ROAD, *SDA, "--profile", "aggressive", "--no-annotate", "--out", str(out)]
     assert ran("check", TRACES[0], *asked)[0] == 0
     empty = [str(tmp_path / f"empty{no}.csv") for no in range(n)]
-    for log in empty:
+    for log in empty if is_there else ():
         Path(log).touch()
-    code, _, err = ran("check", *empty, *asked)
+    code, _, err = ran("check", *empty, *([] if is_there else TRACES), *asked)
     assert code == 4
-    assert "the file is empty" in err
+    assert ("the file is empty" if is_there else "no such file or folder") in err
     told = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     assert told["exit"]["code"] == 4
+    assert pq.read_table(out / "verdicts.parquet").num_rows == 0
     assert (out / "junit.xml").read_text(encoding="utf-8").count("<error") == n
     assert ran("report", str(out), "--to", "markdown")[0] == 0
     assert "NOT JUDGED" in (out / "report.md").read_text(encoding="utf-8")

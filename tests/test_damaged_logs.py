@@ -48,7 +48,7 @@ def written(tmp_path: Path, collision_at: int | None = None, **options: Any) -> 
 def judged(tmp_path: Path, data: bytes, *others: Path) -> drivelint.CheckResult:
     path = tmp_path / "bad.mcap"
     path.write_bytes(data)
-    return drivelint.check([path, *others], rules=NO_COLLISION, robustness=False, annotate=False)
+    return drivelint.check([path, *others], rules=NO_COLLISION, annotate=False)
 
 
 def verdicts(result: drivelint.CheckResult, name: str) -> list[Row]:
@@ -86,7 +86,7 @@ def test_no_verdict_over_a_lost_chunk(tmp_path: Path, good: Path) -> None:
     assert hole[0] <= lost["t_first_ns"] <= hole[0] + PERIOD_NS
     for row in rows:
         assert row["verdict"] != "pass" or row["t_end_ns"] <= hole[0] or row["t_start_ns"] >= hole[1]
-    alone = drivelint.check([good], rules=NO_COLLISION, robustness=False, annotate=False)
+    alone = drivelint.check([good], rules=NO_COLLISION, annotate=False)
     assert verdicts(result, "good") == verdicts(alone, "good")
 
 
@@ -150,7 +150,7 @@ def test_faults(tmp_path: Path, good: Path, damage: Any, code: int, told: str) -
 def test_a_damaged_log_is_annotated_without_its_own_messages(tmp_path: Path) -> None:
     path = tmp_path / "bad.mcap"
     path.write_bytes(without_chunk(written(tmp_path), 4))
-    result = drivelint.check([path], rules=NO_COLLISION, robustness=False, out=tmp_path / "out")
+    result = drivelint.check([path], rules=NO_COLLISION, out=tmp_path / "out")
     (annotated,) = (tmp_path / "out" / "annotated").glob("bad-*.mcap")
     assert not any("not annotated" in note for note in result.notes)
     assert drivelint.read_trace(annotated, ego="0").drive_id if annotated else False
@@ -160,9 +160,9 @@ def test_an_annotation_that_fails_voids_no_verdict(tmp_path: Path, good: Path, m
     def fail(*_: object) -> None:
         raise ValueError("no picture")
 
-    alone = drivelint.check([good], rules=NO_COLLISION, robustness=False, annotate=False)
+    alone = drivelint.check([good], rules=NO_COLLISION, annotate=False)
     monkeypatch.setattr(annotator, "write", fail)
-    result = drivelint.check([good], rules=NO_COLLISION, robustness=False, out=tmp_path / "out")
+    result = drivelint.check([good], rules=NO_COLLISION, out=tmp_path / "out")
     assert result.verdicts.arrow() == alone.verdicts.arrow()
     assert [note for note in result.notes if "not annotated" in note and "no picture" in note]
     assert not list((tmp_path / "out" / "annotated").glob("*.mcap"))

@@ -90,7 +90,6 @@ def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = Non
         mapping=str(OVERTAKE / "mapping.toml"),
         rules=("mine", "ukhc.r162.safe-distance-ahead"),
         rules_dirs=(pack,),
-        robustness=False,
         out=out,
         margins=out is not None,
         keep_db=out is not None,

@@ -61,10 +61,7 @@ def overtakes(*names: str, **options: Any) -> CheckOptions:
     given: dict[str, Any] = {"rules": FEW, **options}
     mapping = str(FIXTURE / "mapping.toml")
     return CheckOptions(
-        tuple(str(FIXTURE / f"{n}.csv") for n in names),
-        map=FIXTURE / "road.xodr",
-        mapping=mapping,
-        **{"robustness": False, **given},
+        tuple(str(FIXTURE / f"{n}.csv") for n in names), map=FIXTURE / "road.xodr", mapping=mapping, **given
     )
 
 
@@ -89,7 +86,7 @@ def crowd(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 def crowded(crowd: tuple[Path, Path], **options: Any) -> CheckOptions:
-    return CheckOptions((str(crowd[0]),), map=crowd[1], ego="all", **{"robustness": False, **options})
+    return CheckOptions((str(crowd[0]),), map=crowd[1], ego="all", **options)
 
 
 @pytest.mark.slow
@@ -123,12 +120,7 @@ def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, hal
     """For real: the limit is so low that the table of pairs of all egos does not fit."""
     (tmp_path / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
     log = traffic.write_folder(tmp_path / "crowd", traffic.Shape(5.0, 10, 30))
-    asked: dict[str, Any] = {
-        "map": tmp_path / "ring.xodr",
-        "ego": "all",
-        "rules": ("ukhc.no-collision",),
-        "robustness": False,
-    }
+    asked: dict[str, Any] = {"map": tmp_path / "ring.xodr", "ego": "all", "rules": ("ukhc.no-collision",)}
     short = check(CheckOptions((str(log),), memory=60_000_000, **asked), Silent())
     assert halved
     usual = check(CheckOptions((str(log),), memory=None, **asked), Silent())

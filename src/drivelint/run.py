@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
@@ -32,7 +33,6 @@ from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-    from pathlib import Path
 
     from drivelint.engine.session import BatchObserver
     from drivelint.evaluate.limits import DeafRules
@@ -92,7 +92,7 @@ def check(
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
     if (settings.margins or settings.keep_db) and settings.out is None:
         raise UsageError("--margins and --keep-db write files: say where with --out DIR")
-    paths = sorted_logs(expand_traces(settings.traces, but=settings.map))
+    paths, refused = _named_logs(settings)
     options, library = settings.ingest_options(), MapLibrary(settings)
 
     with store.workspace(settings.memory) as con:
@@ -131,7 +131,6 @@ def check(
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
         progress.stage("checking", len(paths))
-        refused: list[RefusedLog] = []
         notes = _Notes(progress, len(paths))
         ids: dict[Path, str] = {}
         read = _announced(read_drives(paths, options, library), len(paths), progress)
@@ -166,13 +165,26 @@ def check(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
-        if len(refused) == len(paths):
+        if len(refused) >= len(paths):
             if keep is not None:
                 keep(result)
             first = refused[0].error
             many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
             raise first if len(refused) == 1 else many
         return result
+
+
+def _named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
+    """Return the logs that are named; none, and the refusal of that name, if one names nothing and the result is kept in a folder."""
+    try:
+        return sorted_logs(expand_traces(settings.traces, but=settings.map)), []
+    except TraceError:
+        for name in settings.traces if settings.out is not None else ():
+            try:
+                expand_traces([name])
+            except TraceError as error:
+                return [], [RefusedLog(Path(name), error)]
+        raise
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:

@@ -14,6 +14,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -42,9 +43,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def checked(drives: Path) -> drivelint.CheckResult:
-    return drivelint.check(
-        [drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr", robustness=False
-    )
+    return drivelint.check([drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr")
 
 
 def command_line(*args: object, code: int) -> None:
@@ -416,6 +415,47 @@ def test_an_interrupt_is_an_interrupt(drives: Path) -> None:
         else:
             running.kill()
         assert running.returncode == 42, running.stderr and running.stderr.read()
+
+
+def test_types_of_arrays_and_frames_are_taken(drives: Path) -> None:
+    asked: dict[str, Any] = {"rules": "ukhc.no-collision", "map": drives / "road.xodr", "robustness": np.False_}
+    found = drivelint.check(
+        drives / "safe.mcap", **asked, map_offset=(np.float64(0), np.float64(0)), rule_timeout=np.float64(30)
+    )
+    assert found.exit_code == 0
+    with pytest.raises(drivelint.DriveLintError, match="no actor '17'"):
+        drivelint.check(drives / "safe.mcap", **asked, ego=np.int64(17))  # type: ignore[arg-type]
+
+
+def test_a_folder_and_an_empty_name_are_no_place_for_a_report(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+    with pytest.raises(drivelint.DriveLintError, match="is a folder: name the file"):
+        checked.report(tmp_path)
+    with pytest.raises(drivelint.DriveLintError, match="an empty folder name"):
+        checked.write(" ")
+    with pytest.raises(drivelint.DriveLintError, match="base=5: give a result, or its folder"):
+        drivelint.diff(5, checked)  # type: ignore[arg-type]
+
+
+def test_columns_are_described_with_their_units(checked: drivelint.CheckResult) -> None:
+    told = {row["column"]: row for row in checked.findings.describe()}
+    assert tuple(told) == checked.findings.columns
+    assert told["t_worst_s"]["type"] == "double"
+    assert all(row["meaning"] for row in told.values())
+    assert {row["meaning"] for row in checked.sql("SELECT 1 AS one").describe()} == {""}
+
+
+def test_sql_knows_geometry(checked: drivelint.CheckResult) -> None:
+    """Where the findings' rows say that the ego was, and on a lane."""
+    (row,) = checked.sql("""
+        SELECT max(abs(ST_X(f.geom) - f.x_m) + abs(ST_Y(f.geom) - f.y_m)) AS off_m, count(*) AS n
+        FROM findings f WHERE EXISTS (FROM lanes l WHERE ST_Intersects(l.geom, f.geom))
+    """)
+    assert row["n"] > 0
+    assert row["off_m"] == 0.0
+    assert "geom" not in checked.sql("FROM findings").columns
+    for nothing in ("", "-- nothing"):
+        with pytest.raises(drivelint.DriveLintError, match="returns nothing"):
+            checked.sql(nothing)
 
 
 def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:

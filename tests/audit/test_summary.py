@@ -9,18 +9,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint.audit import AuditRequest, AuditSummary, audit
 from drivelint.audit.compact import create_views, database
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.summary import summed
 from drivelint.audit.text import summary_text
 from drivelint.errors import ExitCode
+from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import InThisProcess, judged
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from drivelint.audit import AuditSummary
 
 
 @pytest.fixture
@@ -104,7 +104,35 @@ def test_one_reason_of_many_drives_is_told_once_with_its_number(tmp_path: Path) 
     few.manifest.write_text("\n".join(text) + "\n", encoding="utf-8")
     lines = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.NOT_JUDGED).splitlines()
     assert sum("nowhere.xodr" in line for line in lines) == 1
-    assert any(line.startswith("  refused (4 drives): ") for line in lines)
+    assert any(line.startswith("  refused (4 drives, such as ") for line in lines)
+
+
+def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
+    rows = [
+        {"log": "a.csv", "status": "refused", "reason": "map nowhere.xodr does not exist", "n": 1},
+        {"log": "b.csv", "status": "refused", "reason": "b.csv: the file is empty", "n": 1},
+    ]
+    counted = AuditSummary(n_drives=5, refused=5, digest="0", not_judged=rows)
+    lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
+    assert "  refused (a.csv): map nowhere.xodr does not exist" in lines
+    assert "  refused: b.csv: the file is empty" in lines
+    assert any(line.startswith("  and 3 more: drivelint sql out ") for line in lines)
+
+
+@pytest.mark.parametrize("tag", ["weather", "site"])
+def test_a_tag_with_the_name_of_a_condition_is_said_to_be_none(
+    tag: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = fleet.write(tmp_path / "fleet", 1)
+    header, row, *_ = few.manifest.read_text(encoding="utf-8").splitlines()
+    few.manifest.write_text(f"{header},{tag}\n{row},wet\n", encoding="utf-8")
+    notes: list[str] = []
+    listener = Silent()
+    monkeypatch.setattr(listener, "note", notes.append)
+    audit(
+        AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out")), listener, InThisProcess()
+    )
+    assert any("column weather is a tag only" in note for note in notes) is (tag == "weather")
 
 
 def test_copies_are_told(tmp_path: Path) -> None:

@@ -34,7 +34,6 @@ def check(out: Path, **over: Any) -> Result:
         "params": ("ukhc.contact-signature.within_m=0.4",),
         "out": out,
         "annotate": False,
-        "robustness": False,  # tests/engine has those of copies
     }
     result = run.check(run.CheckOptions(**{**settings, **over}), Silent())
     write(result, out)

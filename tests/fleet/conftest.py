@@ -31,15 +31,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Checked:
             "--map",
             str(OVERTAKE / "road.xodr"),
         ]
-        command += [
-            "--mapping",
-            str(OVERTAKE / "mapping.toml"),
-            "--quiet",
-            "--no-annotate",
-            "--no-robustness",
-            "--fail-on",
-            "never",
-        ]
+        command += ["--mapping", str(OVERTAKE / "mapping.toml"), "--quiet", "--no-annotate", "--fail-on", "never"]
         if (key := tuple(command)) not in made:
             out = tmp_path_factory.mktemp("audit") / "results"
             done = subprocess.run(

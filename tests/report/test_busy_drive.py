@@ -22,12 +22,16 @@ PAGES = range(5, 31)
 """Printed pages that somebody reads: not three hundred rows of a table."""
 
 
-@pytest.fixture(scope="module")
-def busy(tmp_path_factory: pytest.TempPathFactory) -> Result:
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(True, id="with copies", marks=pytest.mark.slow), pytest.param(False, id="without")],
+)
+def busy(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Result:
     log = shared("commonroad/USA_US101-5_1_T-1.xml")
     out = tmp_path_factory.mktemp("busy")
     return check(
-        CheckOptions((str(log),), rules=("all",), ego="all", annotate=False, robustness=False, out=out), Silent()
+        CheckOptions((str(log),), rules=("all",), ego="all", annotate=False, robustness=request.param, out=out),
+        Silent(),
     )
 
 

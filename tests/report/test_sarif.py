@@ -164,6 +164,9 @@ def test_a_waived_finding_is_suppressed_with_its_reason() -> None:
         {"kind": "external", "status": "accepted", "justification": "ticket 17 (jo, until 2027-01-31)"}
     ]
     assert other["suppressions"] == []
+    assert [each["properties"]["gates"] for each in (waived, other)] == [False, True]
+    region = waived["locations"][0]["physicalLocation"]["region"]
+    assert region == {"startLine": 1}
     notices = run["invocations"][0]["toolExecutionNotifications"]
     assert [n["message"]["text"] for n in notices] == [
         "w:9: expired 2026-01-31 (al): it waives nothing; 2 findings like that"

@@ -21,7 +21,6 @@ def run(out: Path | None) -> Result:
             mapping=str(FIXTURE / "mapping.toml"),
             profiles=("relaxed", "nominal", "aggressive"),
             out=out,
-            robustness=False,  # tests/engine has those of copies
         ),
         Silent(),
     )

@@ -94,7 +94,8 @@ def check(
 
     The keywords are the options of `drivelint check`, which `drivelint check --help` describes: one value or several where an
     option is repeatable; `env` and `param` also as a dictionary, pairs of numbers also as a tuple. `drivelint.toml` is not read.
-    `progress`: show a bar. Errors: `DriveLintError` for what was asked, or if no drive at all could be judged.
+    `progress`: show a bar. Errors: `DriveLintError` for what was asked, or if no drive at all could be judged; then `out` has a result that
+    says so.
     """
     with errors_name_keywords():
         paths, folder = options.texts(traces), options.path(out)

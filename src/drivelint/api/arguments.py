@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from datetime import date
 from functools import wraps
-from numbers import Real
+from numbers import Integral, Real
 from os import PathLike
 from typing import Any, Final, ParamSpec, TypeVar
+
+import numpy as np
 
 from drivelint.errors import UsageError
 
@@ -26,7 +28,7 @@ def _is_number(given: object) -> bool:
 
 
 def _are_numbers(given: object) -> bool:
-    return isinstance(given, tuple | list) and all(map(_is_number, given))
+    return isinstance(given, Collection) and not isinstance(given, str | bytes) and all(map(_is_number, given))
 
 
 def _are_paths(given: object) -> bool:
@@ -35,9 +37,9 @@ def _are_paths(given: object) -> bool:
 
 _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "None": (lambda given: given is None, "None"),
-    "bool": (lambda given: isinstance(given, bool), "True or False"),
+    "bool": (lambda given: isinstance(given, bool | np.bool_), "True or False"),
     "str": (lambda given: isinstance(given, str), "a text"),
-    "int": (lambda given: _is_number(given) and isinstance(given, int), "a whole number"),
+    "int": (lambda given: isinstance(given, Integral) and not isinstance(given, bool), "a whole number"),
     "float": (_is_number, "a number"),
     "date": (lambda given: isinstance(given, date), "a date"),
     "AnyPath": (_is_path, "a path"),

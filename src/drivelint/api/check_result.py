@@ -159,7 +159,7 @@ class CheckResult(TableSet):
         return queried
 
     def __repr__(self) -> str:
-        return f"<drivelint.CheckResult: {in_keywords(one_line(self._result))}; exit code {self.exit_code}>"
+        return f"<drivelint.CheckResult: {one_line(self._result)}; exit code {self.exit_code}>"
 
     def _repr_html_(self) -> str:
         return summary_html(self._result)

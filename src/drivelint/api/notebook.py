@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from drivelint.api.keywords import in_keywords
 from drivelint.report.html.environment import visible
 from drivelint.report.inputs import input_notes
 from drivelint.report.terminal_summary import verdict_line, worst_gating
@@ -29,11 +30,11 @@ MOST_REFUSED: Final = 10
 
 def one_line(result: Result) -> str:
     """Return the verdict, whether the map fits, whether the logs are complete, and what was not judged."""
-    return f"{verdict_line(result)}; {_inputs(result)}"
+    return f"{in_keywords(verdict_line(result))}; {_inputs(result)}"
 
 
 def _inputs(result: Result) -> str:
-    return " | ".join(f"{note.label}: {note.words}" for note in input_notes(result))
+    return in_keywords(" | ".join(f"{note.label}: {note.words}" for note in input_notes(result)))
 
 
 def block_html(text: str) -> str:
@@ -62,9 +63,9 @@ def summary_html(result: Result) -> str:
         for row in found[:MOST_FINDINGS]
     ]
     return _template().render(
-        verdict=verdict_line(result),
+        verdict=in_keywords(verdict_line(result)),
         exit_code=int(end.code),
-        why=end.why,
+        why=in_keywords(end.why),
         inputs=_inputs(result),
         refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_REFUSED],
         verdicts={word.replace("_", " "): n for word, n in counts.total(result.verdicts).items() if n},

@@ -27,12 +27,11 @@ _CLOSED = "SET python_enable_replacements = false; SET enable_external_access = 
 class Table:
     """Rows with named columns. pyarrow, polars, pandas and DuckDB take it as it is, too (Arrow's PyCapsule interface)."""
 
-    __slots__ = ("_rows", "_schema_table", "_shape")
+    __slots__ = ("_rows", "_schema_table")
 
     def __init__(self, rows: pa.Table, schema_table: str | None = None) -> None:
         self._rows = rows
-        self._schema_table = schema_table
-        self._shape = schema_table if schema_table in SHAPES else None
+        self._schema_table = schema_table or ""
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -43,7 +42,7 @@ class Table:
         """Return what each column is: `column`, `type`, and `meaning` with the unit, empty for what a query made."""
         import pyarrow as pa
 
-        meanings = store.column_comments().get(self._schema_table or "", {})
+        meanings = store.column_comments().get(self._schema_table, {})
         types = [str(kind) for kind in self._rows.schema.types]
         said = [meanings.get(column, "") for column in self.columns]
         return Table(pa.table({"column": list(self.columns), "type": types, "meaning": said}))
@@ -88,7 +87,7 @@ class Table:
 
         Errors: `DriveLintError` where geopandas is not installed, and for a table without a geometry.
         """
-        if self._shape is None:
+        if self._schema_table not in SHAPES:
             raise UsageError(
                 "geo(): this table has no geometry; findings, scenes, lanes, spaces, courses and tracks have"
             )
@@ -96,7 +95,7 @@ class Table:
             import geopandas as gpd
         except ImportError as error:
             raise DriveLintError("geo() needs geopandas, which is not installed: pip install geopandas") from error
-        wkb = with_geometry(self._rows, self._shape)[COLUMN].to_pylist()
+        wkb = with_geometry(self._rows, self._schema_table)[COLUMN].to_pylist()
         return gpd.GeoDataFrame(self.df().assign(**{COLUMN: gpd.GeoSeries.from_wkb(wkb)}), geometry=COLUMN)
 
     def rows(self) -> list[dict[str, Any]]:
@@ -128,17 +127,17 @@ class TableSet:
         have one; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
         Errors: `DriveLintError` for a query that DuckDB refuses, or that returns no rows and columns.
         """
-        spatial = re.search(r"\bgeom\b|\bst_", query, re.IGNORECASE) is not None
-        with store.open_as_is() if spatial else duckdb.connect() as con:
+        has_geometry = re.search(r"\bgeom\b|\bst_", query, re.IGNORECASE) is not None
+        with store.open_as_is() if has_geometry else duckdb.connect() as con:
             for name, rows in self._queried().items():
-                shape = self._shapes.get(name) if spatial else None
-                con.register(
-                    name if shape is None else f"{name} as WKB", rows if shape is None else with_geometry(rows, shape)
-                )
-                if shape is not None:
+                if has_geometry and name in self._shapes:
+                    con.register("_wkb", with_geometry(rows, self._shapes[name]))
                     con.execute(
-                        f'CREATE VIEW {name} AS SELECT * REPLACE (ST_GeomFromWKB({COLUMN}) AS {COLUMN}) FROM "{name} as WKB"'
+                        f"CREATE TABLE {name} AS SELECT * REPLACE (ST_GeomFromWKB({COLUMN}) AS {COLUMN}) FROM _wkb"
                     )
+                    con.unregister("_wkb")
+                else:
+                    con.register(name, rows)
             con.execute(_CLOSED)
             try:
                 answer = con.execute(query, params)

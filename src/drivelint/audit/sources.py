@@ -47,7 +47,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
         else:
             logs.append(source)
     if logs:
-        for path in expand_traces(logs):
+        for path in expand_traces(logs, but=options.map):
             if not is_utf8(str(path)):
                 raise UsageError(f"{path}: its name is not UTF-8, in which results name it: rename it")
             yield AuditDrive(str(path), options)

@@ -55,9 +55,11 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     if left := counted.refused + counted.quarantined:
         yield f"not judged: {plural(left, 'drive')}"
         for row in counted.not_judged:
-            many = f" ({plural(row['n'], 'drive')})" if row["n"] > 1 else ""
-            which = "" if str(row["reason"]).startswith(str(row["log"])) else f"{row['log']}: "
-            yield f"  {row['status']}{many}: {which}{row['reason']}"
+            parts = [plural(row["n"], "drive")] if row["n"] > 1 else []
+            if not str(row["reason"]).startswith(str(row["log"])):
+                parts.append(f"such as {row['log']}" if parts else row["log"])
+            which = f" ({', '.join(parts)})" if parts else ""
+            yield f"  {row['status']}{which}: {row['reason']}"
         if more := left - sum(row["n"] for row in counted.not_judged):
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"

@@ -87,9 +87,9 @@ def what_if(
     return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
 
 
-def flipped(con: duckdb.DuckDBPyConnection, *, of: str = "") -> tuple[Flipped, ...]:
-    """Return the verdicts of the table `what_if` that become others, or of which only a new check can tell."""
-    return tuple(Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of)).fetchall())
+def flipped(con: duckdb.DuckDBPyConnection, most: int, *, of: str = "") -> tuple[Flipped, ...]:
+    """Return the first verdicts of the table `what_if` that become others, or of which only a new check can tell."""
+    return tuple(Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": most}).fetchall())
 
 
 def needs_check(rule: Rule, param: str) -> str | None:

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 WHAT_IF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 MAX_VALUES: Final = 50
-"""Values of a tag, and verdicts, that the text shows; the JSON has all."""
+"""Values of a tag, and verdicts, that the text shows; the JSON has all values."""
+MAX_FLIPPED: Final = 10_000
+"""Verdicts that become others which the JSON has."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
             why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
             return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
         found = _answer(con, rule, param, value, by)
-        return AskedWhatIf(audit, setting, was, by, found, () if found.needs_check else flipped(con))
+        return AskedWhatIf(audit, setting, was, by, found, () if found.needs_check else flipped(con, MAX_FLIPPED))
 
 
 def _answer(
@@ -104,7 +106,7 @@ def to_text(asked: AskedWhatIf) -> str:
             "only a bound of what was observed"
         )
     lines += _table(asked)
-    lines += _which(asked.flipped)
+    lines += _which(asked.flipped, flips + found.not_known)
     lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
     return "\n".join([*lines, _command(asked)] if found.not_known else lines)
 
@@ -133,8 +135,8 @@ def _table(asked: AskedWhatIf) -> list[str]:
     return lines
 
 
-def _which(verdicts: Sequence[Flipped]) -> list[str]:
-    """Return a line per verdict that becomes another, with its log."""
+def _which(verdicts: Sequence[Flipped], n: int) -> list[str]:
+    """Return a line per verdict of `n` that becomes another, with its log."""
     lines = ["which:"] if verdicts else []
     for each in verdicts[:MAX_VALUES]:
         whom = f" for object {each.object_id}" if each.object_id else ""
@@ -144,8 +146,8 @@ def _which(verdicts: Sequence[Flipped]) -> list[str]:
                 f"  {each.log}: ego {each.ego_id}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
             )
         )
-    if len(verdicts) > MAX_VALUES:
-        lines.append(f"  ... and {len(verdicts) - MAX_VALUES} more: --format json has them all")
+    if n > MAX_VALUES:
+        lines.append(f"  ... and {n - MAX_VALUES} more: --format json has the first {MAX_FLIPPED:,}")
     return lines
 
 

@@ -26,6 +26,8 @@ CANONICAL_FILES = (
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
+MAP_SUFFIXES = frozenset({".xodr", ".osm"})
+"""What is a map and never a log."""
 _HEAD_BYTES = 4096
 RESULT_FILES = frozenset(
     f"{name}.parquet"
@@ -55,14 +57,15 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
     `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI and
     SUMO's FCD files, except for what an earlier check wrote there.
-    `but`: the map, which a glob finds beside the logs; it is left out if anything else is there.
+    `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
+    scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
     found: dict[Path, Path] = {}
     for text in traces:
         for path in _matches(text):
             found.setdefault(path.resolve(), path)
-    if but is not None and len(found) > 1:
+    if but is not None and but.suffix.lower() in MAP_SUFFIXES and len(found) > 1:
         found.pop(but.resolve(), None)
     return [found[key] for key in sorted(found, key=str)]
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import rich.progress
 
 
-TELL_EVERY_S: Final = 30.0
+TELL_EVERY_S: Final = 60.0
 
 
 class Progress:
@@ -42,7 +42,7 @@ class Silent(Progress):
 
 
 class NotePrinter(Silent):
-    """A `Progress` for a stderr that is no terminal: what a person should read, and every half minute how far it is, one line each."""
+    """A `Progress` for a stderr that is no terminal: what a person should read, and every minute how far it is, one line each."""
 
     def __init__(self) -> None:
         self._name, self._done, self._told_s = "", 0, time.monotonic()

@@ -96,10 +96,10 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     """Yield what the run comes to, weightiest first."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
-    if errors := _count(result.verdicts, "error"):
-        of_errors = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))["rule_id"]
-        rules = listed(sorted(of_errors.unique().to_pylist()))
-        yield ExitStatus(ExitCode.USAGE, f"{plural(errors, 'verdict')} in error: could not be run: {rules}")
+    erring = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))["rule_id"]
+    if len(erring):
+        rules = listed(sorted(erring.unique().to_pylist()))
+        yield ExitStatus(ExitCode.USAGE, f"{plural(len(erring), 'verdict')} in error: could not be run: {rules}")
     stopped, let_through = _stopped(result), _let_through(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
