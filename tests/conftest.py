@@ -5,10 +5,15 @@ from __future__ import annotations
 import os
 import zlib
 from collections import defaultdict
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 from hypothesis import HealthCheck, settings
+from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]
+
+from tests.shared_data import ROOT
+from tests.together import chunk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +28,19 @@ os.environ.pop("COLUMNS", None)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
+
+
+class ByAnswers(LoadFileScheduling):  # type: ignore[misc]
+    """Gives a worker whole files, and all of the files whose scenes are answered together."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        path = Path(nodeid.partition("::")[0])
+        return chunk(ROOT / path) if path.parent == Path("tests/derive") else str(path)
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByAnswers | None:
+    """See `ByAnswers`."""
+    return ByAnswers(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked slow are left out

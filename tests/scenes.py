@@ -359,6 +359,11 @@ def _rules() -> dict[str, catalogue.Rule]:
     return catalogue.load_rules()
 
 
+def rule_ids(patterns: Sequence[str]) -> list[str]:
+    """Return the ids of the rules that these patterns name; none named: all."""
+    return [rule.id for rule in catalogue.select_rules(_rules(), tuple(patterns), ())]
+
+
 def judged(
     *batches: Sequence[Drive],
     rules: Sequence[str] = (),

@@ -1,6 +1,6 @@
-"""Scenes of a module's tests, derived and judged together: a small scene takes its time in planning the statements, not in rows.
+"""Scenes of the tests of a few files, derived and judged together: a small scene takes its time in planning the statements, not in rows.
 
-A test asks for its scenes one after the other: `derived(...)`, `judged(...)`. `answer_together` runs each test of a module until it
+A test asks for its scenes one after the other: `derived(...)`, `judged(...)`. `answer_together` runs each of these tests until it
 asks for something new, stops it there, answers all such questions in one database, and does so again until no test asks. When pytest
 then runs a test, each of its questions has an answer. A question without one (the test was left out, or asks for other than before)
 is answered by a database of its own, as everywhere else.
@@ -20,15 +20,18 @@ import pytest
 from drivelint.sql import store, syntax
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     import duckdb
 
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
+FILES: Final = 8
+"""Files of a folder whose scenes are answered together."""
 LEAST_TESTS: Final = 6
-MOST_ROUNDS: Final = 6
+MOST_ROUNDS: Final = 8
 """Fewer tests than these, or the questions of a test after so many, are not answered together: a database costs time and memory."""
 Row: TypeAlias = "dict[str, Any]"
 
@@ -92,13 +95,14 @@ class SceneTables:
 
 @dataclass
 class Answers:
-    """What the tests of a module asked for, by test and number of the question, and which test is running."""
+    """What the tests `of` these names asked for, by test and number of the question, and which test is running."""
 
     questions: dict[tuple[str, int], Question] = field(default_factory=dict)
     found: dict[tuple[str, int], Any] = field(default_factory=dict)
     test: str | None = None
     asked: int = 0
     is_rehearsal: bool = False
+    of: frozenset[str] = frozenset()
 
     def answer(self, question: Question) -> Any:
         """Return the answer to the next question of the running test; None: there is none."""
@@ -123,11 +127,15 @@ class Answers:
 
 
 answers: Final = Answers()
-"""The answers for the module whose tests run now."""
+"""The answers for the files whose tests run now."""
 
 
-def answer_together(items: Iterable[pytest.Item]) -> None:
-    """Answer what the tests of one module ask for, all of them at once; a test with fixtures is left out."""
+def answer_together(items: Sequence[pytest.Item]) -> None:
+    """Answer what these tests ask for, all of them at once, unless that was done; a test with fixtures is left out."""
+    names = frozenset(item.nodeid for item in items)
+    if names == answers.of:
+        return
+    answers.of = names
     answers.questions.clear()
     answers.found.clear()
     waiting = [item for item in items if _is_plain(item)]
@@ -142,6 +150,17 @@ def answer_together(items: Iterable[pytest.Item]) -> None:
         answers.questions.update(keys)
         answers.found.update(_answer(keys))
         waiting = list(asked)
+
+
+def chunk(path: Path) -> str:
+    """Return the name of the files whose scenes are answered together: a few of a folder's, next to each other."""
+    files = _files(path.parent)
+    return f"{path.parent.name} {files.index(path.name) // FILES}"
+
+
+@cache
+def _files(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("test_*.py"))
 
 
 def _is_plain(item: pytest.Item) -> bool:
@@ -174,24 +193,27 @@ def _answer(questions: Mapping[tuple[str, int], Question]) -> dict[tuple[str, in
 
     groups: dict[Any, list[tuple[str, int]]] = defaultdict(list)
     for key, question in questions.items():
-        groups[question.rules, question.profiles].append(key)
+        groups[question.rules is None, question.profiles].append(key)
     found: dict[tuple[str, int], Any] = {}
-    for (rules, profiles), keys in sorted(groups.items(), key=repr):
+    for (only_derived, profiles), keys in sorted(groups.items()):
         maps: dict[int, MapTables] = {}
         renamed = {key: _renamed(questions[key].drives, f"q{n:04}.", maps) for n, key in enumerate(keys)}
         drives = [drive for each in renamed.values() for drive in each]
         con = store.connect(threads=1)
-        if rules is None:
+        if only_derived:
             tables = [questions[key].tables for key in keys]
             scenes.derived(*drives, tables=frozenset().union(*tables) if all(tables) else (), con=con)  # (): all
             for n, key in enumerate(keys):
                 ids = {d.environment.environment_id for d in renamed[key] if d.environment}
                 found[key] = SceneTables(con, f"q{n:04}.", tuple(sorted(ids)))
             continue
-        scenes.judged(drives, rules=rules, profiles=profiles, con=con)
+        asked = {key: scenes.rule_ids(questions[key].rules or ()) for key in keys}
+        scenes.judged(drives, rules=sorted(set().union(*asked.values())), profiles=profiles, con=con)
         for n, key in enumerate(keys):
             mine = SceneTables(con, f"q{n:04}.", ())
-            found[key] = scenes.rows(mine, f"SELECT * FROM verdict ORDER BY {questions[key].order}")
+            rules = ", ".join(store.quoted(rule) for rule in asked[key])
+            query = f"SELECT * FROM verdict WHERE rule_id IN ({rules}) ORDER BY {questions[key].order}"
+            found[key] = scenes.rows(mine, query)
         con.close()
     return found
 

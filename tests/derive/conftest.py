@@ -1,4 +1,4 @@
-"""The scenes of a module are derived together."""
+"""The scenes of a few modules are derived together."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module", autouse=True)
 def _answered_together(request: pytest.FixtureRequest) -> None:
-    together.answer_together([item for item in request.session.items if item.path == request.path])
+    mine = together.chunk(request.path)
+    together.answer_together(
+        [
+            item
+            for item in request.session.items
+            if item.path.parent == request.path.parent and together.chunk(item.path) == mine
+        ]
+    )
 
 
 @pytest.fixture(autouse=True)
