@@ -38,6 +38,7 @@ class ByAnswers(LoadFileScheduling):  # type: ignore[misc]
         return chunk(ROOT / path) if path.parent == Path("tests/derive") else str(path)
 
 
+@pytest.hookimpl(optionalhook=True)  # without pytest-xdist there is none
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByAnswers | None:
     """See `ByAnswers`."""
     return ByAnswers(config, log) if config.getvalue("dist") == "loadfile" else None

@@ -55,6 +55,7 @@ def numbers(text: str) -> list[float]:
 def test_contact_is_where_the_boxes_first_overlap(collision: dict[str, Any], recorded: Log) -> None:
     assert collision["contact"]
     assert collision["when"] == f"{first_contact(recorded):.2f} s"
+    assert collision["rests"] == ""
 
 
 def test_speeds_are_those_before_the_contact(collision: dict[str, Any], recorded: Log) -> None:
@@ -286,3 +287,7 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert numbers(told["closing"])[0] == pytest.approx(by_places, abs=0.3)
     least = min((gap(recorded["1"][t], recorded["3"][t]), t) for t in recorded["1"] if t in recorded["3"])
     assert told["least"] == f"{least[0]:.2f} m at {least[1]:.2f} s"
+    at_it = min(gap(recorded["1"][t], recorded["3"][t]) for t in recorded["1"] if before - 0.05 < t < impact + 0.15)
+    assert told["rests"].startswith("It rests on a sudden change of speed: the boxes do not touch at that time")
+    assert numbers(told["rests"])[0] == round(at_it, 2)
+    assert "sizes are assumed, not recorded" in told["rests"]

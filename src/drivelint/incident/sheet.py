@@ -18,6 +18,7 @@ from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, others_drawn, overtaking, party
 from drivelint.incident.record import held_elements
+from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured, minus, profile, story, told_unit
 from drivelint.report.html.plan_view import actor_shapes, plan_view
@@ -99,6 +100,7 @@ def content(case: Case) -> dict[str, Any]:
         "errors": MeasurementErrors().words,
         "least_share": f"{LEAST_SHARE:.0%}",
         "sure": _surest(case),
+        "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _warnings(case),
         "again": same_finding(case.again.findings, row),
@@ -254,6 +256,23 @@ def _surest(case: Case) -> dict[str, Any]:
                 told |= {"title": SURE, "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({how_sure(other)})"}
                 break
     return told
+
+
+def _rests_on(case: Case, motion: Motion) -> str:
+    """Return, in words, on what a contact rests that is told by something else than boxes which overlap; '' for all else."""
+    row = case.finding.row
+    if not case.finding.is_contact or row["unit"] == "m":
+        return ""
+    since_s, until_s = ((row[key] - case.finding.moment_ns) / 1e9 for key in ("t_start_ns", "t_end_ns"))
+    beside_s = 1.5 * motion.step_s  # the step before it and the one after it, too
+    there = (motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)
+    gaps = [float(gap) for gap in motion.gap[there] if not math.isnan(gap)]
+    if gaps and min(gaps) < 0:
+        return ""
+    apart = f"least gap {min(gaps):.2f} m" if gaps else "the gap is not known"
+    assumed = any(size_source(case.asked, ego=number == 0) for number in range(len(case.finding.parties)))
+    sizes = "; sizes are assumed, not recorded" if assumed else ""
+    return f"It rests on a sudden change of speed: the boxes do not touch at that time ({apart}{sizes})."
 
 
 def _plan(case: Case) -> dict[str, Any]:
