@@ -18,6 +18,8 @@ from tests.together import chunk
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from drivelint.result.model import Result
+
 # how long an example takes says how busy the machine is, and nothing of the law
 settings.register_profile("drivelint", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("drivelint")
@@ -30,18 +32,38 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 
 
-class ByAnswers(LoadFileScheduling):  # type: ignore[misc]
-    """Gives a worker whole files, and all of the files whose scenes are answered together."""
+TOGETHER: Final = {
+    "fleet_report": "fleet_report",
+    "incident": "incident",
+    "pack": "pack",
+    "report": "report",
+    "result": "report",
+}
+"""Folder -> name of the files that share what takes long to make: one process runs them all."""
+
+
+@pytest.fixture(scope="session")
+def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    """Return the result of the fixture's overtakes, with copies and with evidence; nobody may alter it."""
+    from tests.result import fixture_result
+
+    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
+
+
+class BySharing(LoadFileScheduling):  # type: ignore[misc]
+    """Gives a worker whole files, and all that share something: answers to questions on scenes, or fixtures."""
 
     def _split_scope(self, nodeid: str) -> str:
         path = Path(nodeid.partition("::")[0])
-        return chunk(ROOT / path) if path.parent == Path("tests/derive") else str(path)
+        if path.parent == Path("tests/derive"):
+            return chunk(ROOT / path)
+        return TOGETHER.get(path.parent.name, str(path))
 
 
 @pytest.hookimpl(optionalhook=True)  # without pytest-xdist there is none
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByAnswers | None:
-    """See `ByAnswers`."""
-    return ByAnswers(config, log) if config.getvalue("dist") == "loadfile" else None
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> BySharing | None:
+    """See `BySharing`."""
+    return BySharing(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked slow are left out

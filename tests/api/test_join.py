@@ -21,7 +21,7 @@ OVERLAPPING = """SELECT v.rule_id, v.ego_id, v.profile, v.object_id, v.occurrenc
     WHERE v.verdict = 'fail'"""
 
 
-@pytest.fixture(params=["demo", "case study", "US101"])
+@pytest.fixture(params=["demo", *(pytest.param(log, marks=pytest.mark.slow) for log in ("case study", "US101"))])
 def checked(request: pytest.FixtureRequest, tmp_path: Path) -> drivelint.CheckResult:
     asked: dict[str, Any] = {"rules": "all", "robustness": False, "fail_on": "never"}
     if request.param == "demo":

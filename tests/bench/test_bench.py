@@ -35,6 +35,7 @@ def test_a_section_measures_something(section: str, tmp_path: Path) -> None:
     assert markdown(rows).count("\n") == len(rows) + 1
 
 
+@pytest.mark.slow
 def test_every_stage_of_the_reference_drive_takes_time(tmp_path: Path) -> None:
     """A stage whose function was renamed would take none."""
     place = Place(tmp_path, TINY)

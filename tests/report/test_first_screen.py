@@ -24,7 +24,6 @@ from drivelint.report.outputs import write
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
-from tests.result import fixture_result
 
 EGO = [{"ego_id": "1", "km": 0.1, "hours": 0.1, "engaged_km": 0.0, "engaged_hours": 0.0, "n_steps": 250}]
 OFF = {"ego_id": "1", "signal": "registration", "reason_code": "seldom_on_lane", "reason": "27 of 181 steps on a lane"}
@@ -33,11 +32,6 @@ ASSUMED = {
     "message": "mapping 'film' assumes speeds; only distances are measured",
 }  # fmt: skip
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
-
-
-@pytest.fixture(scope="module")
-def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 def plain(markup: str) -> str:

@@ -14,7 +14,6 @@ import pytest
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import page
-from tests.result import fixture_result
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 
@@ -23,11 +22,6 @@ TOO_WIDE = """[...document.querySelectorAll('table, .card *')].filter(e => {
   return box.width > 0 && box.right > room.right + 1 && !e.closest('svg, .scroll, .steps');
 }).map(e => `${e.className} ${e.textContent.slice(0, 60)}`)"""
 COLUMN = "[...document.querySelectorAll('#findings-table tbody tr')].map(r => r.cells[{}].textContent)"
-
-
-@pytest.fixture(scope="module")
-def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

@@ -22,12 +22,6 @@ from drivelint.result.model import Result
 from drivelint.result.schemas import TABLE_OF_FILE
 from tests.report.pages import NASTY, Parsed, nasty, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
-from tests.result import fixture_result
-
-
-@pytest.fixture(scope="module")
-def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

@@ -13,14 +13,8 @@ import pytest
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import nasty, page
-from tests.result import fixture_result
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
-
-
-@pytest.fixture(scope="module")
-def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

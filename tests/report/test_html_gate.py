@@ -18,7 +18,6 @@ from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import NASTY, Parsed, page
 from tests.report.synthetic import finding, result, verdict
-from tests.result import fixture_result
 
 TODAY = date(2026, 11, 20)
 WAIVERS = (
@@ -29,9 +28,9 @@ WAIVERS = (
 
 
 @pytest.fixture(scope="module")
-def gated(tmp_path_factory: pytest.TempPathFactory) -> Result:
+def gated(overtakes: Result) -> Result:
     """Return the three overtakes, held against an earlier result without the collision, and waivers."""
-    now = fixture_result.run(tmp_path_factory.mktemp("overtakes"))
+    now = overtakes
     parts = {
         name: (table := getattr(now, name)).filter(pc.invert(pc.starts_with(table["drive_id"], "collision")))
         for name in ("verdicts", "findings", "drives")

@@ -14,13 +14,7 @@ from drivelint.report.html.explanations import notes_on_logs
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import drive, finding, result, verdict
-from tests.result import fixture_result
 from tests.shared_data import shared
-
-
-@pytest.fixture(scope="module")
-def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
 
 
 @pytest.fixture(scope="module")

@@ -24,8 +24,8 @@ from tests.result.fixture_result import FIXTURE, NAMES, run
 
 
 @pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return run(tmp_path_factory.mktemp("out"))
+def result(overtakes: Result) -> Result:
+    return overtakes
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,6 @@ from drivelint.result.geometry import SHAPES
 from drivelint.result.load import load_result
 from drivelint.result.schemas import TABLE_OF_FILE, empty_table
 from drivelint.sql import store
-from tests.result import fixture_result
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,8 +26,8 @@ FILES = {stem: SHAPES[table] for stem, table in TABLE_OF_FILE.items() if table i
 
 
 @pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
-    return fixture_result.run(tmp_path_factory.mktemp("run"))
+def result(overtakes: Result) -> Result:
+    return overtakes
 
 
 @pytest.fixture(scope="module")
