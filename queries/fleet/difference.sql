@@ -43,7 +43,7 @@ WITH known AS (
 ), new_release AS (
     SELECT CASE WHEN count(DISTINCT tags['release']) = 1 AND count(tags['release']) = count(*) THEN min(tags['release']) END AS now FROM {new}drives
 ), compared AS (
-    SELECT t.*, {'software': coalesce(s.software, now <> was), 'rule': n.version <> b.version, 'parameters': n.params <> b.params, 'data': s.data, 'map': s.map,
+    SELECT t.*, {'drive': t.new_key IS NULL OR t.base_key IS NULL, 'software': coalesce(s.software, now <> was), 'rule': n.version <> b.version, 'parameters': n.params <> b.params, 'data': s.data, 'map': s.map,
         'tool': $new_tool::VARCHAR <> $base_tool::VARCHAR} AS differs
     FROM told t CROSS JOIN base_release CROSS JOIN new_release
     LEFT JOIN same_drive s ON s.new_key = t.new_key AND s.base_key = t.base_key
@@ -51,11 +51,11 @@ WITH known AS (
     LEFT JOIN new_rule n ON n.rule_id = t.rule_id
 )
 SELECT * EXCLUDE (differs),
-    list_filter([CASE WHEN differs.software THEN 'software' END, CASE WHEN differs.rule THEN 'rule' END,
+    list_filter([CASE WHEN differs.drive THEN 'drive' END, CASE WHEN differs.software THEN 'software' END, CASE WHEN differs.rule THEN 'rule' END,
         CASE WHEN differs.parameters THEN 'parameters' END, CASE WHEN differs.data THEN 'data' END, CASE WHEN differs.map THEN 'map' END,
         CASE WHEN differs.tool THEN 'tool' END], lambda cause: cause IS NOT NULL) AS causes,
     list_filter([CASE WHEN differs.software IS NULL THEN 'software' END, CASE WHEN differs.rule IS NULL THEN 'rule' END,
-        CASE WHEN differs.parameters IS NULL THEN 'parameters' END, CASE WHEN differs.data IS NULL THEN 'data' END,
-        CASE WHEN differs.map IS NULL THEN 'map' END, CASE WHEN differs.tool IS NULL THEN 'tool' END],
+        CASE WHEN differs.parameters IS NULL THEN 'parameters' END, CASE WHEN differs.data IS NULL AND NOT differs.drive THEN 'data' END,
+        CASE WHEN differs.map IS NULL AND NOT differs.drive THEN 'map' END, CASE WHEN differs.tool IS NULL THEN 'tool' END],
         lambda cause: cause IS NOT NULL) AS causes_not_known
 FROM compared
