@@ -121,6 +121,18 @@ def test_the_worst_drive_and_rule_stand_first() -> None:
     assert "explain  drivelint explain ukhc.no-collision@d2 --in out" in lines
 
 
+def test_a_rule_says_how_many_of_its_findings_are_only_possible() -> None:
+    kept = [finding(finding_id=f"{n:016}", n_copies=100, n_stays=stays) for n, stays in enumerate((100, 53, 40))]
+    others = [finding(finding_id=f"{9:016}", rule_id="ukhc.signal", n_copies=32, n_stays=32)]
+    lines = summary(result([verdict("fail")], [*kept, *others], rules=[rule(), rule("ukhc.signal")]))
+    (head,) = [line.split() for line in lines if line.startswith("broken rule")]
+    assert head[:5] == ["broken", "rule", "findings", "possible", "drives"]
+    told = {line.split()[1]: line.split()[2:5] for line in lines if line.startswith("critical")}
+    assert told == {"ukhc.r162.safe-distance-ahead": ["3", "2", "1"], "ukhc.signal": ["1", "·", "1"]}
+    sure = summary(result([verdict("fail")], kept[:1], rules=[rule()]))
+    assert not any("possible" in line for line in sure)
+
+
 def test_what_must_be_less_is_not_said_to_need_as_much() -> None:
     less = rule("ukhc.contact-signature", sense="<", tags=["contact"], unit="m/s2")
     found = finding(rule_id="ukhc.contact-signature", observed=43.21, required=12.0, margin=-31.21, unit="m/s2")

@@ -21,8 +21,8 @@ MARGIN_TOLERANCE: Final = 0.01
 INTERVAL_TOLERANCE_S: Final = 0.1
 """The numbers of `drivelint.gate`, which stands beside this package; a test holds them equal."""
 CAUSES: Final = ("drive", "software", "rule", "parameters", "data", "map", "tool")
-"""What may differ between two audits where a finding does: only one has the drive; the tag `release`, the rule's version, its parameters, the log's content, the map's, and
-the version of drivelint."""
+"""What may differ between two audits where a finding does: only one has the drive; the tag `release`, the rule's version, its
+parameters, the log's content, the map's, and the version of drivelint."""
 
 
 class DifferenceCount(NamedTuple):

@@ -200,15 +200,19 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
 
 
 def _broken(found: list[Row]) -> Table:
-    """Return one row a broken rule, the worst first."""
-    table = _table(("broken rule", "findings", "drives", "worst margin"), {"broken rule": 60})
+    """Return one row a broken rule, the worst first; with how many findings are only possible, where some are."""
+    some_possible = any(doubt(row) for row in found)
+    columns = ("broken rule", "findings", *(["possible"] if some_possible else []), "drives", "worst margin")
+    table = _table(columns, {"broken rule": 60})
     of_rule = counts.grouped(found, lambda row: row["rule_id"])
     for rule_id, rows in list(of_rule.items())[:MOST_RULES]:
         margins = [row["margin"] for row in rows if row["margin"] is not None]
         severity = rows[0]["severity"]
         name = Text.assemble((f"{severity:<8} ", STYLE[severity]), rule_id)
         n_drives = len({row["drive_id"] for row in rows})
-        table.add_row(name, str(len(rows)), str(n_drives), number(min(margins, default=None), rows[0]["unit"]))
+        doubted = [_cell(sum(bool(doubt(row)) for row in rows), "yellow")] if some_possible else []
+        worst = number(min(margins, default=None), rows[0]["unit"])
+        table.add_row(name, str(len(rows)), *doubted, str(n_drives), worst)
     if len(of_rule) > MOST_RULES:
         table.add_row(Text(f"... {len(of_rule) - MOST_RULES} more (--verbose)", "dim"))
     return table
