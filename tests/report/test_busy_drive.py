@@ -18,6 +18,11 @@ from tests.shared_data import shared
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 TYPICAL = 3_000_000
 """Bytes that the page of one drive may have."""
+BEYOND = """[...document.querySelectorAll('.card, table')].filter(e => {
+  const box = e.getBoundingClientRect();
+  return box.width > 0 && box.right > document.documentElement.clientWidth + 1 && !e.closest('.scroll');
+}).map(e => e.textContent.slice(0, 60))"""
+"""Cards and tables that end to the right of the window, where they are cut off."""
 PAGES = range(5, 31)
 """Printed pages that somebody reads: not three hundred rows of a table."""
 
@@ -55,6 +60,7 @@ def test_it_is_small_and_opens_without_a_word_or_a_request(busy: Result, opened:
 def test_nothing_sticks_out_and_no_number_is_torn(opened: Page, width: int) -> None:
     opened.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
     assert opened.value("document.documentElement.scrollWidth") <= width
+    assert opened.value(BEYOND) == []
     torn = """[...document.querySelectorAll('#findings-table td.actor, #findings-table td.num')].filter(cell => {
       const text = document.createRange();
       text.selectNodeContents(cell.querySelector('b') || cell);
