@@ -38,3 +38,13 @@ def test_a_cut_takes_room_too() -> None:
     drawn = _strip(0, "overlap of the danger spaces of both", "m", lines, t[30], x=x, course=course)
     assert drawn["cut"]
     assert drawn["value_y"] != drawn["label_y"]
+
+
+def test_nothing_has_no_sign_but_of_a_measure_that_may_break_a_rule() -> None:
+    t = [n * SECOND for n in range(4)]
+    x = Axis(t[0], t[-1], LEFT, RIGHT)
+    lines = [Series("ego", "ego 1", t, [-0.001] * 4)]
+    assert _strip(0, "speed", "m/s", lines, t[2], x=x, course=None)["at_worst"] == "ego 1 0.00"
+    course = {"t_ns": t, "required": [0.0] * 4, "holds": [False] * 4}
+    lines = [Series("limit", "required", t, [0.0] * 4), Series("ego", "observed", t, [-0.001] * 4)]
+    assert _strip(0, "gap", "m", lines, t[2], x=x, course=course)["at_worst"] == "observed -0.00, required 0.00"

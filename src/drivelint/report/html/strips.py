@@ -154,7 +154,8 @@ def _at_worst(lines: Sequence[Series], worst_ns: int) -> str:
     for line in lines:
         value = dict(zip(line.t_ns, line.values, strict=True)).get(worst_ns)
         if value is not None:
-            told.append(f"{line.name} {number(value)}")
+            shown = value if lines[0].kind == "limit" else round(value, 2) + 0.0  # -0.00 of a measure may break a rule
+            told.append(f"{line.name} {number(shown)}")
     return ", ".join(reversed(told))
 
 
