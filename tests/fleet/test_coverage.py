@@ -64,6 +64,10 @@ def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
     assert ("weather", "wet") not in never
     assert ("speed_band", "60 to 90 km/h") not in never
     assert ("speed_band", "0 to 15 km/h") in never
+    untold = found.untold()
+    assert "light" in untold
+    assert "weather" not in untold
+    assert not set(untold) & {situation for situation, _ in never}, "of what nobody knows nothing is said"
     traffic = {each.value: each.egos for each in found.situations if each.situation == "traffic"}
     assert traffic == {"less than 1 other": 1, "1 to 5 others": 2, "5 to 20 others": 0, "20 others and more": 0}
     assert found.cannot_tell

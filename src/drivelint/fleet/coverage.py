@@ -68,8 +68,14 @@ class Coverage:
         return [rule for rule in self.rules if rule.standing == standing]
 
     def never_occurred(self) -> list[SituationCoverage]:
-        """Return the situations in which no drive is known to have been."""
-        return [each for each in self.situations if not each.egos and each.value is not None]
+        """Return the situations in which no drive is known to have been, of those that are known of some drive."""
+        untold = set(self.untold())
+        return [s for s in self.situations if not s.egos and s.value is not None and s.situation not in untold]
+
+    def untold(self) -> list[str]:
+        """Return the situations, such as `weather`, that are known of no drive."""
+        told = {each.situation for each in self.situations if each.egos and each.value is not None}
+        return sorted({each.situation for each in self.situations} - told)
 
 
 def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
