@@ -13,8 +13,8 @@ from tests.report.synthetic import SECOND
     ("title", "who", "apart"),
     [
         ("speed", "object 3", True),
-        ("offset from the lane's centre line, left positive", "object 3", True),
-        ("offset from the lane's centre line, left positive", "object 5f0d8a52-pedestrian-crossing-17", False),
+        ("offset from the lane's centre, left positive", "object 3", True),
+        ("offset from the lane's centre, left positive", "object 5f0d8a52-pedestrian-crossing-17", False),
     ],
 )
 def test_numbers_go_below_a_title_that_leaves_no_room(title: str, who: str, *, apart: bool) -> None:

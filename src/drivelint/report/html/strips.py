@@ -53,7 +53,7 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
         for title, unit, column in (
             ("speed", "m/s", "speed_mps"),
             ("acceleration", "m/s2", "accel_mps2"),
-            ("offset from the lane's centre line, left positive", "m", "d_m"),
+            ("offset from the lane's centre, left positive", "m", "d_m"),
         )
     ]
     measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST
