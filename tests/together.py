@@ -104,6 +104,12 @@ class Answers:
     is_rehearsal: bool = False
     of: frozenset[str] = frozenset()
 
+    def forget(self) -> None:
+        """Close the databases of the answers."""
+        self.of = frozenset()
+        self.questions.clear()
+        self.found.clear()
+
     def answer(self, question: Question) -> Any:
         """Return the answer to the next question of the running test; None: there is none."""
         if self.test is None:
@@ -135,9 +141,8 @@ def answer_together(items: Sequence[pytest.Item]) -> None:
     names = frozenset(item.nodeid for item in items)
     if names == answers.of:
         return
+    answers.forget()
     answers.of = names
-    answers.questions.clear()
-    answers.found.clear()
     waiting = [item for item in items if _is_plain(item)]
     for _ in range(MOST_ROUNDS):
         asked = {}

@@ -28,3 +28,9 @@ def _answered_together(request: pytest.FixtureRequest) -> None:
 def _answered(request: pytest.FixtureRequest, _answered_together: None) -> Iterator[None]:
     with together.answers.running(request.node.nodeid):
         yield
+
+
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Close the databases of the answers after the last test that may ask for one: they take a gigabyte."""
+    if nextitem is None or together.chunk(nextitem.path) != together.chunk(item.path):
+        together.answers.forget()
