@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import zlib
 from collections import defaultdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import pytest
@@ -33,11 +32,11 @@ SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 
 
 TOGETHER: Final = {
-    "fleet_report": "fleet_report",
-    "incident": "incident",
-    "pack": "pack",
-    "report": "report",
-    "result": "report",
+    "tests/fleet_report": "fleet_report",
+    "tests/incident": "incident",
+    "tests/pack": "pack",
+    "tests/report": "report",
+    "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
 
@@ -54,10 +53,9 @@ class BySharing(LoadFileScheduling):  # type: ignore[misc]
     """Gives a worker whole files, and all that share something: answers to questions on scenes, or fixtures."""
 
     def _split_scope(self, nodeid: str) -> str:
-        path = Path(nodeid.partition("::")[0])
-        if path.parent == Path("tests/derive"):
-            return chunk(ROOT / path)
-        return TOGETHER.get(path.parent.name, str(path))
+        path = nodeid.partition("::")[0]
+        folder = path.rpartition("/")[0]
+        return chunk(ROOT / path) if folder == "tests/derive" else TOGETHER.get(folder, path)
 
 
 @pytest.hookimpl(optionalhook=True)  # without pytest-xdist there is none

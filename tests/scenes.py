@@ -360,7 +360,7 @@ def _rules() -> dict[str, catalogue.Rule]:
 
 
 def rule_ids(patterns: Sequence[str]) -> list[str]:
-    """Return the ids of the rules that these patterns name; none named: all."""
+    """Return the ids of the rules that these patterns name; none named: those that `check` judges by default."""
     return [rule.id for rule in catalogue.select_rules(_rules(), tuple(patterns), ())]
 
 

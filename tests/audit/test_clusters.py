@@ -21,7 +21,7 @@ from tests.audit.clusters import dask
 from tests.audit.here import judged
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from drivelint.audit.executors.dask import DaskCluster
@@ -80,30 +80,26 @@ def _submitted(executor: Any, seconds: float) -> Any:
     return next(reversed(executor._running))
 
 
-def _until(future: Any, status: str) -> None:
+def _until(is_so: Callable[[], bool], what: str) -> None:
     for _ in range(600):
-        if future.status == status:
+        if is_so():
             return
         time.sleep(0.05)
-    raise AssertionError(f"a task is {future.status} and not {status}")
+    raise AssertionError(f"for 30 s not so: {what}")
 
 
-def _until_without_workers(executor: Any) -> None:
-    for _ in range(600):
-        if not executor._client.nthreads():
-            return
-        time.sleep(0.05)
-    raise AssertionError("the scheduler still counts workers")
+def _until_status(future: Any, status: str) -> None:
+    _until(lambda: future.status == status, f"a task is {status}")
 
 
 def test_a_result_that_is_lost_with_its_worker_is_made_again(sleepers: tuple[DaskProcesses, Any]) -> None:
     _, executor = sleepers
     long = _submitted(executor, 5.0)
     short = _submitted(executor, 1.0)
-    _until(short, "finished")
+    _until_status(short, "finished")
     ((holder,),) = executor._client.who_has([short]).values()
     os.kill(executor._client.run(os.getpid)[holder], signal.SIGKILL)
-    _until(short, "lost")
+    _until_status(short, "lost")
     assert executor.wait() == [Outcome(5.0, None)]  # type: ignore[arg-type]
     assert long.status == "finished"
     assert executor.wait() == [Outcome(1.0, None)]  # type: ignore[arg-type]
@@ -116,7 +112,8 @@ def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) ->
         worker.send_signal(signal.SIGKILL)
     (outcome,) = executor.wait()
     assert "the worker died" in outcome.lost
-    _until_without_workers(executor)  # a scheduler that has not missed the second one hands it the next task
+    # a scheduler that has not missed the second one hands it the next task
+    _until(lambda: not executor._client.nthreads(), "the scheduler counts no worker")
     executor.submit(60.0)
     with pytest.raises(ClusterError, match="no worker for 1 s: start some and give the same command"):
         executor.wait()
@@ -124,7 +121,7 @@ def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) ->
 
 def test_a_scheduler_that_dies_while_a_result_is_fetched(sleepers: tuple[DaskProcesses, Any]) -> None:
     cluster, executor = sleepers
-    _until(_submitted(executor, 0.0), "finished")
+    _until_status(_submitted(executor, 0.0), "finished")
     cluster.scheduler.send_signal(signal.SIGSTOP)
     death = threading.Timer(1.0, cluster.scheduler.send_signal, [signal.SIGKILL])
     death.start()

@@ -103,9 +103,10 @@ def test_findings_of_added_drives_are_told_apart() -> None:
 
 def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_only_it_has() -> None:
     for told in (compared(), compared(base_also=("shared",), new_also=("shared",))):
-        assert {causes for causes in told.causes if "drive" not in causes} <= {("software",)}
-        assert ("drive", "software") in told.causes
-        assert not {"data", "map"} & set(told.causes_not_known)
+        assert set(told.causes) == {("drive", "software")}
+        assert set(told.causes_not_known) == {"tool"}, (
+            "nothing is asked of the log and the map of a drive that only one has"
+        )
         assert "software" not in told.causes_not_known
 
 

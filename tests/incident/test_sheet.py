@@ -9,6 +9,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 from drivelint import catalogue, cli
@@ -16,7 +17,8 @@ from drivelint.drive.trace import EgoSize
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, render, write_incident
 from drivelint.incident.command import commands
-from drivelint.incident.sheet import content
+from drivelint.incident.motion import Motion
+from drivelint.incident.sheet import _rests_on, content
 from drivelint.incident.sizes import size_source
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -274,7 +276,8 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
         robustness=False,
     )
     write(run_check(options, Silent()), tmp_path)
-    told = content(open_case(IncidentRequest("contact-signature", tmp_path)))
+    case = open_case(IncidentRequest("contact-signature", tmp_path))
+    told = content(case)
     recorded = carla_log(log)
     # within one step both lose far more speed than a tyre can brake
     lost = {t: recorded["3"][round(t - 0.1, 3)].speed - recorded["3"][t].speed for t in recorded["3"] if t > 1}
@@ -291,3 +294,9 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert told["rests"].startswith("It rests on a sudden change of speed: the boxes do not touch at that time")
     assert numbers(told["rests"])[0] == round(at_it, 2)
     assert "sizes are assumed, not recorded" in told["rests"]
+    motion = Motion.of_steps(case.again.steps, case.finding.moment_ns)
+    unknown = np.full_like(motion.gap, np.nan)
+    assert "nobody knows whether the boxes touch (no gap is known" in _rests_on(case, replace(motion, gap=unknown))
+    one = np.where(motion.t == 0, motion.gap, unknown)
+    assert "nobody knows whether the boxes touch (least gap" in _rests_on(case, replace(motion, gap=one))
+    assert _rests_on(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"

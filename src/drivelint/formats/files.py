@@ -27,7 +27,7 @@ CANONICAL_FILES = (
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
-"""What is a map and never a log."""
+"""Endings that maps have, and no format of logs."""
 _HEAD_BYTES = 4096
 RESULT_FILES = frozenset(
     f"{name}.parquet"

@@ -8,6 +8,8 @@ import re
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from drivelint.catalogue.header import CONTACT
 from drivelint.convert import CLIP
 from drivelint.engine.copies import MeasurementErrors
@@ -259,20 +261,23 @@ def _surest(case: Case) -> dict[str, Any]:
 
 
 def _rests_on(case: Case, motion: Motion) -> str:
-    """Return, in words, on what a contact rests that is told by something else than boxes which overlap; '' for all else."""
+    """Return which measure tells the contact, in words, if overlapping boxes do not; '' for all other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
         return ""
     since_s, until_s = ((row[key] - case.finding.moment_ns) / 1e9 for key in ("t_start_ns", "t_end_ns"))
     beside_s = 1.5 * motion.step_s  # the step before it and the one after it, too
-    there = (motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)
-    gaps = [float(gap) for gap in motion.gap[there] if not math.isnan(gap)]
-    if gaps and min(gaps) < 0:
+    gaps = motion.gap[(motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)]
+    known = gaps[~np.isnan(gaps)]
+    if known.size and known.min() <= 0:
         return ""
-    apart = f"least gap {min(gaps):.2f} m" if gaps else "the gap is not known"
+    told = f"least gap {known.min():.2f} m" if known.size else "no gap is known"
+    boxes = (
+        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "nobody knows whether the boxes touch"
+    )
     assumed = any(size_source(case.asked, ego=number == 0) for number in range(len(case.finding.parties)))
     sizes = "; sizes are assumed, not recorded" if assumed else ""
-    return f"It rests on a sudden change of speed: the boxes do not touch at that time ({apart}{sizes})."
+    return f"It rests on a sudden change of speed: {boxes} ({told}{sizes})."
 
 
 def _plan(case: Case) -> dict[str, Any]:
