@@ -16,7 +16,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from drivelint import __version__
-from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values
+from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values, watching
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
 from drivelint.cli.console import progress as bar
@@ -319,6 +319,7 @@ def convert(
     typer.echo(inert(converter.summary_text(written)))
 
 
+app.command(cls=GroupedCommand)(watching.watch)
 app.command()(results.report)
 app.command()(results.explain)
 app.command("diff")(results.diff)

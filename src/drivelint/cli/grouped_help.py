@@ -1,4 +1,4 @@
-"""The help of `check`, its options under headings."""
+"""The help of `check` and `watch`, their options under headings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typer.core import TyperCommand
 from drivelint.cli import options
 
 _GROUPS: Final = {
+    "Watching": ("halt_on", "warn", "advise", "on", "serve", "replay", "window", "every", "idle"),
     "Input": tuple(options.DRIVE_OPTIONS),
     "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
     "Gate": ("fail_on", "strict", "require", "confidence", "baseline", "waivers", "today"),

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from drivelint.formats import read_trace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+
+    from drivelint.drive.trace import IngestOptions, Trace
 
 
 class Frame(NamedTuple):
@@ -46,8 +51,11 @@ class Source(Protocol):
         """Return what has to be told of the source since the last call, such as frames that were lost on the way."""
         ...
 
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
-        """Write a log of these frames alone, as one that `read_trace` reads as it reads the recording."""
+    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+        """Return a log of these frames alone, read as the recording is read; `folder` may be written to.
+
+        Errors: as those of `read_trace`, while there is too little to judge.
+        """
         ...
 
     def halt(self) -> None:
@@ -57,3 +65,20 @@ class Source(Protocol):
     def close(self) -> None:
         """Finish the recording and let go of files, sockets and simulations. May be called twice."""
         ...
+
+
+class WrittenWindows(ABC):
+    """The part of a source that writes windows as small logs of its format."""
+
+    window_name: str
+    """Name of the file of a window, which tells the format."""
+
+    @abstractmethod
+    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+        """Write a log of these frames alone, as one that `read_trace` reads as it reads the recording."""
+
+    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+        """Return a log of these frames alone, read as the recording is read. Errors: as those of `read_trace`."""
+        path = folder / self.window_name
+        self.write_window(frames, path)
+        return read_trace(path, options)

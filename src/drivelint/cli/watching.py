@@ -1,0 +1,189 @@
+"""`drivelint watch`: a drive is judged while it is recorded."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from drivelint.cli import completion, options, values
+from drivelint.cli.console import progress as bar
+from drivelint.cli.console import run_interruptible
+from drivelint.cli.options import Texts, argument, option
+from drivelint.phrases import inert_json
+
+if TYPE_CHECKING:
+    from drivelint.watch.messages import Message
+
+Severity = Literal["critical", "major", "minor"]
+
+
+@options.takes_drive_input
+def watch(
+    *,
+    source: Annotated[
+        str,
+        argument(
+            "SOURCE",
+            "A log that grows (.mcap, .osi), - for OSI messages on stdin, tcp://HOST:PORT, udp://HOST:PORT, ws://HOST:PORT, "
+            "or a simulation (.sumocfg). With --replay: any log.",
+        ),
+    ],
+    command: Annotated[
+        list[str] | None, argument("[-- COMMAND...]", "A program to start, which writes what is watched.")
+    ] = None,
+    drive: options.DriveInputValues,
+    halt_on: Annotated[
+        Severity | None,
+        option("--halt-on", None, "End COMMAND or the simulation at the first alarm of this severity or a worse one."),
+    ] = None,
+    warn: Annotated[
+        bool, option("--warn", None, "Also say where a margin is small and shrinks, and when it will be used up.")
+    ] = False,
+    advise: Annotated[
+        bool,
+        option("--advise", None, "Also say with which profile an overtake would be possible. Advice, not control."),
+    ] = False,
+    on: Annotated[
+        Texts,
+        option(
+            "--on",
+            "SEL=COMMAND",
+            "Run COMMAND, without a shell, at an alarm by these rules; it gets the alarm on stdin. At most once a second. Repeatable.",
+        ),
+    ] = None,
+    serve: Annotated[
+        str | None,
+        option("--serve", "HOST:PORT", "Show it live: a WebSocket server for Foxglove. Needs drivelint[live]."),
+    ] = None,
+    replay: Annotated[
+        float | None,
+        option(
+            "--replay",
+            "SPEED",
+            "Watch a finished log as if it were recorded now: 1: at its own pace, 0: step by step.",
+            min=0.0,
+        ),
+    ] = None,
+    window: Annotated[float, option("--window", "S", "Seconds of the log that are judged at a time.", min=11.0)] = 30.0,
+    every: Annotated[
+        float,
+        option(
+            "--every",
+            "S",
+            "Seconds of the log after which they are judged again, where the machine keeps up.",
+            min=0.01,
+        ),
+    ] = 0.5,
+    idle: Annotated[
+        float,
+        option("--idle", "S", "Seconds without anything new after which the source has ended; 0: never.", min=0.0),
+    ] = 10.0,
+    out: Annotated[
+        Path | None,
+        option("--out", "DIR", "Folder for the recording and, at the end, for the result files, as those of check."),
+    ] = None,
+    overwrite: Annotated[
+        bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
+    ] = False,
+    rules: Annotated[
+        Texts,
+        option(
+            "--rules",
+            "SEL",
+            "Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.",
+            autocompletion=completion.rule_ids,
+        ),
+    ] = None,
+    ignore: Annotated[
+        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
+    ] = None,
+    profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
+    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    rules_dir: options.RulesDirs = None,
+    fail_on: Annotated[
+        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
+    ] = "critical",
+    strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
+    robustness: Annotated[
+        bool,
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "At the end, count how robust critical and major findings are, as check does.",
+        ),
+    ] = True,
+    memory: options.MemorySize = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+) -> None:
+    """Judge a drive while it is recorded: alarms at once, verdicts at its end.
+
+    Prints one JSON object per line: alarm, over, warning, mode, halt, note; at the end checked, verdict and end. An alarm is
+    a finding as far as it is known; what the check of the whole recording makes of it is said at the end, with the verdicts.
+
+    Not a safety function of a vehicle: see drivelint docs watching for what it can and cannot tell, and how fast.
+
+    Exit codes: as check, of the whole recording; 1 also where an alarm halted. Ctrl-C ends the recording, which is then checked;
+    once more leaves at once.
+    """
+    from drivelint.engine.interruption import Interruption
+    from drivelint.errors import ExitCode
+    from drivelint.report.outputs import working_folder, write
+    from drivelint.result.model import exit_status
+    from drivelint.watch.options import WatchOptions
+    from drivelint.watch.run import Watch, check_recording, conclude
+    from drivelint.watch.sources.choice import open_source
+
+    settings = WatchOptions(
+        source=source,
+        command=tuple(command or ()),
+        **drive,
+        out=out,
+        rules=tuple(rules or ()),
+        ignore=tuple(ignore or ()),
+        profiles=tuple(profile or ()),
+        params=tuple(param or ()),
+        rules_dirs=tuple(rules_dir or ()),
+        fail_on=fail_on,
+        strict=strict,
+        robustness=robustness,
+        memory=values.parse_memory(memory),
+        window_s=window,
+        every_s=every,
+        idle_s=idle or None,
+        replay=replay,
+        halt_on=halt_on,
+        warn=warn,
+        advise=advise,
+        on=tuple(on or ()),
+        serve=serve,
+    )
+
+    def emit(message: Message) -> None:
+        typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
+
+    interruption = Interruption()
+    with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+
+        def job() -> int:
+            with open_source(settings) as opened, Watch(settings, opened, emit, interruption) as watch:
+                progress.stage("watching")
+                watched = watch.watch()
+                opened.close()
+                for text in opened.notes():
+                    progress.note(text)
+                result = check_recording(
+                    settings, opened.recording, work, watch, progress=progress, interruption=Interruption()
+                )
+                told = conclude(result, watch, emit)
+                if out is not None:
+                    write(result, out, work, overwrite=overwrite)
+                progress.note(told)
+                code = exit_status(result).code
+                halted = watched.halted is not None and code in {ExitCode.OK, ExitCode.LOSSY, ExitCode.NOT_JUDGED}
+                return int(ExitCode.FAILED if halted else code)
+
+        code = run_interruptible(job, interruption.request)
+    raise typer.Exit(code)

@@ -1,0 +1,46 @@
+"""Advises with which profile an overtake would still be possible. Advice only: nothing is controlled from here."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.watch.judge import JudgedWindow
+
+_REFERENCE = ("rule_id", "ego_id", "object_id", "t_ref_ns")
+
+
+class Advice:
+    """What was advised so far, each occasion once."""
+
+    def __init__(self, styles: Mapping[str, int]) -> None:
+        self._styles = styles
+        self._told: set[tuple[object, ...]] = set()
+
+    def take(self, window: JudgedWindow, start_ns: int) -> list[dict[str, Any]]:
+        """Return a message for each new occasion that is judged by profile: the most relaxed one that is kept, or none.
+
+        A rule of several assertions is one occasion per rule. Where a profile is unknown, so are those more relaxed than the answer.
+        """
+        occasions: dict[tuple[Any, ...], dict[str, str]] = defaultdict(dict)
+        for row in window.verdicts.to_pylist():
+            if row["profile"] in self._styles and row["profile"] != "observed" and row["t_ref_ns"] is not None:
+                occasions[tuple(row[name] for name in _REFERENCE)][row["profile"]] = row["verdict"]
+        found = []
+        for key, verdicts in sorted(occasions.items(), key=str):
+            if key in self._told or not {"pass", "fail"} & set(verdicts.values()):
+                continue
+            self._told.add(key)
+            order = sorted(verdicts, key=lambda name: self._styles[name])
+            kept = next((name for name in order if verdicts[name] == "pass"), None)
+            found.append({
+                "type": "mode",
+                **dict(zip(_REFERENCE, key, strict=True)),
+                "t_s": round((key[-1] - start_ns) / 1e9, 6),
+                "mode": kept,
+                "verdicts": {name: verdicts[name] for name in order},
+            })  # fmt: skip
+        return found

@@ -1,0 +1,108 @@
+"""Judges windows one after another in a database that stays open."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from drivelint import catalogue
+from drivelint.engine.apart import judge_apart
+from drivelint.engine.batch import drive_with_map
+from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.memory import Memory
+from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
+from drivelint.engine.session import JudgingSession
+from drivelint.evaluate.limits import RuleLimits
+from drivelint.evaluate.sql_fragments import Binding
+from drivelint.result import collect
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    import duckdb
+    import pyarrow as pa
+
+    from drivelint.catalogue import Rule
+    from drivelint.drive.trace import Trace
+    from drivelint.engine.barrier import RefusedLog
+    from drivelint.watch.options import WatchOptions
+
+PASSES_PER_RELEASE = 64
+"""After so many windows the database gives back the memory that it does not need."""
+_KEPT = frozenset({"profile", "environment", "map_quality"})
+
+
+@dataclass(frozen=True)
+class JudgedWindow:
+    """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is."""
+
+    t_start_ns: int
+    t_end_ns: int
+    findings: pa.Table
+    verdicts: pa.Table
+    near_misses: pa.Table
+
+
+class WindowJudge:
+    """A database with rules and a map, which judges window after window. Between them only the map stays in it.
+
+    `rules`: by their ids. Memory does not grow with the number of windows.
+    """
+
+    def __init__(self, options: WatchOptions) -> None:
+        known = catalogue.load_rules(options.rules_dirs)
+        rules = catalogue.select_rules(known, options.rules, options.ignore)
+        self.rules: dict[str, Rule] = {rule.id: rule for rule in rules}
+        params = catalogue.parse_params(rules, options.params)
+        profiles = load_profiles(options.rules_dirs)
+        self.gaps_ns = {
+            rule.id: int(str(Binding(rule, 0, params.get(rule.id, {})).values(["_merge_ns"])["_merge_ns"]))
+            for rule in rules
+        }
+        self.profiles = options.profiles or DEFAULT_PROFILES
+        asked = profiles.keys() if options.advise else self.profiles
+        self.styles = {name: profile.style for name, profile in profiles.items()}
+        self._stack = ExitStack()
+        self._con = self._stack.enter_context(store.workspace(options.memory))
+        store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
+        self._memory = Memory(self._con, options.memory)
+        self._library = MapLibrary(options)
+        # series of near misses are written for those who look at the tables before they are cleared
+        observers = [_look] if options.warn else []
+        limits = RuleLimits(options.rule_timeout, task="windows")
+        self._session = JudgingSession(
+            self._con, rules, params, None, memory=self._memory, observers=observers, limits=limits
+        )
+        self._n_passes = 0
+
+    def judge(self, trace: Trace) -> JudgedWindow:
+        """Judge a window. Errors: `MapError`, or any error of a drive that cannot be judged."""
+        drive = drive_with_map(trace, self._library)
+        store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _KEPT])
+        self._session.forget_judged()
+        refusals: list[RefusedLog] = []
+        judge_apart(self._session, [drive], refusals)
+        if refusals:
+            raise refusals[0].error
+        self._n_passes += 1
+        if self._n_passes % PASSES_PER_RELEASE == 0:
+            self._memory.release()
+        log = trace.tables["data_log"]
+        near = self._con.execute("FROM course WHERE finding_id IS NULL ORDER BY ALL").to_arrow_table()
+        return JudgedWindow(
+            log["t_start_ns"][0].as_py(),
+            log["t_end_ns"][0].as_py(),
+            collect.findings(self._con),
+            collect.verdicts(self._con),
+            near,
+        )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._stack.close()
+
+
+def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
+    """Look at nothing: that somebody looks is enough."""

@@ -1,0 +1,52 @@
+"""The options of `watch`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path  # noqa: TC003 - a dataclass names it
+
+from drivelint.drive.trace import DriveInput
+from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
+
+DEFAULT_WINDOW_S = 30.0
+DEFAULT_EVERY_S = 0.5
+DEFAULT_IDLE_S = 10.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class WatchOptions(DriveInput):
+    """The options of `watch`, under the names that they have there; those of `check` mean the same."""
+
+    source: str
+    command: tuple[str, ...] = ()
+    """Arguments of a program to start, which writes what is watched; empty: it is started by somebody else."""
+    out: Path | None = None
+    rules: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    profiles: tuple[str, ...] = ()
+    params: tuple[str, ...] = ()
+    rules_dirs: tuple[Path, ...] = ()
+    fail_on: str = "critical"
+    strict: bool = False
+    require: tuple[str, ...] = ()
+    annotate: bool = True
+    robustness: bool = True
+    memory: int | None = DEFAULT_MEMORY
+    rule_timeout: float = DEFAULT_TIMEOUT_S
+    window_s: float = DEFAULT_WINDOW_S
+    """Seconds of log time that are judged at a time."""
+    every_s: float = DEFAULT_EVERY_S
+    """Seconds of log time after which the window is judged again, where the machine keeps up."""
+    idle_s: float | None = DEFAULT_IDLE_S
+    """Seconds without anything new after which the source has ended; None: it is waited for without end."""
+    replay: float | None = None
+    """A finished log is watched as if it were recorded now: seconds of log time per second, 0: as fast as it can be judged."""
+    halt_on: str | None = None
+    """The least severity of an alarm that halts."""
+    warn: bool = False
+    advise: bool = False
+    on: tuple[str, ...] = ()
+    """`SEL=COMMAND`: what is run when there is an alarm by one of these rules."""
+    serve: str | None = None
+    """`HOST:PORT` of the watch's own WebSocket server for viewers."""

@@ -1,0 +1,238 @@
+"""The loop of a watch: frames in, the window judged, messages out; then the recording is checked."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final, Self
+
+from drivelint import catalogue, run
+from drivelint.errors import DriveLintError, TraceError, UsageError
+from drivelint.phrases import plural
+from drivelint.result.counts import SEVERITIES
+from drivelint.result.model import exit_status
+from drivelint.watch import messages, triggers
+from drivelint.watch.advice import Advice
+from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
+from drivelint.watch.halting import Child
+from drivelint.watch.judge import WindowJudge
+from drivelint.watch.shrinking import ShrinkingMargins
+from drivelint.watch.window import S, Window
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.drive.trace import Trace
+    from drivelint.engine.interruption import Interruption
+    from drivelint.report.progress import Progress
+    from drivelint.result.model import Result
+    from drivelint.watch.alarms import Alarm
+    from drivelint.watch.judge import JudgedWindow
+    from drivelint.watch.messages import Message
+    from drivelint.watch.options import WatchOptions
+    from drivelint.watch.source import Source
+
+READ_S: Final = 0.05
+"""So long a source is waited for at a time."""
+AFTER_CHILD_S: Final = 1.0
+"""After the program that writes the log has ended, the source is read until nothing new came for so long."""
+
+
+@dataclass
+class Watched:
+    """What the live part of a watch came to."""
+
+    n_windows: int = 0
+    n_unreadable: int = 0
+    halted: Alarm | None = None
+    halted_ns: int | None = None
+    busy_s: list[float] = field(default_factory=list)
+    """The seconds that each window took: for the last line on stderr, not for results."""
+
+
+class Watch:
+    """Watches one source. `emit` takes each message as it is said; `listeners` take each window that was judged."""
+
+    def __init__(
+        self,
+        options: WatchOptions,
+        source: Source,
+        emit: Callable[[Message], None],
+        interruption: Interruption,
+        listeners: tuple[Callable[[Trace, JudgedWindow], None], ...] = (),
+    ) -> None:
+        if options.window_s * S <= 2 * WARM_UP_NS:
+            raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
+        self._options = options
+        self._source = source
+        self._emit = emit
+        self._interruption = interruption
+        self._listeners = listeners
+        self._stack = ExitStack()
+        self._judge = self._stack.enter_context(WindowJudge(options))
+        known = catalogue.load_rules(options.rules_dirs)
+        self._triggers = triggers.parse(options.on, known, self._judge.rules)
+        self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-")))
+        self._ingest = options.ingest_options()
+        self._window = Window(round(options.window_s * S))
+        self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)
+        self._warnings = ShrinkingMargins() if options.warn else None
+        self._advice = Advice(self._judge.styles) if options.advise else None
+        self._judged_until_ns: int | None = None
+        self._start_ns: int | None = None
+        self._doubt: str | None = None
+        self.watched = Watched()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        for each in self._triggers:
+            each.close()
+        self._stack.close()
+
+    def watch(self) -> Watched:
+        """Judge until the source has ended, an alarm halts it, or the run is interrupted. Errors: those of the source."""
+        every_ns = round(self._options.every_s * S)
+        # what came while a window was judged is judged at once, but no step without its past
+        most_ns = every_ns if self._source.in_step else self._window_ns - WARM_UP_NS
+        child = Child(self._options.command) if self._options.command else None
+        quiet_since = time.monotonic()
+        try:
+            while not self._interruption.requested and self.watched.halted is None:
+                frames = self._source.read(READ_S)
+                self._tell_notes()
+                if frames:
+                    self._window.add(frames)
+                    quiet_since = time.monotonic()
+                is_over = frames is None or (
+                    child is not None and child.code is not None and time.monotonic() - quiet_since > AFTER_CHILD_S
+                )
+                while (self._window.behind_ns >= every_ns or is_over) and self._window.advance(most_ns):
+                    self._pass()
+                    if self.watched.halted is not None or self._interruption.requested:
+                        break
+                if is_over:
+                    break
+        finally:
+            if child is not None and (self.watched.halted is not None or child.code is None):
+                child.end()
+        return self.watched
+
+    @property
+    def _window_ns(self) -> int:
+        return round(self._options.window_s * S)
+
+    def _tell_notes(self) -> None:
+        for text in self._source.notes():
+            self._emit(messages.note(text))
+
+    def _pass(self) -> None:
+        """Judge the window, and say what is new."""
+        begun_s = time.perf_counter()
+        try:
+            trace = self._source.read_window(self._window.frames, self._folder, self._ingest)
+            judged = self._judge.judge(trace)
+        except DriveLintError as error:
+            if error.is_of_the_run or isinstance(error, UsageError):
+                raise
+            self.watched.n_unreadable += 1
+            if str(error) != self._doubt:
+                self._doubt = str(error)
+                self._emit(messages.note(f"not judged yet: {error}"))
+            return
+        self._doubt = None
+        if self._start_ns is None:
+            self._start_ns = judged.t_start_ns
+        new, over = self.alarms.take(judged, self._judged_until_ns, is_whole=self._window.is_whole)
+        self._judged_until_ns = judged.t_end_ns
+        for alarm in new:
+            self._say(alarm, judged.t_end_ns, self._start_ns)
+        for alarm in over:
+            self._emit(messages.over(alarm, self._start_ns))
+        if self._warnings is not None:
+            for message in self._warnings.take(judged, self._judge.rules, self._start_ns):
+                self._emit(message)
+        if self._advice is not None:
+            for message in self._advice.take(judged, self._start_ns):
+                self._emit(message)
+        self.watched.n_windows += 1
+        self.watched.busy_s.append(time.perf_counter() - begun_s)
+        for listener in self._listeners:
+            listener(trace, judged)
+
+    def _say(self, alarm: Alarm, now_ns: int, start_ns: int) -> None:
+        rule = self._judge.rules[alarm.row["rule_id"]]
+        message = messages.alarm(alarm, rule, start_ns)
+        self._emit(message)
+        for trigger in self._triggers:
+            if (trouble := trigger.pull(message)) is not None:
+                self._emit(messages.note(trouble))
+        if self.watched.halted is None and self._halts(alarm, rule.status):
+            self.watched.halted, self.watched.halted_ns = alarm, now_ns
+            self._emit(messages.halt(alarm, now_ns, start_ns))
+            self._source.halt()
+
+    def _halts(self, alarm: Alarm, status: str) -> bool:
+        """Whether an alarm halts: at or above the severity that was asked for, by a rule that is no draft."""
+        least = self._options.halt_on
+        return (
+            least is not None
+            and status == "stable"
+            and SEVERITIES.index(alarm.row["severity"]) <= SEVERITIES.index(least)
+        )
+
+
+def check_recording(
+    options: WatchOptions,
+    recording: Path,
+    work: Path | None,
+    watch: Watch,
+    *,
+    progress: Progress,
+    interruption: Interruption,
+) -> Result:
+    """Check what was recorded as any log, and hold the alarms against it. Errors: as `check`."""
+    names = {each.name for each in fields(run.CheckOptions)}
+    same: dict[str, Any] = {each.name: getattr(options, each.name) for each in fields(options) if each.name in names}
+    same["out"] = work
+    if not recording.exists():
+        raise TraceError(f"{options.source}: nothing was recorded: no frame came")
+    result = run.check(run.CheckOptions(traces=(str(recording),), **same), progress, interruption)
+    halted = watch.watched.halted
+    if halted is not None and watch.watched.halted_ns is not None:
+        start_ns = result.drives["t_start_ns"][0].as_py() or 0
+        told = (
+            f"halted at {(watch.watched.halted_ns - start_ns) / S:.2f} s by an alarm of {halted.row['rule_id']} "
+            f"at {(halted.row['t_start_ns'] - start_ns) / S:.2f} s"
+        )
+        result = replace(result, notes=(*result.notes, told))
+    return result
+
+
+def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
+    """Say what the check of the whole log made of the alarms, then its verdicts. Return the counts in one sentence."""
+    verdicts, findings = result.verdicts.to_pylist(), result.findings.to_pylist()
+    missed = watch.alarms.hold_against(findings, verdicts)
+    for alarm in watch.alarms.alarms:
+        emit(messages.confirmed(alarm))
+    for row in verdicts:
+        if row["verdict"] != "not_applicable":
+            emit(messages.verdict(row))
+    status = exit_status(result)
+    alarms = watch.alarms.alarms
+    counts = {
+        "n_windows": watch.watched.n_windows,
+        "n_alarms": len(alarms),
+        "n_alarms_that_are_findings": sum(bool(alarm.finding_ids) for alarm in alarms),
+        "n_findings": len(findings),
+        "n_findings_without_alarm": len(missed),
+    }
+    emit(messages.end(counts, int(status.code), status.why))
+    return (
+        f"{plural(len(alarms), 'alarm')}, {counts['n_alarms_that_are_findings']} of them findings of the whole log; "
+        f"{len(missed)} of {plural(len(findings), 'finding')} without an alarm"
+    )

@@ -1,0 +1,67 @@
+"""Tells where a margin shrinks although its rule is still kept, and when it would be used up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.catalogue import Rule
+    from drivelint.watch.alarms import Key
+    from drivelint.watch.judge import JudgedWindow
+
+SLOPE_NS: Final = 1_000_000_000
+"""The last second tells how fast a margin shrinks."""
+
+
+class ShrinkingMargins:
+    """The near misses of a watch that were told of; each again only after its rule was kept with room to spare."""
+
+    def __init__(self) -> None:
+        self._open: dict[Key, int] = {}
+
+    def take(self, window: JudgedWindow, rules: Mapping[str, Rule], start_ns: int) -> list[dict[str, Any]]:
+        """Return a message for each margin that is below its rule's `near_margin` at the newest steps, and shrinks."""
+        found: list[dict[str, Any]] = []
+        seen: dict[Key, int] = {}
+        for row in window.near_misses.to_pylist():
+            key = row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
+            t_ns, margin = np.array(row["t_ns"], np.int64), np.array(row["margin"], np.float64)
+            known = np.isfinite(margin)
+            t_ns, margin = t_ns[known], margin[known]
+            if not len(t_ns):
+                continue
+            rule = rules[row["rule_id"]]
+            last = (t_ns > t_ns[-1] - SLOPE_NS) if len(t_ns) else known
+            is_now = t_ns[-1] >= window.t_end_ns - SLOPE_NS // 2
+            is_near = rule.near_margin is not None and 0 <= margin[-1] < rule.near_margin
+            if not (is_now and is_near):
+                continue
+            seen[key] = int(t_ns[-1])
+            if key in self._open or last.sum() < 2:
+                continue
+            per_s = np.polyfit((t_ns[last] - t_ns[-1]) / 1e9, margin[last], 1)[0]
+            if per_s >= 0:
+                seen.pop(key)
+                continue
+            found.append({
+                "type": "warning",
+                "rule_id": rule.id,
+                "title": rule.title,
+                "severity": rule.severity,
+                "ego_id": row["ego_id"],
+                "object_id": row["object_id"],
+                "profile": row["profile"],
+                "t_s": round((int(t_ns[-1]) - start_ns) / 1e9, 6),
+                "t_ns": int(t_ns[-1]),
+                "margin": float(margin[-1]),
+                "near_margin": rule.near_margin,
+                "unit": rule.unit,
+                "shrinks_per_s": float(-per_s),
+                "to_violation_s": float(-margin[-1] / per_s),
+            })  # fmt: skip
+        self._open = seen
+        return found

@@ -1,0 +1,76 @@
+"""A finished log, watched as if it were recorded now. Any format that `check` reads."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from drivelint.drive.cut import cut_trace
+from drivelint.formats import read_trace
+from drivelint.watch.source import Frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.drive.trace import IngestOptions, Trace
+
+
+class Replay:
+    """Gives the steps of a log at its own pace, or as fast as they are asked for.
+
+    `speed`: seconds of log time per second; 0: `every_ns` of log time each time it is asked. What the log's reader found out from all
+    of it, such as velocities that it does not hold, is known from the beginning; everything later than the window is not.
+    """
+
+    def __init__(self, path: Path, options: IngestOptions, *, speed: float, every_ns: int) -> None:
+        self.recording = path
+        self.in_step = speed == 0
+        self._speed = speed
+        self._every_ns = every_ns
+        self._trace = read_trace(path, options)
+        self._times = np.unique(self._trace.tables["actor_state"]["t_ns"].to_numpy())
+        self._at = 0
+        self._begun_s: float | None = None
+        self._halted = False
+
+    def read(self, timeout_s: float) -> Sequence[Frame] | None:
+        """Return the next steps, each as a frame without content."""
+        if self._halted or self._at >= len(self._times):
+            return None
+        end = self._due(timeout_s)
+        found = [Frame(int(t_ns), None, 0) for t_ns in self._times[self._at : end]]
+        self._at = end
+        return found
+
+    def _due(self, timeout_s: float) -> int:
+        """Return the number of steps that have come, after a wait of at most so long."""
+        if self.in_step:
+            return int(np.searchsorted(self._times, self._times[self._at] + self._every_ns, side="left"))
+        now = time.monotonic()
+        if self._begun_s is None:
+            self._begun_s = now
+        next_s = self._begun_s + (self._times[self._at] - self._times[0]) / 1e9 / self._speed
+        if next_s > now:
+            time.sleep(min(timeout_s, next_s - now))
+            now = time.monotonic()
+        gone_ns = (now - self._begun_s) * self._speed * 1e9
+        return int(np.searchsorted(self._times, self._times[0] + gone_ns, side="right"))
+
+    def notes(self) -> Sequence[str]:
+        """Return nothing: a finished log loses nothing on the way."""
+        return ()
+
+    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:  # noqa: ARG002 - of all sources
+        """Return these steps of the log."""
+        times = [frame.t_ns for frame in frames]
+        return cut_trace(self._trace, min(times), max(times))
+
+    def halt(self) -> None:
+        """Give no more steps."""
+        self._halted = True
+
+    def close(self) -> None:
+        """Keep the log as it is."""

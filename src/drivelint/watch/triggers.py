@@ -1,0 +1,85 @@
+"""Runs commands of the user's when there are alarms."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint import catalogue
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.catalogue import Rule
+
+LEAST_S: Final = 1.0
+"""Seconds between two runs of one command; alarms between them are not passed on."""
+MOST_RUNNING: Final = 4
+"""Runs of one command at a time."""
+
+
+@dataclass
+class Trigger:
+    """A command and the rules whose alarms start it. It gets the alarm as JSON on stdin, and no shell."""
+
+    rules: frozenset[str]
+    command: Sequence[str]
+    n_run: int = 0
+    n_left_out: int = 0
+    _last_s: float = -LEAST_S
+    _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
+
+    def pull(self, alarm: Mapping[str, Any]) -> str | None:
+        """Run the command for an alarm of its rules, unless it ran just now. Return what went wrong."""
+        if alarm["rule_id"] not in self.rules:
+            return None
+        now = time.monotonic()
+        self._running = [each for each in self._running if each.poll() is None]
+        if now - self._last_s < LEAST_S or len(self._running) >= MOST_RUNNING:
+            self.n_left_out += 1
+            return None
+        self._last_s = now
+        try:
+            process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=sys.stderr.fileno())  # noqa: S603 - asked for
+        except OSError as error:
+            return f"--on: {self.command[0]}: cannot be started: {error.strerror or error}"
+        assert process.stdin is not None  # noqa: S101 - it is a pipe
+        with suppress(BrokenPipeError, OSError):  # it need not read
+            process.stdin.write(json.dumps(alarm).encode() + b"\n")
+            process.stdin.close()
+        self._running.append(process)
+        self.n_run += 1
+        return None
+
+    def close(self) -> None:
+        """Wait a little for those that still run, then leave them alone."""
+        for process in self._running:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(LEAST_S)
+
+
+def parse(texts: Sequence[str], known: Mapping[str, Rule], selected: Mapping[str, Rule]) -> list[Trigger]:
+    """Read `SEL=COMMAND`, the command as a list of words. Errors: `UsageError`, also where no selected rule is meant."""
+    found = []
+    for text in texts:
+        names, sign, words = text.partition("=")
+        if not sign or not names.strip():
+            raise UsageError(f"--on {text!r}: write SEL=COMMAND, such as severity:critical='notify-send alarm'")
+        try:
+            command = shlex.split(words)
+        except ValueError as error:
+            raise UsageError(f"--on {text!r}: {error}") from error
+        if not command:
+            raise UsageError(f"--on {text!r}: no command behind the sign =")
+        rules = frozenset(rule.id for rule in catalogue.select_rules(known, [names.strip()], ())) & selected.keys()
+        if not rules:
+            raise UsageError(f"--on {text!r}: none of the selected rules is meant: add it with --rules")
+        found.append(Trigger(rules, command))
+    return found
