@@ -7,10 +7,12 @@ follow those that were said. A reference point that moved a little is the same, 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    import pyarrow as pa
 
     from drivelint.result.text import Row
     from drivelint.watch.judge import JudgedWindow
@@ -32,8 +34,16 @@ class Alarm:
     row: Row
     said_ns: int
     t_end_ns: int
+    withdrawn_ns: int | None = None
+    """The newest step that was known when a window did not show it any more: what came since told more of what was done."""
     finding_ids: list[str] = field(default_factory=list)
     """The findings of the whole log that it is of, once they are known."""
+
+    @property
+    def from_ns(self) -> int:
+        """The time from which on a window must know the drive to show it."""
+        start, ref = int(self.row["t_start_ns"]), self.row["t_ref_ns"]
+        return start if ref is None else min(start, int(ref))
 
     @property
     def latency_s(self) -> float:
@@ -47,6 +57,15 @@ class Alarm:
             refs = mine["t_ref_ns"], row["t_ref_ns"]
             return None not in refs and abs(refs[0] - refs[1]) <= SAME_REFERENCE_NS
         return bool(row["t_start_ns"] <= self.t_end_ns + gap_ns and row["t_end_ns"] >= mine["t_start_ns"] - gap_ns)
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a window changed: alarms that are new, whose rule is kept again, and which it does not show any more."""
+
+    new: list[Alarm]
+    over: list[Alarm]
+    withdrawn: list[Alarm]
 
 
 def key_of(row: Row) -> Key:
@@ -65,58 +84,72 @@ class AlarmLog:
         self._profiles = frozenset(profiles)
         self.alarms: list[Alarm] = []
         self._open: list[Alarm] = []
-        self._by_key: dict[Key, list[Alarm]] = {}
+        self._standing: list[Alarm] = []
 
-    def take(
-        self, window: JudgedWindow, judged_until_ns: int | None, *, is_whole: bool
-    ) -> tuple[list[Alarm], list[Alarm]]:
-        """Take the findings of a window; return the alarms that are new, and those that are over.
+    def take(self, window: JudgedWindow, judged_until_ns: int | None, *, is_whole: bool) -> Change:
+        """Take the findings of a window; return what they change.
 
         `judged_until_ns`: the last step of the window before; None: this is the first. `is_whole`: it begins where the log does.
         """
-        refs = {
-            (v["rule_id"], v["ego_id"], v["ref_id"]): v["t_ref_ns"]
-            for v in window.verdicts.select(["rule_id", "ego_id", "ref_id", "t_ref_ns"]).to_pylist()
-            if v["ref_id"] is not None
-        }
+        known_from_ns = window.t_start_ns + (0 if is_whole else WARM_UP_NS)
         new: list[Alarm] = []
-        for row in window.findings.to_pylist():
-            row["t_ref_ns"] = refs.get((row["rule_id"], row["ego_id"], row["ref_id"]))
+        seen: set[int] = set()
+        for row in _with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
-            mine = self._by_key.setdefault(key_of(row), [])
-            same = next((a for a in mine if a.is_seen_in(row, self._gap_ns(row))), None)
-            if same is not None:
-                same.t_end_ns = max(same.t_end_ns, row["t_end_ns"])
-                continue
-            at = row["t_start_ns"] if row["t_ref_ns"] is None else min(row["t_ref_ns"], row["t_start_ns"])
-            fails_now = judged_until_ns is None or row["t_end_ns"] > judged_until_ns
-            if not is_whole and at < window.t_start_ns + WARM_UP_NS and not fails_now:
-                continue
-            alarm = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
-            self.alarms.append(alarm)
-            self._open.append(alarm)
-            mine.append(alarm)
-            new.append(alarm)
-        return new, self._ended(window.t_end_ns)
+            same = next((each for each in self._standing if self._is_same(each, row)), None)
+            if same is None:
+                same = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
+                fails_now = judged_until_ns is None or row["t_end_ns"] > judged_until_ns
+                if same.from_ns < known_from_ns and not fails_now:
+                    continue
+                for each in (self.alarms, self._open, self._standing, new):
+                    each.append(same)
+            same.t_end_ns = max(same.t_end_ns, row["t_end_ns"])
+            seen.add(same.number)
+        withdrawn = [each for each in self._standing if each.number not in seen and each.from_ns >= known_from_ns]
+        for alarm in withdrawn:
+            alarm.withdrawn_ns = window.t_end_ns
+        over = [
+            each
+            for each in self._open
+            if window.t_end_ns > each.t_end_ns + self._gap_ns(each) and each not in withdrawn
+        ]
+        self._open = [each for each in self._open if each not in over and each not in withdrawn]
+        self._standing = [
+            each
+            for each in self._standing
+            if each not in withdrawn and (each in self._open or each.t_end_ns + self._gap_ns(each) >= window.t_start_ns)
+        ]
+        return Change(new, over, withdrawn)
 
-    def _ended(self, now_ns: int) -> list[Alarm]:
-        over = [each for each in self._open if now_ns > each.t_end_ns + self._gap_ns(each.row)]
-        self._open = [each for each in self._open if each not in over]
-        return over
+    def _gap_ns(self, alarm: Alarm) -> int:
+        return self._gaps_ns[alarm.row["rule_id"]]
 
-    def _gap_ns(self, row: Row) -> int:
-        return self._gaps_ns[row["rule_id"]]
+    def _is_same(self, alarm: Alarm, row: Row) -> bool:
+        return key_of(alarm.row) == key_of(row) and alarm.is_seen_in(row, self._gap_ns(alarm))
 
-    def hold_against(self, findings: Sequence[dict[str, Any]], verdicts: Sequence[Row]) -> list[dict[str, Any]]:
-        """Tell each alarm of which findings of the whole log it is; return the findings that no alarm is of."""
-        refs = {(v["rule_id"], v["ego_id"], v["ref_id"]): v["t_ref_ns"] for v in verdicts if v["ref_id"] is not None}
-        left: list[dict[str, Any]] = []
-        for row in findings:
-            row["t_ref_ns"] = refs.get((row["rule_id"], row["ego_id"], row["ref_id"]))
-            mine = [a for a in self._by_key.get(key_of(row), []) if a.is_seen_in(row, self._gap_ns(row))]
+    def hold_against(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+        """Tell each alarm of which findings of the whole log it is; return the findings that no alarm is of.
+
+        Whether it was withdrawn does not matter here: what is a finding in the end was one.
+        """
+        by_key: dict[Key, list[Alarm]] = {}
+        for alarm in self.alarms:
+            by_key.setdefault(key_of(alarm.row), []).append(alarm)
+        left = []
+        for row in _with_reference_times(findings, verdicts):
+            mine = [each for each in by_key.get(key_of(row), []) if self._is_same(each, row)]
             for alarm in mine:
                 alarm.finding_ids.append(row["finding_id"])
             if not mine:
                 left.append(row)
         return left
+
+
+def _with_reference_times(findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+    """Return findings with the time of their reference point, `t_ref_ns`, None where they have none."""
+    columns = ("drive_id", "rule_id", "ego_id", "ref_id")
+    rows = verdicts.select([*columns, "t_ref_ns"]).to_pylist()
+    times = {tuple(row[c] for c in columns): row["t_ref_ns"] for row in rows if row["ref_id"] is not None}
+    return [{**row, "t_ref_ns": times.get(tuple(row[c] for c in columns))} for row in findings]

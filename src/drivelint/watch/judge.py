@@ -3,28 +3,36 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Self
+
+import pyarrow.compute as pc
 
 from drivelint import catalogue
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.batch import drive_with_map
+from drivelint.engine.copies import renamed
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
+from drivelint.errors import DriveLintError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.result import collect
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import duckdb
     import pyarrow as pa
 
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import Trace
     from drivelint.engine.barrier import RefusedLog
+    from drivelint.engine.batch import Drive
     from drivelint.watch.options import WatchOptions
 
 PASSES_PER_RELEASE = 64
@@ -75,27 +83,38 @@ class WindowJudge:
         )
         self._n_passes = 0
 
-    def judge(self, trace: Trace) -> JudgedWindow:
-        """Judge a window. Errors: `MapError`, or any error of a drive that cannot be judged."""
-        drive = drive_with_map(trace, self._library)
+    def judge(self, traces: Sequence[Trace]) -> list[JudgedWindow | DriveLintError]:
+        """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's."""
         store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _KEPT])
         self._session.forget_judged()
+        found: dict[str, JudgedWindow | DriveLintError] = {}
+        drives: dict[str, Drive] = {}
+        for no, trace in enumerate(traces):
+            name = f"{no:06}"
+            try:
+                drive = drive_with_map(replace(trace, path=Path(name)), self._library)
+            except DriveLintError as error:
+                found[name] = error
+            else:
+                drives[name] = replace(drive, trace=renamed(drive.trace, name))
         refusals: list[RefusedLog] = []
-        judge_apart(self._session, [drive], refusals)
-        if refusals:
-            raise refusals[0].error
+        if drives:
+            judge_apart(self._session, list(drives.values()), refusals)
+        found |= {each.path.name: each.error for each in refusals}
+        tables = {
+            "findings": collect.findings(self._con),
+            "verdicts": collect.verdicts(self._con),
+            "near_misses": self._con.execute("FROM course WHERE finding_id IS NULL ORDER BY ALL").to_arrow_table(),
+        }
+        for name, drive in drives.items():
+            if name not in found:
+                log = drive.trace.tables["data_log"]
+                own = {key: rows.filter(pc.equal(rows["drive_id"], name)) for key, rows in tables.items()}
+                found[name] = JudgedWindow(log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **own)
         self._n_passes += 1
         if self._n_passes % PASSES_PER_RELEASE == 0:
             self._memory.release()
-        log = trace.tables["data_log"]
-        near = self._con.execute("FROM course WHERE finding_id IS NULL ORDER BY ALL").to_arrow_table()
-        return JudgedWindow(
-            log["t_start_ns"][0].as_py(),
-            log["t_end_ns"][0].as_py(),
-            collect.findings(self._con),
-            collect.verdicts(self._con),
-            near,
-        )
+        return [found[name] for name in sorted(found)]
 
     def __enter__(self) -> Self:
         return self

@@ -51,6 +51,17 @@ def over(each: Alarm, start_ns: int) -> Message:
     }
 
 
+def withdrawn(each: Alarm, now_ns: int, start_ns: int) -> Message:
+    """Return the message that what is known now does not show an alarm any more."""
+    return {
+        "type": "withdrawn",
+        "alarm": each.number,
+        "rule_id": each.row["rule_id"],
+        "t_s": _seconds(now_ns, start_ns),
+        "t_ns": now_ns,
+    }
+
+
 def halt(each: Alarm, now_ns: int, start_ns: int) -> Message:
     """Return the message that an alarm halts the drive."""
     return {

@@ -66,6 +66,10 @@ class Watch:
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
             raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
+        if options.every_s * S > options.window_s * S - WARM_UP_NS:
+            raise UsageError(
+                f"--every {options.every_s:g}: give at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
+            )
         self._options = options
         self._source = source
         self._emit = emit
@@ -135,23 +139,38 @@ class Watch:
         begun_s = time.perf_counter()
         try:
             trace = self._source.read_window(self._window.frames, self._folder, self._ingest)
-            judged = self._judge.judge(trace)
-        except DriveLintError as error:
-            if error.is_of_the_run or isinstance(error, UsageError):
-                raise
-            self.watched.n_unreadable += 1
-            if str(error) != self._doubt:
-                self._doubt = str(error)
-                self._emit(messages.note(f"not judged yet: {error}"))
+        except TraceError as error:
+            self._doubt_of(error)
+            return
+        judged = self._judge.judge([trace])[0]
+        if isinstance(judged, DriveLintError):
+            self._doubt_of(judged)
             return
         self._doubt = None
+        self._take(judged)
+        self.watched.n_windows += 1
+        self.watched.busy_s.append(time.perf_counter() - begun_s)
+        for listener in self._listeners:
+            listener(trace, judged)
+
+    def _doubt_of(self, error: DriveLintError) -> None:
+        """Say once why the log cannot be judged as far as it is known."""
+        self.watched.n_unreadable += 1
+        if str(error) != self._doubt:
+            self._doubt = str(error)
+            self._emit(messages.note(f"not judged yet: {error}"))
+
+    def _take(self, judged: JudgedWindow) -> None:
+        """Say what is new in a window."""
         if self._start_ns is None:
             self._start_ns = judged.t_start_ns
-        new, over = self.alarms.take(judged, self._judged_until_ns, is_whole=self._window.is_whole)
+        change = self.alarms.take(judged, self._judged_until_ns, is_whole=self._window.is_whole)
         self._judged_until_ns = judged.t_end_ns
-        for alarm in new:
+        for alarm in change.withdrawn:
+            self._emit(messages.withdrawn(alarm, judged.t_end_ns, self._start_ns))
+        for alarm in change.new:
             self._say(alarm, judged.t_end_ns, self._start_ns)
-        for alarm in over:
+        for alarm in change.over:
             self._emit(messages.over(alarm, self._start_ns))
         if self._warnings is not None:
             for message in self._warnings.take(judged, self._judge.rules, self._start_ns):
@@ -159,10 +178,6 @@ class Watch:
         if self._advice is not None:
             for message in self._advice.take(judged, self._start_ns):
                 self._emit(message)
-        self.watched.n_windows += 1
-        self.watched.busy_s.append(time.perf_counter() - begun_s)
-        for listener in self._listeners:
-            listener(trace, judged)
 
     def _say(self, alarm: Alarm, now_ns: int, start_ns: int) -> None:
         rule = self._judge.rules[alarm.row["rule_id"]]
@@ -215,11 +230,10 @@ def check_recording(
 
 def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
     """Say what the check of the whole log made of the alarms, then its verdicts. Return the counts in one sentence."""
-    verdicts, findings = result.verdicts.to_pylist(), result.findings.to_pylist()
-    missed = watch.alarms.hold_against(findings, verdicts)
+    missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.confirmed(alarm))
-    for row in verdicts:
+    for row in result.verdicts.to_pylist():
         if row["verdict"] != "not_applicable":
             emit(messages.verdict(row))
     status = exit_status(result)
@@ -227,12 +241,13 @@ def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> s
     counts = {
         "n_windows": watch.watched.n_windows,
         "n_alarms": len(alarms),
+        "n_alarms_withdrawn": sum(alarm.withdrawn_ns is not None for alarm in alarms),
         "n_alarms_that_are_findings": sum(bool(alarm.finding_ids) for alarm in alarms),
-        "n_findings": len(findings),
+        "n_findings": result.findings.num_rows,
         "n_findings_without_alarm": len(missed),
     }
     emit(messages.end(counts, int(status.code), status.why))
     return (
-        f"{plural(len(alarms), 'alarm')}, {counts['n_alarms_that_are_findings']} of them findings of the whole log; "
-        f"{len(missed)} of {plural(len(findings), 'finding')} without an alarm"
+        f"{plural(len(alarms), 'alarm')}, {counts['n_alarms_that_are_findings']} of them findings of the whole log, "
+        f"{counts['n_alarms_withdrawn']} withdrawn; {len(missed)} of {plural(result.findings.num_rows, 'finding')} without an alarm"
     )

@@ -1,0 +1,93 @@
+"""Judges every window of a log in one pass, as a watch would judge them one after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from drivelint import run
+from drivelint.errors import DriveLintError
+from drivelint.report.progress import Silent
+from drivelint.watch.alarms import Alarm, AlarmLog
+from drivelint.watch.judge import JudgedWindow, WindowJudge
+from drivelint.watch.options import WatchOptions
+from drivelint.watch.sources.replay import Replay
+from drivelint.watch.window import S, Window
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.drive.trace import Trace
+    from drivelint.result.text import Row
+
+
+@dataclass(frozen=True)
+class Watched:
+    """The alarms of a log, the findings of the whole log that no alarm is of, and the windows."""
+
+    alarms: list[Alarm]
+    missed: list[Row]
+    findings: list[Row]
+    windows: list[JudgedWindow | DriveLintError]
+
+    @property
+    def false(self) -> list[Alarm]:
+        """The alarms that stand, and are no findings of the whole log."""
+        return [alarm for alarm in self.alarms if not alarm.finding_ids and alarm.withdrawn_ns is None]
+
+    @property
+    def withdrawn(self) -> list[Alarm]:
+        """The alarms that were taken back while the log grew."""
+        return [alarm for alarm in self.alarms if alarm.withdrawn_ns is not None]
+
+
+def windows_of(options: WatchOptions, folder: Path) -> list[tuple[Trace, bool]]:
+    """Return each window of a replayed log as a trace, and whether it begins where the log does."""
+    every_ns = round(options.every_s * S)
+    source = Replay(folder / options.source, options.ingest_options(), speed=0, every_ns=every_ns)
+    window = Window(round(options.window_s * S))
+    found = []
+    while (frames := source.read(0)) is not None:
+        window.add(frames)
+        while window.advance(every_ns):
+            found.append((source.read_window(window.frames, folder, options.ingest_options()), window.is_whole))
+    return found
+
+
+def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
+    """Watch a log of a folder, with so many windows in a pass."""
+    made = windows_of(options, folder)
+    with WindowJudge(options) as judge:
+        judged: list[JudgedWindow | DriveLintError] = []
+        for at in range(0, len(made), at_once):
+            judged += judge.judge([trace for trace, _ in made[at : at + at_once]])
+        alarms = AlarmLog(judge.gaps_ns, judge.profiles)
+        until: int | None = None
+        for each, (_, is_whole) in zip(judged, made, strict=True):
+            if isinstance(each, JudgedWindow):
+                alarms.take(each, until, is_whole=is_whole)
+                until = each.t_end_ns
+    result = run.check(checked(options, folder), Silent())
+    findings = result.findings.to_pylist()
+    missed = alarms.hold_against(findings, result.verdicts)
+    return Watched(alarms.alarms, missed, findings, judged)
+
+
+def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
+    """Return the options with which `check` judges the same log."""
+    return run.CheckOptions(
+        traces=(str(folder / options.source),),
+        map=options.map,
+        rules=options.rules,
+        profiles=options.profiles,
+        mapping=options.mapping,
+        ego=options.ego,
+        env=options.env,
+        robustness=False,
+    )
+
+
+def told(rows: Sequence[Row]) -> list[tuple[str, str | None, str | None, float]]:
+    """Return rule, profile, object and start of findings, for a message."""
+    return [(r["rule_id"], r["profile"], r["object_id"], round(r["t_start_ns"] / S, 2)) for r in rows]
