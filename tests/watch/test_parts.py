@@ -1,0 +1,148 @@
+"""Commands at alarms, programs that are halted, margins that shrink."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pytest
+
+from drivelint import catalogue
+from drivelint.errors import UsageError
+from drivelint.watch import triggers
+from drivelint.watch.halting import Child
+from drivelint.watch.judge import JudgedWindow
+from drivelint.watch.shrinking import ShrinkingMargins
+from drivelint.watch.window import S
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+KNOWN = catalogue.load_rules(())
+RULE = "ukhc.r126.two-second"
+PYTHON = sys.executable
+
+
+def wait_for(file: Path) -> None:
+    for _ in range(200):
+        if file.exists():
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"{file} never came")
+
+
+def is_running(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").split(")")[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_a_child_that_does_not_want_to_end_is_killed_with_all_that_it_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("drivelint.watch.halting.GRACE_S", 0.5)
+    script = tmp_path / "stubborn.py"
+    script.write_text(
+        "import os, signal, sys, time\n"
+        "signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
+        "child = os.fork()\n"
+        "if child:\n"
+        f"    open({str(tmp_path / 'pids')!r} + '.new', 'w').write(f'{{os.getpid()}} {{child}}')\n"
+        f"    os.rename({str(tmp_path / 'pids')!r} + '.new', {str(tmp_path / 'pids')!r})\n"
+        "time.sleep(60)\n",
+        encoding="utf-8",
+    )
+    child = Child([PYTHON, str(script)])
+    wait_for(tmp_path / "pids")
+    assert child.code is None
+    child.end()
+    assert child.code == -9
+    pids = [int(pid) for pid in (tmp_path / "pids").read_text(encoding="utf-8").split()]
+    for _ in range(100):
+        if not any(map(is_running, pids)):
+            break
+        time.sleep(0.05)
+    assert [pid for pid in pids if is_running(pid)] == []
+
+
+def test_a_child_that_ends_by_itself_is_asked_only() -> None:
+    child = Child([PYTHON, "-c", "import time; time.sleep(60)"])
+    child.end()
+    assert child.code == -15
+
+
+def test_a_program_that_is_not_there() -> None:
+    with pytest.raises(UsageError, match="no-such-program: cannot be started"):
+        Child(["no-such-program"])
+
+
+def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
+    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
+    for _ in range(5):
+        assert trigger.pull({"rule_id": RULE}) is None
+    assert trigger.pull({"rule_id": "another"}) is None
+    assert (trigger.n_run, trigger.n_left_out) == (1, 4)
+    trigger.close()
+
+
+def test_a_command_gets_no_shell(tmp_path: Path) -> None:
+    (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
+    assert trigger.pull({"rule_id": RULE}) is None
+    trigger.close()
+    assert not (tmp_path / "b").exists()
+
+
+def test_a_command_that_is_not_there_is_told() -> None:
+    (trigger,) = triggers.parse([f"{RULE}=no-such-program"], KNOWN, KNOWN)
+    assert "no-such-program: cannot be started" in (trigger.pull({"rule_id": RULE}) or "")
+
+
+@pytest.mark.parametrize("text", ["true", "=true", f"{RULE}=", f"{RULE}='"])
+def test_a_trigger_that_cannot_be_read(text: str) -> None:
+    with pytest.raises(UsageError, match="--on"):
+        triggers.parse([text], KNOWN, KNOWN)
+
+
+def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
+    """Return a window at whose end a rule has these margins, one every 0.1 s."""
+    times = [round((end_s - 0.1 * k) * S) for k in reversed(range(len(margins)))]
+    row: dict[str, Any] = {
+        "rule_id": RULE,
+        "ego_id": "1",
+        "profile": None,
+        "object_id": "2",
+        "t_ns": times,
+        "margin": margins,
+    }
+    kinds = pa.schema([
+        ("rule_id", pa.string()), ("ego_id", pa.string()), ("profile", pa.string()), ("object_id", pa.string()),
+        ("t_ns", pa.list_(pa.int64())), ("margin", pa.list_(pa.float64())),
+    ])  # fmt: skip
+    return JudgedWindow(0, round(10.0 * S), pa.table({}), pa.table({}), pa.Table.from_pylist([row], schema=kinds))
+
+
+def test_a_margin_that_shrinks_is_told_once_with_the_time_that_is_left() -> None:
+    edge = KNOWN[RULE].near_margin
+    assert edge is not None
+    shrinking, falling = ShrinkingMargins(), [edge * share for share in (0.9, 0.8, 0.7, 0.6, 0.5)]
+    (message,) = shrinking.take(near(falling), KNOWN, 0)
+    assert message["shrinks_per_s"] == pytest.approx(edge)
+    assert message["to_violation_s"] == pytest.approx(0.5)
+    assert (message["t_s"], message["object_id"]) == (10.0, "2")
+    assert shrinking.take(near(falling), KNOWN, 0) == []
+    assert shrinking.take(near([edge * 2] * 5), KNOWN, 0) == []
+    assert len(shrinking.take(near(falling), KNOWN, 0)) == 1
+
+
+def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
+    edge = KNOWN[RULE].near_margin or 0.0
+    for window in (
+        near([edge * 0.5, edge * 0.6, edge * 0.7]),
+        near([edge * 0.6, edge * 0.5], end_s=8.0),
+        near([-1.0, -2.0]),
+    ):
+        assert ShrinkingMargins().take(window, KNOWN, 0) == []

@@ -1,0 +1,156 @@
+"""`drivelint watch` from end to end: what it prints, what it writes, where it halts."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint import run
+from drivelint.engine.interruption import Interruption
+from drivelint.errors import UsageError
+from drivelint.report.progress import Silent
+from drivelint.result.files import parquet_bytes
+from drivelint.watch.options import WatchOptions
+from drivelint.watch.run import Watch
+from drivelint.watch.sources.choice import open_source
+from tests.shared_data import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SCENES = ROOT / "fixtures" / "scenes"
+LOG, ROAD = SCENES / "collision-25mph.mcap", SCENES / "overtake-road.xodr"
+RULES = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")
+
+
+def drivelint(*words: str | Path) -> tuple[int, str, str]:
+    done = subprocess.run(
+        [sys.executable, "-m", "drivelint", *map(str, words)], capture_output=True, check=False, text=True
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def options(*rules: str) -> list[str | Path]:
+    return ["--map", ROAD, "--no-robustness", *(word for rule in rules for word in ("--rules", rule))]
+
+
+def watched(*words: str | Path, log: Path = LOG, code: int = 1, every: float = 1.0) -> list[dict[str, Any]]:
+    status, out, err = drivelint("watch", log, "--replay", "0", "--every", str(every), *words)
+    assert status == code, err
+    return [json.loads(line) for line in out.splitlines()]
+
+
+def of_type(messages: list[dict[str, Any]], kind: str) -> list[dict[str, Any]]:
+    return [each for each in messages if each["type"] == kind]
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, Any]], Path]:
+    """Return what is said, and the folder of a watch whose contact starts a command that writes what it is told."""
+    out = tmp_path_factory.mktemp("watched")
+    script = out.with_name("told.py")
+    script.write_text("import sys; open(sys.argv[1], 'w').write(sys.stdin.read())", encoding="utf-8")
+    on = f"ukhc.no-collision={sys.executable} {script} {out.with_name('told.json')}"
+    return watched(*options(*RULES), "--warn", "--advise", "--on", on, "--out", out, every=2.0), out
+
+
+def test_the_result_is_that_of_check(result: tuple[list[dict[str, Any]], Path]) -> None:
+    _, out = result
+    asked = run.CheckOptions((str(LOG),), map=ROAD, rules=RULES, robustness=False)
+    checked = run.check(asked, Silent())
+    for name, table in (("verdicts", "verdict"), ("findings", "finding"), ("drives", "drive"), ("rules", "rule")):
+        assert (out / f"{name}.parquet").read_bytes() == parquet_bytes(getattr(checked, name), table)
+
+
+def test_a_command_gets_the_alarm(result: tuple[list[dict[str, Any]], Path]) -> None:
+    told = json.loads(result[1].with_name("told.json").read_text(encoding="utf-8"))
+    assert told == next(each for each in of_type(result[0], "alarm") if each["rule_id"] == "ukhc.no-collision")
+
+
+def test_every_alarm_is_a_finding_and_every_finding_has_one(result: tuple[list[dict[str, Any]], Path]) -> None:
+    messages, _ = result
+    alarms, end = of_type(messages, "alarm"), messages[-1]
+    assert {each["rule_id"] for each in alarms} == set(RULES)
+    assert [each["alarm"] for each in of_type(messages, "checked")] == [each["alarm"] for each in alarms]
+    assert all(each["is_finding"] and each["finding_ids"] for each in of_type(messages, "checked"))
+    assert end["type"] == "end"
+    assert (end["n_alarms"], end["n_alarms_that_are_findings"], end["n_findings_without_alarm"]) == (3, 3, 0)
+    assert end["exit_code"] == 1
+
+
+def test_the_alarm_of_the_contact_is_said_with_the_next_window(result: tuple[list[dict[str, Any]], Path]) -> None:
+    (alarm,) = (each for each in of_type(result[0], "alarm") if each["rule_id"] == "ukhc.no-collision")
+    assert (alarm["t_s"], alarm["severity"], alarm["object_id"]) == (9.7, "critical", "3")
+    assert 0 <= alarm["latency_s"] <= 2.0
+    assert alarm["said_s"] == pytest.approx(alarm["t_s"] + alarm["latency_s"])
+
+
+def test_the_overtake_is_alarmed_before_the_contact(result: tuple[list[dict[str, Any]], Path]) -> None:
+    said = {(each["rule_id"], each["profile"]): each["said_s"] for each in of_type(result[0], "alarm")}
+    assert said["ukhc.r162.safe-distance-ahead", "nominal"] < 9.7 <= said["ukhc.no-collision", None]
+
+
+def test_the_verdicts_are_those_of_the_table(result: tuple[list[dict[str, Any]], Path]) -> None:
+    import pyarrow.parquet as pq
+
+    messages, out = result
+    rows = pq.read_table(out / "verdicts.parquet").to_pylist()
+    assert [{**each, "type": None} for each in of_type(messages, "verdict")] == [
+        {"type": None, **row} for row in rows if row["verdict"] != "not_applicable"
+    ]
+
+
+def test_advice_names_the_most_relaxed_profile_that_is_kept(result: tuple[list[dict[str, Any]], Path]) -> None:
+    (mode,) = of_type(result[0], "mode")
+    assert mode["mode"] is None  # no way of overtaking has so much room
+    assert mode["verdicts"] == {"relaxed": "fail", "nominal": "fail", "aggressive": "fail"}
+
+
+@pytest.mark.slow
+def test_advice_names_a_profile_that_has_room() -> None:
+    near = watched(*options("ukhc.r162.safe-distance-ahead"), "--advise", log=SCENES / "near-miss.mcap", every=5)
+    assert [each["mode"] for each in of_type(near, "mode")] == ["aggressive"]
+
+
+def test_it_halts_within_a_step_and_says_so(tmp_path: Path) -> None:
+    messages = watched(
+        *options("ukhc.no-collision"), "--halt-on", "critical", "--every", "0.5", "--out", tmp_path / "out"
+    )
+    (halt,) = of_type(messages, "halt")
+    assert (halt["t_s"], halt["after_s"]) == (10.0, pytest.approx(0.3))
+    assert len(of_type(messages, "alarm")) == 1
+    summary = (tmp_path / "out" / "summary.json").read_text(encoding="utf-8")
+    assert "halted at 10.00 s by an alarm of ukhc.no-collision at 9.70 s" in summary
+
+
+@pytest.mark.slow
+def test_nothing_halts_below_the_severity() -> None:
+    messages = watched(*options("ukhc.r126.ds-disjoint"), "--halt-on", "critical", code=0, every=5)
+    assert of_type(messages, "alarm")
+    assert not of_type(messages, "halt")
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"window_s": 12.0, "every_s": 8.0}, "--every 8: give at most 7 s, or a longer --window"),
+        ({"window_s": 9.0}, "--window 9: give more than 10 s"),
+        ({"on": ("ukhc.no-collision",)}, "write SEL=COMMAND"),
+        ({"on": ("stvo.rg1=true",)}, "none of the selected rules is meant"),
+        ({"command": ("true",)}, "there is no program to start"),
+    ],
+)
+def test_mistakes(asked: dict[str, Any], said: str) -> None:
+    asked = {"source": str(LOG), "map": ROAD, "rules": RULES, "replay": 0.0, **asked}
+    wanted = WatchOptions(**asked)
+    with pytest.raises(UsageError, match=said), open_source(wanted) as source:
+        Watch(wanted, source, print, Interruption())
+
+
+def test_a_mistake_is_one_line() -> None:
+    status, out, err = drivelint("watch", LOG, "--replay", "0", *options("no-such-rule"))
+    assert (status, out, len(err.splitlines())) == (2, "", 1)
