@@ -1,4 +1,4 @@
-"""No dependency has a licence that would bind drivelint's users beyond MPL or LGPL: all that pip would install, extras included."""
+"""No dependency has a licence that would bind drivelint's users beyond MPL, EPL or LGPL: all that pip would install, extras included."""
 
 from __future__ import annotations
 
@@ -25,8 +25,14 @@ def test_others_would_be_refused() -> None:
         "d": "",
         "e": "Proprietary",
         "f": "MIT AND GPL-2.0-only",
+        "j": "AGPL-3.0-only OR GPL-2.0-or-later",
     }
-    good = {"g": "GNU Library or Lesser General Public License (LGPL)", "h": "LGPL-2.1-only", "i": "MPL-2.0"}
+    good = {
+        "g": "GNU Library or Lesser General Public License (LGPL)",
+        "h": "LGPL-2.1-only",
+        "i": "MPL-2.0",
+        "k": "EPL-2.0 OR GPL-2.0-or-later",
+    }
     assert refused({**bad, **good}).keys() == bad.keys()
 
 

@@ -1,0 +1,171 @@
+"""A simulation in SUMO, stepped from here: it waits while a window is judged.
+
+The recording is SUMO's floating car data, with what its reader looks for beside it: the sizes of the vehicles, and the states of lights.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from html import unescape
+from itertools import count
+from typing import TYPE_CHECKING, BinaryIO, Final
+from xml.sax.saxutils import quoteattr
+
+from drivelint.errors import TraceError
+from drivelint.formats import safe_xml
+from drivelint.phrases import listed
+from drivelint.watch.source import Frame, WrittenWindows
+from drivelint.watch.sources.sumo_process import Step, SumoProcess
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from lxml import etree
+
+    from drivelint.watch.sources.sumo_process import VehicleType
+
+LEAST_PRECISION: Final = 4
+"""Decimals that are recorded, unless the configuration asks for more."""
+DEFAULT_SPAN_S: Final = 0.5
+_BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
+_END: Final = b"</fcd-export>\n"
+_LIGHTS_BEGIN: Final = b"<tlsStates>\n"
+_LIGHTS_END: Final = b"</tlsStates>\n"
+_TYPE: Final = re.compile(rb'\stype="([^"]*)"')
+_LEAVES_OUT: Final = (
+    "person-fcd-output", "fcd-output.filter-edges.input-file", "fcd-output.filter-shapes", "device.fcd.probability",
+    "device.fcd.explicit", "device.fcd.radius", "person-device.fcd.probability", "person-device.fcd.explicit",
+)  # fmt: skip
+"""Options of a configuration after which SUMO does not write everybody."""
+
+
+def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSimulation:  # noqa: A001
+    """Start the simulation of a `*.sumocfg`; its recording goes into a folder of its own in `folder`.
+
+    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message where it cannot begin.
+    """
+    from pathlib import Path
+
+    return SumoSimulation(Path(name), folder, span_s=span_s, until_s=until_s)
+
+
+class SumoSimulation(WrittenWindows):
+    """Advances a simulation by `span_s` each time it is read, until SUMO's clock shows `until_s` or its own end."""
+
+    window_name = "window.fcd.xml"
+    in_step = True
+
+    def __init__(self, config: Path, folder: Path, *, span_s: float, until_s: float | None) -> None:
+        options = _options(config)
+        found = [name for name in _LEAVES_OUT if any(each.tag == name for each in options.iter())]
+        self._notes = (
+            [f"{config.name}: {listed(found)}: whom SUMO does not write after that is not judged"] if found else []
+        )
+        base = config.stem.replace(".", "-")  # the reader knows the lights' file by the part before the first dot
+        own = next(each for n in count(1) if not (each := folder / (base if n == 1 else f"{base}-{n}")).exists())
+        self.recording = own / f"{base}.fcd.xml"
+        self._types: dict[bytes, VehicleType | None] = {}
+        self._files: dict[Path, tuple[BinaryIO, bytes]] = {}
+        self._sumo = SumoProcess(config, precision=max(LEAST_PRECISION, _precision(options)), until_s=until_s)
+        self._is_over = False
+        self._n_steps = max(1, round(span_s / self._sumo.step_s))
+
+    def read(self, timeout_s: float) -> Sequence[Frame] | None:
+        """Simulate the next span, a frame for each step; less of it where a step takes longer than `timeout_s`."""
+        if self._is_over:
+            return None
+        until = time.monotonic() + timeout_s
+        frames: list[Frame] = []
+        while len(frames) < self._n_steps and not (frames and time.monotonic() > until):
+            if self._sumo.is_over():
+                self._is_over = True
+                break
+            step = self._sumo.step()
+            self._record(step)
+            frames.append(
+                Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
+            )
+        return frames or None
+
+    def notes(self) -> Sequence[str]:
+        """Return what the configuration leaves out of the recording, once."""
+        found, self._notes = self._notes, []
+        return found
+
+    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+        """Write these steps as floating car data, and the types and lights beside it."""
+        steps = [frame.data for frame in frames if isinstance(frame.data, Step)]
+        path.write_bytes(b"".join([_BEGIN, *(step.xml for step in steps), _END]))
+        lights = _beside(path, "tls")
+        if any(step.lights for step in steps):
+            lights.write_bytes(b"".join([_LIGHTS_BEGIN, *map(_lights, steps), _LIGHTS_END]))
+        else:
+            lights.unlink(missing_ok=True)
+        _beside(path, "vtypes").write_bytes(self._vtypes(self._types))
+
+    def halt(self) -> None:
+        """End the simulation."""
+        self._is_over = True
+        self._sumo.end()
+
+    def close(self) -> None:
+        """End the simulation and the recording."""
+        self.halt()
+        for file, end in self._files.values():
+            if not file.closed:
+                file.write(end)
+                file.close()
+
+    def _record(self, step: Step) -> None:
+        """Write a step through, so that nothing of it is lost with us."""
+        self._append(self.recording, self._sumo.head, step.xml, _END)
+        if step.lights:
+            self._append(_beside(self.recording, "tls"), _LIGHTS_BEGIN, _lights(step), _LIGHTS_END)
+        new = set(_TYPE.findall(step.xml)) - self._types.keys()
+        if new:
+            # while somebody of it is there: types of single vehicles end with them
+            self._types |= {name: self._sumo.vehicle_type(unescape(name.decode())) for name in sorted(new)}
+            _beside(self.recording, "vtypes").write_bytes(self._vtypes(self._types))
+
+    def _append(self, path: Path, begin: bytes, content: bytes, end: bytes) -> None:
+        if path not in self._files:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._files[path] = path.open("xb", buffering=0), end
+            self._files[path][0].write(begin)
+        self._files[path][0].write(content)
+
+    @staticmethod
+    def _vtypes(types: dict[bytes, VehicleType | None]) -> bytes:
+        known = [
+            f'<vType id="{name.decode()}" vClass="{kind.vehicle_class}" length="{kind.length_m!r}" width="{kind.width_m!r}"/>\n'
+            for name, kind in sorted(types.items())
+            if kind is not None
+        ]
+        return "".join(["<routes>\n", *known, "</routes>\n"]).encode()
+
+
+def _beside(log: Path, what: str) -> Path:
+    return log.with_name(f"{log.name.partition('.')[0]}.{what}.xml")
+
+
+def _lights(step: Step) -> bytes:
+    """Return the states of all lights at a step: every step has them, as where SUMO saves them all the time."""
+    return "".join(
+        f'<tlsState time="{step.time}" id={quoteattr(light)} state="{state}"/>\n'
+        for light, state in step.lights.items()
+    ).encode()
+
+
+def _options(config: Path) -> etree._Element:
+    try:
+        content = config.read_bytes()
+    except OSError as error:
+        raise TraceError(f"{config}: cannot be read: {error.strerror or error}") from error
+    return safe_xml.parse(content, f"{config}", TraceError)
+
+
+def _precision(options: etree._Element) -> int:
+    said: Iterable[str | None] = (each.get("value", each.get("v")) for each in options.iter("precision"))
+    return max((int(text) for text in said if text is not None and text.strip().isdecimal()), default=0)

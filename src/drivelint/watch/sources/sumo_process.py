@@ -1,0 +1,225 @@
+"""SUMO as a child process: started, stepped through TraCI, ended.
+
+What is in a step is SUMO's own floating car data. Vehicles are not asked one by one, which would be slower and rounded in another way.
+It is no library in this process: libsumo brings an Arrow of its own, which clashes with pyarrow's.
+Source: SUMO's documentation of "TraCI/Protocol" and "Simulation/Output/FCDOutput".
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from contextlib import contextmanager, suppress
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.errors import TraceError, UsageError
+from drivelint.phrases import one_line
+from drivelint.watch.sources.sumo_steps import HOST, StepReader
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+GRACE_S: Final = 5.0
+"""So long SUMO may take to end by itself, and to write its other outputs."""
+CONNECT_S: Final = 30.0
+_STEP_S: Final = 10.0
+_RETRY_S: Final = 0.02
+_STARTS: Final = 3
+_IN_USE: Final = "bind"
+"""In SUMO's message where somebody else took the port in the meantime."""
+_NO_SUMO: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
+_OPTIONS: Final = (
+    ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration"),
+    ("fcd-output.geo", "false"), ("fcd-output.utm", "false"), ("fcd-output.skip-empty", "false"),
+    ("device.fcd.period", "0"), ("device.fcd.begin", "-1"), ("human-readable-time", "false"), ("no-step-log", "true"),
+)  # fmt: skip
+
+
+class Step(NamedTuple):
+    """One step of the simulation: its time as SUMO writes it, its `timestep` element, and the state of each traffic light."""
+
+    time: str
+    xml: bytes
+    lights: dict[str, str]
+
+
+class VehicleType(NamedTuple):
+    """What SUMO knows of a vType."""
+
+    vehicle_class: str
+    length_m: float
+    width_m: float
+
+
+def program() -> tuple[str, str | None]:
+    """Return SUMO's program and, where it is known, its home. Errors: `UsageError` where there is none.
+
+    The program inside the package is taken: the script of that name starts it as a child that would outlive the script.
+    """
+    homes = [os.environ.get("SUMO_HOME")]
+    with suppress(ImportError):
+        import sumo
+
+        homes.append(sumo.SUMO_HOME)
+    for home in homes:
+        if home and (found := shutil.which("sumo", path=str(Path(home) / "bin"))):
+            return found, home
+    if found := shutil.which("sumo"):
+        return found, None
+    raise UsageError(f"{_NO_SUMO}, or set SUMO_HOME")
+
+
+class SumoProcess:
+    """A simulation that waits between its steps, which are `step_s` apart, until `until_s` of its own clock or where SUMO would end.
+
+    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message where it cannot go on.
+    """
+
+    def __init__(self, config: Path, *, precision: int, until_s: float | None) -> None:
+        try:
+            from traci import constants, exceptions
+        except ImportError as error:
+            raise UsageError(_NO_SUMO) from error
+        self._config = config
+        self._refusal = exceptions.TraCIException
+        self._light_state = constants.TL_RED_YELLOW_GREEN_STATE
+        self._broken = (exceptions.FatalTraCIError, exceptions.TraCIException, OSError)
+        self._messages = tempfile.TemporaryFile()  # noqa: SIM115 - closed in end()
+        self._steps = StepReader()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._con: Any = None
+        self._is_asked = False
+        """It was asked for something that it has not answered yet."""
+        try:
+            self._begin(precision)
+            with self._asked() as con:
+                self.step_s = float(con.simulation.getDeltaT())
+                end_s = float(con.simulation.getEndTime())  # less than 0: until everybody has arrived
+                for light in con.trafficlight.getIDList():
+                    con.trafficlight.subscribe(light, (self._light_state,))
+        except BaseException:
+            self.end()
+            raise
+        self._ends_empty = end_s < 0
+        self._end_s = min(each for each in (end_s if end_s >= 0 else inf, until_s) if each is not None)
+
+    @property
+    def head(self) -> bytes:
+        """What SUMO writes before the first step."""
+        return self._steps.head
+
+    def step(self) -> Step:
+        """Simulate one step."""
+        with self._asked() as con:
+            con.simulationStep()
+            lights = con.trafficlight.getAllSubscriptionResults()
+        if (found := self._steps.take(_STEP_S)) is None:
+            raise TraceError(
+                f"{self._config}: SUMO wrote no floating car data of a step: leave that to SUMO's defaults"
+            )
+        return Step(*found, {light: states[self._light_state] for light, states in sorted(lights.items())})
+
+    def is_over(self) -> bool:
+        """Say whether it is at its end."""
+        with self._asked() as con:
+            if self._ends_empty and con.simulation.getMinExpectedNumber() == 0:
+                return True
+            return float(con.simulation.getTime()) >= self._end_s - self.step_s / 2
+
+    def vehicle_type(self, name: str) -> VehicleType | None:
+        """Return what is known of a vType; None: SUMO does not know it any more."""
+        # one that was changed for a single vehicle is named after the one that it was
+        names = dict.fromkeys((name, name.partition("@")[0]))
+        with self._asked() as con:
+            known = con.vehicletype
+            for each in names:
+                with suppress(self._refusal):
+                    return VehicleType(known.getVehicleClass(each), known.getLength(each), known.getWidth(each))
+        return None
+
+    def end(self) -> None:
+        """End SUMO: at its own pace if it waits, else at once. May be called twice."""
+        con, self._con = self._con, None
+        if self._process is not None:
+            if con is not None and not self._is_asked:
+                with suppress(*self._broken):
+                    con.close(wait=False)
+                with suppress(subprocess.TimeoutExpired):
+                    self._process.wait(GRACE_S)
+            self._kill(self._process)
+        self._steps.close()
+        self._messages.close()
+
+    @staticmethod
+    def _kill(process: subprocess.Popen[bytes]) -> None:
+        if process.poll() is None:
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+    def _begin(self, precision: int) -> None:
+        """Start SUMO and connect to it; again at another port where somebody else took the first."""
+        found, home = program()
+        environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
+        for start in range(_STARTS):
+            with socket.create_server((HOST, 0)) as free:
+                port = free.getsockname()[1]
+            options = [*_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
+            command = [found, "-c", str(self._config), "--remote-port", str(port)]
+            command += [part for name, value in options for part in (f"--{name}", value)]
+            # in a session of its own: Ctrl-C is for us, who then end it
+            self._process = subprocess.Popen(  # noqa: S603 - the program that was asked for
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._messages,
+                start_new_session=True, env=environment,
+            )  # fmt: skip
+            if self._connect(port, self._process):
+                return
+            if _IN_USE not in self._said() or start == _STARTS - 1:
+                raise self._failed()
+
+    def _connect(self, port: int, process: subprocess.Popen[bytes]) -> bool:
+        """Connect as soon as SUMO listens; false: it ended before. traci's own function writes to stdout while it waits."""
+        from traci.connection import Connection
+
+        until = time.monotonic() + CONNECT_S
+        while time.monotonic() < until and process.poll() is None:
+            try:
+                self._con = Connection(HOST, port, process, None, True)
+            except OSError:
+                time.sleep(_RETRY_S)
+            else:
+                return True
+        self._kill(process)
+        return False
+
+    @contextmanager
+    def _asked(self) -> Iterator[Any]:
+        """Give the connection. Errors: `TraceError` where it breaks."""
+        self._is_asked = True
+        try:
+            yield self._con
+        except self._broken as error:
+            raise self._failed() from error
+        self._is_asked = False
+
+    def _failed(self) -> TraceError:
+        """Return why SUMO ended, in its own words."""
+        code: int | None = None
+        if self._process is not None:
+            with suppress(subprocess.TimeoutExpired):
+                code = self._process.wait(GRACE_S)
+        lines = [line for line in self._said().splitlines() if not line.startswith(("Warning:", "Quitting"))]
+        first = next((n for n, line in enumerate(lines) if line.startswith("Error:")), 0)
+        told = one_line("\n".join(line.removeprefix("Error:").strip() for line in lines[first:]))
+        return TraceError(f"{self._config}: SUMO: {told or f'it ended with exit code {code}'}")
+
+    def _said(self) -> str:
+        self._messages.seek(0)
+        return self._messages.read().decode("utf-8", "replace")

@@ -1,0 +1,82 @@
+"""The steps of a simulation as SUMO writes them into a socket, one by one.
+
+Into a socket SUMO writes every step at once; into a file or a pipe it writes a block of some steps at a time.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+import threading
+from collections import deque
+from contextlib import suppress
+from typing import Final
+
+HOST: Final = "127.0.0.1"
+_ACCEPT_S: Final = 0.2
+_BLOCK: Final = 1 << 16
+_STEP: Final = re.compile(rb'[ \t]*<timestep time="([^"]*)" *(?:/>|>.*?</timestep>)[ \t]*\r?\n?', re.DOTALL)
+_BEGIN: Final = re.compile(rb"<fcd-export[^>]*>[ \t]*\r?\n?")
+
+
+class StepReader:
+    """Listens at `port`, and keeps what came until it is asked for.
+
+    A thread reads: SUMO answers that a step is done only after it has written it, which it cannot while the socket is full.
+    """
+
+    def __init__(self) -> None:
+        self._server = socket.create_server((HOST, 0))
+        self._server.settimeout(_ACCEPT_S)
+        self.port: int = self._server.getsockname()[1]
+        self.head = b""
+        """All that stands before the first step."""
+        self._found: deque[tuple[str, bytes]] = deque()
+        self._news = threading.Condition()
+        self._ended = False
+        self._thread = threading.Thread(target=self._listen, name="drivelint-sumo", daemon=True)
+        self._thread.start()
+
+    def take(self, timeout_s: float) -> tuple[str, bytes] | None:
+        """Return the next step: its time as SUMO writes it, and its element; None: none came in that time."""
+        with self._news:
+            self._news.wait_for(lambda: self._found or self._ended, timeout_s)
+            return self._found.popleft() if self._found else None
+
+    def close(self) -> None:
+        """Listen no more. What SUMO still writes is read until it ends, which it must have been told before."""
+        self._ended = True
+        self._thread.join()
+
+    def _listen(self) -> None:
+        with self._server:
+            while not self._ended:
+                with suppress(TimeoutError):
+                    connection, _ = self._server.accept()
+                    break
+            else:
+                return
+        with connection, suppress(OSError):
+            connection.settimeout(None)
+            self._read(connection)
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
+
+    def _read(self, connection: socket.socket) -> None:
+        waiting = bytearray()
+        while block := connection.recv(_BLOCK):
+            waiting += block
+            if not self.head:
+                begin = _BEGIN.search(waiting)
+                if begin is None:
+                    continue
+                self.head = bytes(waiting[: begin.end()])
+                del waiting[: begin.end()]
+            at = 0
+            while step := _STEP.match(waiting, at):
+                with self._news:
+                    self._found.append((step[1].decode(), bytes(step[0])))
+                    self._news.notify_all()
+                at = step.end()
+            del waiting[:at]
