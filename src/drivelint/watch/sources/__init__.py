@@ -19,10 +19,11 @@ UDP_PORT: Final = 48198
 
 
 class SourceOptions(NamedTuple):
-    """`folder`: where a recording is written, if what is watched is none itself. `idle_s`: see `open_source`."""
+    """`folder`: where a recording is written, if what is watched is none itself. `idle_s`, `every_s`: see `open_source`."""
 
     folder: Path
     idle_s: float | None
+    every_s: float
 
 
 class Opener(NamedTuple):
@@ -37,15 +38,15 @@ class Opener(NamedTuple):
         return fnmatchcase(name.lower(), self.pattern)
 
 
-def open_source(name: str, folder: Path, *, idle_s: float | None) -> Source:
+def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float = 0.5) -> Source:
     """Open the source of this name.
 
     `folder`: where its recording is written, unless it is a file that grows and so is the recording itself. `idle_s`: it ends when nothing
-    has come for so many seconds; None: it does not. Errors: `UsageError` for a name of no known kind, or one that lacks its port.
+    has come for so many seconds; None: it does not. `every_s`: what a simulation is advanced by at a time. Errors: `UsageError` for a name of no known kind, or one that lacks its port.
     """
     for opener in OPENERS:
         if opener.accepts(name):
-            return opener.open(name, SourceOptions(folder, idle_s))
+            return opener.open(name, SourceOptions(folder, idle_s, every_s))
     known = ", ".join(opener.told for opener in OPENERS)
     raise UsageError(f"{name}: no source of this kind is known: give {known}")
 
@@ -83,6 +84,12 @@ def _udp(name: str, options: SourceOptions) -> Source:
     return osi.open_udp(*_address(name, UDP_PORT), options.folder, idle_s=options.idle_s)
 
 
+def _sumo(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import sumo
+
+    return sumo.open(name, options.folder, span_s=options.every_s)
+
+
 def _address(name: str, usual_port: int | None) -> tuple[str, int]:
     """Return host ("": none is named) and port. Errors: `UsageError`."""
     try:
@@ -103,6 +110,7 @@ OPENERS: Final[tuple[Opener, ...]] = (
     Opener("udp://*", "udp://HOST:PORT (OSI of esmini)", _udp),
     Opener("*.mcap", "an .mcap file that grows", _mcap),
     Opener("*.osi", "an .osi file that grows", _osi_file),
+    Opener("*.sumocfg", "a .sumocfg (SUMO is started and stepped)", _sumo),
     Opener("-", "- (OSI on standard input)", _standard_input),
 )
 """The first that accepts a name opens it. Each imports its module when it is asked, so that `drivelint --help` stays fast."""

@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.watch import sources
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S
 
@@ -32,11 +33,11 @@ def open_source(options: WatchOptions) -> Iterator[Source]:
             source.close()
 
 
-def _opened(options: WatchOptions, folder: Path) -> Source:  # noqa: ARG001 - sources that record follow
-    if options.replay is not None:
-        if options.command:
-            raise UsageError("--replay watches a finished log: there is no program to start")
-        return Replay(
-            Path(options.source), options.ingest_options(), speed=options.replay, every_ns=round(options.every_s * S)
-        )
-    raise UsageError(f"{options.source!r}: no source that can be watched")
+def _opened(options: WatchOptions, folder: Path) -> Source:
+    if options.replay is None:
+        return sources.open_source(options.source, folder, idle_s=options.idle_s, every_s=options.every_s)
+    if options.command:
+        raise UsageError("--replay watches a finished log: there is no program to start")
+    return Replay(
+        Path(options.source), options.ingest_options(), speed=options.replay, every_ns=round(options.every_s * S)
+    )
