@@ -42,7 +42,8 @@ def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float
     """Open the source of this name.
 
     `folder`: where its recording is written, unless it is a file that grows and so is the recording itself. `idle_s`: it ends when nothing
-    has come for so many seconds; None: it does not. `every_s`: what a simulation is advanced by at a time. Errors: `UsageError` for a name of no known kind, or one that lacks its port.
+    has come for so many seconds; None: it does not. `every_s`: what a simulation is advanced by at a time.
+    Errors: `UsageError` for a name of no known kind, or one that lacks its port.
     """
     for opener in OPENERS:
         if opener.accepts(name):
