@@ -101,7 +101,12 @@ def test_channels_that_nobody_reads_are_told(tmp_path: Path) -> None:
     channel = foxglove.Channel("/camera", schema={"type": "object"}, context=context)
     source = foxglove_ws.open(f"ws://127.0.0.1:{server.port}", tmp_path)
     found: list[str] = []
-    until(lambda: bool(found.extend(source.notes()) or found))
+
+    def told() -> bool:
+        found.extend(source.notes())
+        return bool(found)
+
+    until(told)
     assert "/camera" in found[0]
     assert not channel.has_sinks()
     server.stop()
@@ -126,9 +131,12 @@ def test_no_server_is_one_line(tmp_path: Path) -> None:
 
 
 def test_another_websocket_server_is_refused(tmp_path: Path) -> None:
-    from websockets.sync.server import serve
+    from websockets.sync.server import ServerConnection, serve
 
-    with serve(lambda ws: ws.recv(), "127.0.0.1", 0) as other:
+    def silent(connection: ServerConnection) -> None:
+        connection.recv()
+
+    with serve(silent, "127.0.0.1", 0) as other:
         thread = threading.Thread(target=other.serve_forever)
         thread.start()
         uri = f"ws://127.0.0.1:{other.socket.getsockname()[1]}"

@@ -97,7 +97,8 @@ class FoxgloveClient:
     def _take(self, data: str | bytes) -> None:
         if isinstance(data, bytes):
             if len(data) >= _MESSAGE.size and data[0] == _MESSAGE_DATA:
-                self._message(*_MESSAGE.unpack_from(data)[1:], data[_MESSAGE.size :])
+                _, subscription, log_ns = _MESSAGE.unpack_from(data)
+                self._message(subscription, log_ns, data[_MESSAGE.size :])
             return
         try:
             said = json.loads(data)
