@@ -1,0 +1,163 @@
+"""The watch as it goes, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
+
+Topics and messages are those of annotated logs where these have them, so that the same layout shows both.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.annotate import actor_boxes, draw, measures, result_messages
+from drivelint.annotate.clock import LogClock, of_trace
+from drivelint.annotate.tracks import tracks
+from drivelint.errors import UsageError
+from drivelint.formats.foxglove import messages as foxglove_messages
+from drivelint.phrases import one_line
+from drivelint.result.text import finite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    import foxglove
+    from mcap.records import Schema
+
+    from drivelint.annotate.actor_boxes import RecordChunk
+    from drivelint.drive.trace import Trace
+
+PREFIX: Final = "/drivelint"
+ALARMS: Final = f"{PREFIX}/alarms"
+_ALARM: Final = {
+    "type": ("string", "alarm"),
+    "alarm": ("integer", "its number in this watch"),
+    "title": ("string", "what the rule demands"),
+    "t_s": ("number", "when the rule was broken, seconds since the log's first step"),
+    "said_s": ("number", "when it was said"),
+    "latency_s": ("number", "seconds between both on the watch's own clock"),
+    "status": ("string", "that of the rule: experimental, test or stable"),
+}
+"""What an alarm says beside the columns of a finding."""
+
+
+class LiveServer:
+    """Serves viewers at `ws://host:port`. Port 0: any that is free.
+
+    Errors: `UsageError` where the extra is missing, or where nothing can be served there.
+    """
+
+    def __init__(self, host: str, port: int) -> None:
+        try:
+            import foxglove
+        except ImportError as error:
+            raise UsageError(
+                f"--serve {host}:{port}: {error.name} is not installed: pip install 'drivelint[live]'"
+            ) from error
+        self._foxglove = foxglove
+        self._context = foxglove.Context()
+        try:
+            self._server = foxglove.start_server(name="drivelint watch", host=host, port=port, context=self._context)
+        except (RuntimeError, OSError, ValueError) as error:
+            raise UsageError(f"--serve {host}:{port}: nothing can be served there: {one_line(str(error))}") from error
+        self._channels: dict[str, foxglove.Channel] = {}
+        self._clock: LogClock | None = None
+        self._is_closed = False
+        scene, transform = foxglove_messages.schema("SceneUpdate"), foxglove_messages.schema("FrameTransform")
+        # announced at once, so that a viewer can choose them before anything happens
+        self._scene = self._channel(f"{PREFIX}/scene", "protobuf", scene)
+        self._transform = self._channel(f"{PREFIX}/tf", "protobuf", transform)
+        self._alarms = self._channel(ALARMS, "json", alarm_schema())
+
+    @property
+    def port(self) -> int:
+        """The port that is served."""
+        return int(self._server.port)
+
+    def publish_scene(self, trace_window: Trace) -> None:
+        """Show the boxes of all who are there at the newest step of a window, instead of those shown before."""
+        states = trace_window.tables["actor_state"]
+        if not len(states):
+            return
+        newest = pc.max(states["t_ns"])
+        there = tracks({**trace_window.tables, "actor_state": states.filter(pc.equal(states["t_ns"], newest))})
+        rows, _ = actor_boxes.select_boxes(there)
+        clock = self._times(newest.as_py())
+        at = clock.at(newest.as_py())
+        boxes = b"".join(_contents(actor_boxes.messages(there, rows, clock, 0)))
+        self._scene.log(draw.deletion(at) + boxes, log_time=at)
+        for content in _contents(actor_boxes.ego_transforms(there, rows, clock, 0)):
+            self._transform.log(content, log_time=at)
+
+    def publish_alarm(self, message: Mapping[str, Any]) -> None:
+        """Publish an alarm of `drivelint.watch.messages`, at the time at which its rule was broken."""
+        self._log(self._alarms, message, message["t_start_ns"])
+
+    def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Publish judged steps, each on the topic of its rule; `rows` have the columns of `margins.parquet`."""
+        for row in rows:
+            topic = f"{PREFIX}/{measures.margin_topic(row['rule_id'])}"
+            channel = self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
+            self._log(channel, {name: value for name, value in row.items() if name != "drive_id"}, row["t_ns"])
+
+    def close(self) -> None:
+        """Send viewers away. May be called twice."""
+        if not self._is_closed:
+            self._is_closed = True
+            self._server.stop()
+
+    def _channel(self, topic: str, encoding: str, schema: Schema) -> foxglove.Channel:
+        own = self._foxglove.Schema(name=schema.name, encoding=schema.encoding, data=schema.data)
+        made = self._foxglove.Channel(topic, message_encoding=encoding, schema=own, context=self._context)
+        self._channels[topic] = made
+        return made
+
+    def _log(self, channel: foxglove.Channel, message: Mapping[str, Any], t_ns: int) -> None:
+        # what is not known is left out: viewers refuse a schema that allows null
+        known = {name: value for name, value in message.items() if finite(value) is not None}
+        channel.log(msgspec.json.encode(known), log_time=self._times(t_ns).at(t_ns))
+
+    def _times(self, t_ns: int) -> LogClock:
+        """Return the clock of the log times: one for the whole watch, which no time before 0 can have begun."""
+        if self._clock is None or t_ns + self._clock.shift_ns < 0:
+            self._clock = of_trace(t_ns)
+        return self._clock
+
+
+def newest_margins(courses: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the newest judged step of each row of `course`, as a row of `margins.parquet`."""
+    found = []
+    for row in courses:
+        steps = row["t_ns"]
+        if not steps:
+            continue
+        last = int(np.argmax(steps))
+        of_step = {name: row[name][last] for name in ("t_ns", "observed", "required", "margin", "holds")}
+        found.append({**{name: row[name] for name in ("rule_id", "profile", "ego_id", "object_id")}, **of_step})
+    return found
+
+
+def alarm_schema() -> Schema:
+    """Return the schema of alarms: the columns of a finding that they have, and their own."""
+    finding = result_messages.schema("finding")
+    content = json.loads(finding.data)
+    own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM.items()}
+    content |= {
+        "title": "drivelint.Alarm",
+        "description": "A rule fails for the first time in a watched drive. Left out: what is not known.",
+        "properties": {**own, **content["properties"]},
+        "required": ["alarm", "rule_id", "t_start_ns"],
+        "additionalProperties": True,
+    }
+    return type(finding)(id=0, name="drivelint.Alarm", encoding=finding.encoding, data=json.dumps(content).encode())
+
+
+def _contents(chunks: Iterable[RecordChunk]) -> Iterator[bytes]:
+    """Yield the messages of chunks of which each holds one record: without its head."""
+    none = np.zeros(0, np.uint64)
+    head = actor_boxes.message_headers(0, none, none.astype(np.int64), 0).shape[1]
+    for records, index in chunks:
+        assert len(index) == 1  # noqa: S101 - they are of one step
+        yield bytes(records[head:])

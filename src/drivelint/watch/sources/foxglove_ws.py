@@ -1,0 +1,92 @@
+"""The messages of a Foxglove WebSocket server, recorded as MCAP."""
+
+from __future__ import annotations
+
+import re
+import time
+from itertools import count
+from typing import TYPE_CHECKING
+
+from drivelint.errors import TraceError
+from drivelint.watch.source import WrittenWindows
+from drivelint.watch.sources.foxglove_client import FoxgloveClient
+from drivelint.watch.sources.mcap_file import McapFile
+from drivelint.watch.sources.mcap_recording import McapRecording
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.watch.source import Frame
+    from drivelint.watch.sources.mcap_recording import LiveMessage
+
+
+def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWebSocket:  # noqa: A001
+    """Connect to `ws://HOST:PORT` or `wss://...`; its recording goes into `folder`.
+
+    Errors: `UsageError` for an address that is none or where the extra is missing, `TraceError` where no such server answers.
+    """
+    return FoxgloveWebSocket(name, folder, idle_s=idle_s)
+
+
+class FoxgloveWebSocket(WrittenWindows):
+    """A source of the messages that our MCAP readers read. Ends with the server, or where nothing came for `idle_s`.
+
+    Frames and windows are those of the recording: an MCAP file that grows.
+    """
+
+    window_name = "window.mcap"
+    in_step = False
+
+    def __init__(self, uri: str, folder: Path, *, idle_s: float | None) -> None:
+        self._uri = uri
+        self._idle_s = idle_s
+        self._client = FoxgloveClient(uri)
+        base = re.sub(r"[^\w.-]+", "-", uri.partition("://")[2]).strip("-.") or "live"
+        names = (base if n == 1 else f"{base}_{n}" for n in count(1))
+        self.recording = next(each for name in names if not (each := folder / f"{name}.mcap").exists())
+        self._writer: McapRecording | None = None
+        self._reader = McapFile(self.recording, idle_s=None)
+        self._came_s = time.monotonic()
+        self._closed = False
+
+    def read(self, timeout_s: float) -> Sequence[Frame] | None:
+        """See `Source`."""
+        found = self._client.take(timeout_s)
+        now_s = time.monotonic()
+        if found:
+            self._came_s = now_s
+            self._write(found)
+            return self._reader.read(0.0)
+        is_idle = self._idle_s is not None and now_s - self._came_s >= self._idle_s
+        return None if found is None or is_idle else []
+
+    def _write(self, messages: Sequence[LiveMessage]) -> None:
+        if self._writer is None:
+            self._writer = McapRecording(self.recording)
+        self._writer.add(messages)
+
+    def notes(self) -> Sequence[str]:
+        """Return what the server said of itself, and which of its channels are not read, once."""
+        return [*self._client.notes(), *self._reader.notes()]
+
+    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+        """See `Source`. Errors: `TraceError` before the first message."""
+        if self._writer is None:
+            raise TraceError(f"{self._uri}: no message came")
+        self._reader.write_window(frames, path)
+
+    def halt(self) -> None:
+        """See `Source`. Who sends the messages cannot be ended from here."""
+
+    def close(self) -> None:
+        """Leave the server and finish the recording, with what came and nobody asked for."""
+        self._client.close()
+        if self._closed:
+            return
+        self._closed = True
+        if rest := self._client.take(0.0):
+            self._write(rest)
+        self._reader.close()
+        if self._writer is not None:
+            self._writer.finish()

@@ -1,0 +1,79 @@
+"""Messages that come live, written as an MCAP file that grows."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from mcap.opcode import Opcode
+
+from drivelint.formats.mcap.copy import index_arrays
+from drivelint.formats.mcap.writer import Sink
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from mcap.records import Schema
+
+LIBRARY: Final = "drivelint watch"
+_HEAD: Final = struct.Struct("<BQHIQQ")
+_FIELDS_BYTES: Final = 22
+_MOST_NUMBERS: Final = 1 << 32
+
+
+class LiveChannel(NamedTuple):
+    """What messages are on; the schema is still without an id."""
+
+    topic: str
+    encoding: str
+    schema: Schema
+
+
+class LiveMessage(NamedTuple):
+    """A message, its channel, and its log time."""
+
+    channel: LiveChannel
+    log_ns: int
+    content: bytes
+
+
+class McapRecording:
+    """An MCAP file that is written as messages come. What was added is in the file; `finish` makes it a whole one."""
+
+    def __init__(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = path.open("xb")
+        self._sink = Sink(self._file)
+        self._sink.begin(LIBRARY)
+        self._count = 0
+
+    def add(self, messages: Sequence[LiveMessage]) -> None:
+        """Write messages as a chunk, behind what describes them."""
+        records, entries, at = [], [], 0
+        for each in messages:
+            channel = self._channel(each.channel)
+            size, number = _FIELDS_BYTES + len(each.content), self._count % _MOST_NUMBERS
+            head = _HEAD.pack(Opcode.MESSAGE, size, channel, number, each.log_ns, each.log_ns)
+            self._count += 1
+            records += [head, each.content]
+            entries.append((channel, number, each.log_ns, at))
+            at += len(head) + len(each.content)
+        if entries:
+            self._sink.add_chunk(b"".join(records), index_arrays(entries))
+        self._file.flush()
+
+    def finish(self) -> None:
+        """End the file. May be called twice."""
+        if not self._file.closed:
+            self._sink.finish()
+            self._file.close()
+
+    def _channel(self, wanted: LiveChannel) -> int:
+        """Return the id of a channel, which is announced unless it is already."""
+        for number, known in self._sink.channels.items():
+            schema = replace(self._sink.schemas[known.schema_id], id=0)
+            if (known.topic, known.message_encoding, schema) == wanted:
+                return number
+        return self._sink.add_channel(*wanted)

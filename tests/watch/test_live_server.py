@@ -1,0 +1,150 @@
+"""The watch's own server: viewers get the road users of the newest step, alarms and margins."""
+
+from __future__ import annotations
+
+import json
+import socket
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint.annotate import measures
+from drivelint.drive.cut import cut_trace
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import UsageError
+from drivelint.formats import read_trace
+from drivelint.watch.server import ALARMS, LiveServer, alarm_schema, newest_margins
+from tests.shared_data import ROOT
+
+pytest.importorskip("foxglove")
+pytest.importorskip("websockets")
+
+from drivelint.watch.sources.foxglove_client import FoxgloveClient
+from tests.watch.foxglove_server import until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from drivelint.watch.sources.mcap_recording import LiveMessage
+
+RULE = "ukhc.r162.safe-distance-ahead"
+MARGIN = {
+    "rule_id": RULE, "profile": "nominal", "t_ns": 2_000_000_000, "ego_id": "1", "object_id": None,
+    "observed": 12.5, "required": 20.0, "margin": -7.5, "holds": False,
+}  # fmt: skip
+ALARM = {
+    "type": "alarm", "alarm": 1, "rule_id": RULE, "title": "Enough room", "t_s": 1.0, "said_s": 1.5, "latency_s": 0.01,
+    "status": "stable", "severity": "critical", "ego_id": "1", "object_id": None, "t_start_ns": 1_000_000_000,
+    "t_end_ns": 1_500_000_000, "observed": float("nan"), "reason": "too near",
+}  # fmt: skip
+
+
+@pytest.fixture
+def server() -> Iterator[LiveServer]:
+    made = LiveServer("127.0.0.1", 0)
+    yield made
+    made.close()
+    made.close()
+
+
+class AnyClient(FoxgloveClient):
+    """A client that reads every channel."""
+
+    def __init__(self, server: LiveServer, n_channels: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("drivelint.watch.sources.foxglove_client.is_watched", lambda _: True)
+        super().__init__(f"ws://127.0.0.1:{server.port}")
+        until(lambda: len(self._by_subscription) == n_channels)
+        until(lambda: sum(each.has_sinks() for each in server._channels.values()) == n_channels)
+
+    def messages(self, n: int) -> list[LiveMessage]:
+        found: list[LiveMessage] = []
+
+        def enough() -> bool:
+            found.extend(self.take(0.05) or ())
+            return len(found) >= n
+
+        until(enough)
+        return found
+
+
+def test_the_road_users_of_the_newest_step(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    client = AnyClient(server, 3, monkeypatch)
+    trace = read_trace(ROOT / "fixtures" / "scenes" / "collision.mcap", IngestOptions())
+    log = trace.tables["data_log"].to_pylist()[0]
+    window = cut_trace(trace, log["t_start_ns"], log["t_start_ns"] + 3_000_000_000)
+    server.publish_scene(window)
+    by_topic = {each.channel.topic: each for each in client.messages(2)}
+    client.close()
+    assert by_topic.keys() == {"/drivelint/scene", "/drivelint/tf"}
+    scene = decoded(by_topic["/drivelint/scene"])
+    states = window.tables["actor_state"].to_pylist()
+    newest = {row["actor_id"]: row for row in states if row["t_ns"] == max(each["t_ns"] for each in states)}
+    assert [each.type for each in scene.deletions] == [1]
+    assert {each.id for each in scene.entities} == newest.keys()
+    assert by_topic["/drivelint/scene"].log_ns == log["t_start_ns"] + 3_000_000_000
+    for each in scene.entities:
+        (cube,) = each.cubes
+        assert cube.pose.position.x == pytest.approx(newest[each.id]["x_m"])
+        assert cube.pose.position.y == pytest.approx(newest[each.id]["y_m"])
+    egos = {row["actor_id"] for row in window.tables["actor"].to_pylist() if row["is_ego"]}
+    blue = {each.id for each in scene.entities if each.cubes[0].color.b > 0.9}
+    assert blue == egos
+    assert decoded(by_topic["/drivelint/tf"]).child_frame_id == "base_link"
+
+
+def decoded(message: LiveMessage) -> Any:
+    """Decode a message by the schema that the server sent."""
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+    pool = descriptor_pool.DescriptorPool()
+    for file in descriptor_pb2.FileDescriptorSet.FromString(message.channel.schema.data).file:
+        pool.Add(file)
+    kind = message_factory.GetMessageClass(pool.FindMessageTypeByName(message.channel.schema.name))
+    return kind.FromString(message.content)
+
+
+def test_alarms_and_margins(server: LiveServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    server.publish_margins([MARGIN])
+    client = AnyClient(server, 4, monkeypatch)
+    server.publish_alarm(ALARM)
+    server.publish_margins([{**MARGIN, "drive_id": "d"}])
+    alarm, margin = client.messages(2)
+    client.close()
+    assert (alarm.channel.topic, alarm.channel.schema.name, alarm.log_ns) == (ALARMS, "drivelint.Alarm", 1_000_000_000)
+    assert json.loads(alarm.content) == {k: v for k, v in ALARM.items() if k not in {"object_id", "observed"}}
+    topic = f"/drivelint/{measures.margin_topic(RULE)}"
+    assert (margin.channel.topic, margin.channel.schema.name, margin.log_ns) == (
+        topic,
+        "drivelint.Margin",
+        2_000_000_000,
+    )
+    assert json.loads(margin.content) == {k: v for k, v in MARGIN.items() if v is not None}
+
+
+def test_messages_are_of_their_schemas() -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    known = {k: v for k, v in ALARM.items() if k not in {"object_id", "observed"}}
+    jsonschema.validate(known, json.loads(alarm_schema().data))
+
+
+def test_newest_margins() -> None:
+    course = {
+        **{k: MARGIN[k] for k in ("rule_id", "profile", "ego_id", "object_id")},
+        "t_ns": [1, 2], "observed": [3.0, 4.0], "required": [5.0, 5.0], "margin": [-2.0, -1.0], "holds": [False, False],
+    }  # fmt: skip
+    (row,) = newest_margins([course, {**course, "t_ns": []}])
+    assert (row["t_ns"], row["observed"], row["margin"], row["rule_id"]) == (2, 4.0, -1.0, RULE)
+
+
+def test_a_port_that_is_taken_is_one_line() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with pytest.raises(UsageError, match=rf"--serve 127\.0\.0\.1:{port}: nothing can be served there"):
+            LiveServer("127.0.0.1", port)
+
+
+def test_without_the_extra_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "foxglove", None)
+    with pytest.raises(UsageError, match=r"drivelint\[live\]"):
+        LiveServer("127.0.0.1", 0)
