@@ -75,6 +75,16 @@ class Sink:
         self._record(channel)
         return channel.id
 
+    def announce_schema(self, schema: records.Schema) -> None:
+        """Write a schema under its own id."""
+        self.schemas[schema.id] = schema
+        self._record(schema)
+
+    def announce_channel(self, channel: records.Channel) -> None:
+        """Write a channel under its own id."""
+        self.channels[channel.id] = channel
+        self._record(channel)
+
     def add_chunk(
         self, content: bytes | memoryview, index: Mapping[int, NDArray[np.uint64]], *, compressed: bool = True
     ) -> None:

@@ -1,0 +1,63 @@
+"""This module finds the fields of a protobuf message without decoding what is in them."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_VARINT, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
+_FIXED: Final = {_FIXED64: 8, _FIXED32: 4}
+_MOST_VARINT_BYTES: Final = 10
+
+
+class Field(NamedTuple):
+    """A field: its number, its value if it is an integer (unsigned, 64 bits) else 0, and the bytes of its content."""
+
+    number: int
+    value: int
+    start: int
+    end: int
+
+
+def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Field]:
+    """Yield the fields of the message in bytes `start` to `end`. Errors: `ValueError` where no field begins."""
+    at, stop = start, len(data) if end is None else end
+    while at < stop:
+        key, at = _varint(data, at, stop)
+        kind, value = key & 7, 0
+        if key >> 3 == 0:
+            raise ValueError("a field without a number")
+        if kind == _VARINT:
+            begin = at
+            value, at = _varint(data, at, stop)
+        elif kind == _BYTES:
+            length, begin = _varint(data, at, stop)
+            at = begin + length
+        elif kind in _FIXED:
+            begin = at
+            at += _FIXED[kind]
+        else:
+            raise ValueError(f"a field of kind {kind}")
+        if at > stop:
+            raise ValueError("a field that ends behind its message")
+        yield Field(key >> 3, value, begin, at)
+
+
+def signed(value: int) -> int:
+    """Return the number that an unsigned one of 64 bits stands for in a signed field."""
+    number: int = struct.unpack("<q", struct.pack("<Q", value))[0]
+    return number
+
+
+def _varint(data: bytes, at: int, stop: int) -> tuple[int, int]:
+    """Return the integer in base 128 at a byte, and the byte behind it."""
+    value = 0
+    for shift in range(min(_MOST_VARINT_BYTES, stop - at)):
+        byte = data[at + shift]
+        value |= (byte & 0x7F) << 7 * shift
+        if byte < 0x80:
+            return value & 0xFFFFFFFFFFFFFFFF, at + shift + 1
+    raise ValueError("an integer without an end")
