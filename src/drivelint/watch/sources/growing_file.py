@@ -1,0 +1,82 @@
+"""This module reads what another process appends to a file, each byte once."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from io import FileIO
+    from pathlib import Path
+
+POLL_S: Final = 0.05
+"""So often a file that does not grow is looked at."""
+BLOCK: Final = 4 << 20
+"""At most so many bytes are read at a time."""
+
+
+class GrowingFile:
+    """A file that grows, or that does not exist yet.
+
+    `idle_s`: after so many seconds without growth it has ended; None: it never has.
+    """
+
+    def __init__(self, path: Path, *, idle_s: float | None) -> None:
+        self.path = path
+        self.offset = 0
+        self._idle_s = idle_s
+        self._grew_at = time.monotonic()
+        self._file: FileIO | None = None
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """Return what was appended; nothing after so many seconds; None: the file has not grown for too long.
+
+        Errors: `TraceError` for a file that was truncated, replaced or taken away, or that cannot be read.
+        """
+        until = time.monotonic() + timeout_s
+        while True:
+            if data := self._appended():
+                self._grew_at = time.monotonic()
+                return data
+            now = time.monotonic()
+            if self._idle_s is not None and now - self._grew_at >= self._idle_s:
+                return None
+            if now >= until:
+                return b""
+            time.sleep(min(POLL_S, until - now))
+
+    def close(self) -> None:
+        """Let go of the file."""
+        if self._file is not None:
+            self._file.close()
+
+    def _appended(self) -> bytes:
+        try:
+            if self._file is None:
+                try:
+                    self._file = self.path.open("rb", buffering=0)
+                except FileNotFoundError:
+                    return b""
+            self._refuse_another_file(self._file)
+            data = self._file.read(BLOCK)
+        except OSError as error:
+            raise TraceError(f"{self.path}: cannot be read: {error.strerror or error}") from error
+        self.offset += len(data)
+        return data
+
+    def _refuse_another_file(self, file: FileIO) -> None:
+        opened = os.fstat(file.fileno())
+        try:
+            there = self.path.stat()
+        except FileNotFoundError:
+            there = None
+        if there is None or not os.path.samestat(opened, there):
+            what = "taken away" if there is None else "replaced by another file"
+        elif opened.st_size < self.offset:
+            what = f"truncated to {opened.st_size} of {self.offset} bytes"
+        else:
+            return
+        raise TraceError(f"{self.path}: the log was {what} while it was watched: watch it again")

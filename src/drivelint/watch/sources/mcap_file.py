@@ -1,0 +1,198 @@
+"""An MCAP file that another process writes. It is the recording itself, and is only read."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter, deque
+from typing import TYPE_CHECKING, Final, cast
+
+import numpy as np
+
+from drivelint.drive.lost_time import LATEST_NS
+from drivelint.formats.mcap.bag import OSI_SCHEMAS
+from drivelint.formats.mcap.writer import Sink
+from drivelint.watch.source import Frame
+from drivelint.watch.sources.growing_file import GrowingFile
+from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
+from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, Numbered
+from drivelint.watch.sources.osi_static import StaticContent
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+LIBRARY: Final = "drivelint watch"
+MOST_PENDING_BYTES: Final = 512 << 20
+"""So much is kept of what no window has begun behind yet. No window is as large."""
+MOST_AT_ONCE: Final = 32 << 20
+"""About so many bytes of messages are given at a time, of a file that is long when the watch begins."""
+
+
+class McapFile:
+    """A source of the messages of an MCAP file, see `drivelint.watch.source.Source`.
+
+    A frame is a message that our readers read, at its log time, or a damaged chunk. What holds of the messages before a window is
+    written into it, so windows must begin one after another as the drive does.
+    """
+
+    in_step = False
+
+    def __init__(self, path: Path, *, idle_s: float | None) -> None:
+        self.recording = path
+        self._file = GrowingFile(path, idle_s=idle_s)
+        self._stream = McapStream(str(path))
+        self._ended = False
+        self._count = 0
+        self._last_ns = 0
+        self._pending: deque[Numbered] = deque()  # what no window has begun behind yet
+        self._pending_bytes = 0
+        self._memories: dict[int, Memory] = {}
+        self._first: dict[int, Numbered] = {}  # of each channel of OSI
+        self._static: dict[int, StaticContent] = {}
+
+    def read(self, timeout_s: float) -> Sequence[Frame] | None:
+        """See `Source`."""
+        until = time.monotonic() + timeout_s
+        found: list[Frame] = []
+        size = 0
+        while not self._ended and size < MOST_AT_ONCE:
+            data = self._file.read(0.0 if found else max(until - time.monotonic(), 0.0))
+            if data:
+                frames = self._frames(self._stream.take(data))
+                found += frames
+                size += sum(frame.size for frame in frames)
+            elif data is not None:
+                break
+            self._ended = data is None or self._stream.ended
+            if time.monotonic() >= until:
+                break
+        return None if self._ended and not found else found
+
+    def _frames(self, records: Iterable[Message | DamagedChunk]) -> list[Frame]:
+        found = []
+        for each in records:
+            if isinstance(each, DamagedChunk):
+                found.append(Frame(self._last_ns, (self._count, each), len(each.record)))
+                continue
+            schema = self._schema(each.channel)
+            if not is_watched(schema):
+                continue
+            if each.log_ns <= LATEST_NS:  # what is later is malformed, and no clock
+                self._last_ns = each.log_ns
+            numbered = Numbered(self._count, each)
+            self._count += 1
+            if schema in OSI_SCHEMAS:
+                self._first.setdefault(each.channel, numbered)
+            self._pending.append(numbered)
+            self._pending_bytes += len(each.record)
+            while self._pending_bytes > MOST_PENDING_BYTES:
+                self._remember_next()
+            found.append(Frame(self._last_ns, numbered, len(each.record)))
+        return found
+
+    def _schema(self, channel: int) -> str:
+        schema = self._stream.schemas.get(self._stream.channels[channel].schema_id)
+        return "" if schema is None else schema.name
+
+    def notes(self) -> Sequence[str]:
+        """See `Source`."""
+        found, self._stream.notes = self._stream.notes, []
+        return found
+
+    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+        """See `Source`."""
+        records = [cast("tuple[int, Message | DamagedChunk]", frame.data) for frame in frames]
+        begin = records[0][0] if records else 0
+        while self._pending and self._pending[0].number < begin:
+            self._remember_next()
+        begun: set[int] = set()
+        with path.open("wb") as file:
+            writer = _WindowWriter(Sink(file))
+            writer.begin(self._stream)
+            held = [each for memory in self._memories.values() for each in memory.held()]
+            for numbered in sorted(held, key=lambda each: each.number):
+                if numbered.number < begin:
+                    writer.add(numbered.message)
+            for number, each in records:
+                if isinstance(each, DamagedChunk):
+                    writer.add_damaged(each)
+                    continue
+                is_first = each.channel not in begun
+                begun.add(each.channel)
+                writer.add(self._with_static(number, each) if is_first else each)
+            writer.finish()
+
+    def _remember_next(self) -> None:
+        """Take the first message out of what is pending into the memory of its channel."""
+        numbered = self._pending.popleft()
+        self._pending_bytes -= len(numbered.message.record)
+        channel = numbered.message.channel
+        if channel not in self._memories:
+            self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
+        self._memories[channel].take(numbered)
+
+    def _with_static(self, number: int, message: Message) -> Message:
+        """Give the first message of an OSI channel in a window what only the first one in the file says."""
+        first = self._first.get(message.channel)
+        if first is None or first.number == number:
+            return message
+        if message.channel not in self._static:
+            content = StaticContent(first.message.content, self._schema(message.channel))
+            self._static[message.channel] = content
+        return message.with_content(self._static[message.channel].added_to(message.content))
+
+    def halt(self) -> None:
+        """See `Source`. Who writes the file cannot be ended from here."""
+
+    def close(self) -> None:
+        """See `Source`."""
+        self._file.close()
+
+
+class _WindowWriter:
+    """Writes messages as they stand in another file, with its schemas, channels and metadata."""
+
+    _CHUNK: Final = 4 << 20
+
+    def __init__(self, sink: Sink) -> None:
+        self._sink = sink
+        self._content: list[bytes] = []
+        self._index: list[tuple[int, int, int]] = []  # channel, log time, offset within the chunk
+        self._size = 0
+
+    def begin(self, stream: McapStream) -> None:
+        """Write what describes the messages."""
+        self._sink.begin(LIBRARY)
+        for schema in stream.schemas.values():
+            self._sink.announce_schema(schema)
+        for channel in stream.channels.values():
+            self._sink.announce_channel(channel)
+        for name, content in stream.metadata.items():
+            self._sink.add_metadata(name, content)
+
+    def add(self, message: Message) -> None:
+        """Write a message."""
+        self._index.append((message.channel, message.log_ns, self._size))
+        self._content.append(message.record)
+        self._size += len(message.record)
+        if self._size >= self._CHUNK:
+            self._flush()
+
+    def add_damaged(self, chunk: DamagedChunk) -> None:
+        """Write a chunk that cannot be read: what it held is lost in the window, too."""
+        self._flush()
+        self._sink.write(chunk.record)
+
+    def finish(self) -> None:
+        """End the file."""
+        self._flush()
+        self._sink.finish()
+
+    def _flush(self) -> None:
+        if not self._content:
+            return
+        channels = np.array([channel for channel, _, _ in self._index])
+        entries = np.array([entry[1:] for entry in self._index], np.uint64)
+        index = {number: entries[channels == number] for number in Counter(channels.tolist())}
+        self._sink.add_chunk(b"".join(self._content), index, compressed=False)
+        self._content, self._index, self._size = [], [], 0

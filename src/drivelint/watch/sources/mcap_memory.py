@@ -1,0 +1,95 @@
+"""What of the messages before a window still holds in it, by what their channel is for.
+
+Road users and odometry hold at their time alone. Transforms, maps, reports and declared events are rare or hold for a while: the first
+ones of a channel are kept, and the last. Entities of a scene hold until they are replaced, deleted or expired, see `mcap_scene`.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Final, Protocol
+
+from drivelint.formats.foxglove.decode import SCENE
+from drivelint.formats.mcap.bag import FOXGLOVE_ROLES, ODOMETRY, OSI_SCHEMAS, ROAD_USERS, ROS_ROLES
+from drivelint.formats.osi.metadata import EVENT_MESSAGE
+from drivelint.formats.osi.schema import OPEN_DRIVE
+from drivelint.formats.ros2.types import message_kind
+from drivelint.watch.sources.mcap_scene import SceneMemory
+
+if TYPE_CHECKING:
+    from mcap.records import Channel
+
+    from drivelint.watch.sources.mcap_stream import Numbered
+
+RECENT_NS: Final = 2_000_000_000
+"""A report of lights holds for one second, and transforms half a second apart are joined: what is older holds no longer."""
+MOST_FIRST: Final = 200
+MOST_EVENTS: Final = 20_000
+"""So many of the first messages of a channel are kept; of declared events more, each of which may hold to the end."""
+MOST_FIRST_BYTES: Final = 64 << 20
+_READ: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
+
+
+class Memory(Protocol):
+    """What is kept of a channel's messages before a window."""
+
+    def take(self, numbered: Numbered) -> None:
+        """Take the next message."""
+        ...
+
+    def held(self) -> list[Numbered]:
+        """Return messages that say what still holds."""
+        ...
+
+
+def is_watched(schema: str) -> bool:
+    """Say whether messages with a schema of this name are read by any of our readers."""
+    return message_kind(schema) in _READ
+
+
+def memory_for(channel: Channel, schema: str) -> Memory:
+    """Return what keeps the messages of a channel whose schema has this name."""
+    kind = message_kind(schema)
+    if kind == SCENE:
+        return SceneMemory(channel.message_encoding)
+    if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, ODOMETRY}:
+        return NoMemory()
+    return LatchedMemory(MOST_EVENTS if kind == EVENT_MESSAGE else MOST_FIRST)
+
+
+class NoMemory:
+    """Keeps nothing: each message holds at its own time alone."""
+
+    def take(self, numbered: Numbered) -> None:
+        """See `Memory`."""
+
+    def held(self) -> list[Numbered]:
+        """See `Memory`."""
+        return []
+
+
+class LatchedMemory:
+    """Keeps the first messages, of equal ones in a row one, and those of the last seconds."""
+
+    def __init__(self, most_first: int) -> None:
+        self._most = most_first
+        self._first: list[Numbered] = []
+        self._first_bytes = 0
+        self._recent: deque[Numbered] = deque()
+
+    def take(self, numbered: Numbered) -> None:
+        """See `Memory`."""
+        data = numbered.message
+        if not self._recent and self._first and self._first[-1].message.content == data.content:
+            return
+        if not self._recent and len(self._first) < self._most and self._first_bytes < MOST_FIRST_BYTES:
+            self._first.append(numbered)
+            self._first_bytes += len(data.record)
+            return
+        self._recent.append(numbered)
+        while len(self._recent) > 1 and self._recent[0].message.log_ns < data.log_ns - RECENT_NS:
+            self._recent.popleft()
+
+    def held(self) -> list[Numbered]:
+        """See `Memory`."""
+        return [*self._first, *self._recent]

@@ -1,0 +1,202 @@
+"""An MCAP file read as it grows: whole records only, each once, and each chunk unpacked once."""
+
+from __future__ import annotations
+
+import io
+import struct
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Channel, Metadata, Schema
+
+from drivelint.errors import TraceError
+from drivelint.formats.mcap import reader
+from drivelint.formats.mcap.chunk import MAX_CHUNK_BYTES, ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.resume import MAGIC
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+RECORD: Final = struct.Struct("<BQ")
+MESSAGE: Final = struct.Struct("<HIQQ")
+MOST_RECORD_BYTES: Final = MAX_CHUNK_BYTES + (1 << 20)
+"""A record that is read and says it is longer is none. Others, such as attachments, may be."""
+_READ: Final = frozenset(
+    {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.METADATA, Opcode.DATA_END}
+)
+_KNOWN: Final = frozenset(Opcode)
+_PRIVATE: Final = 0x80
+"""Opcodes from here on belong to applications."""
+_FOOTER_BYTES: Final = 20
+
+
+class Message(NamedTuple):
+    """A message record: the id of its channel, its log time, and the record as it stands in the file, with its head."""
+
+    channel: int
+    log_ns: int
+    record: bytes
+
+    @property
+    def content(self) -> bytes:
+        """The message itself."""
+        return self.record[RECORD.size + MESSAGE.size :]
+
+    def with_content(self, content: bytes) -> Message:
+        """Return a message of the same channel and times that says something else."""
+        head = RECORD.pack(Opcode.MESSAGE, MESSAGE.size + len(content))
+        return self._replace(record=head + self.record[RECORD.size : RECORD.size + MESSAGE.size] + content)
+
+
+class Numbered(NamedTuple):
+    """A message and its place among all those of the file that are watched."""
+
+    number: int
+    message: Message
+
+
+class DamagedChunk(NamedTuple):
+    """A chunk record that cannot be read, as it stands in the file."""
+
+    record: bytes
+
+
+class McapStream:
+    """Takes the bytes of an MCAP file one piece after another.
+
+    `schemas`, `channels`: records by id, as they were announced so far; `metadata`: records by name, of several the first.
+    `ended`: the file is complete, or nothing more of it can be read; `notes`: why, and what else was wrong.
+    """
+
+    def __init__(self, where: str) -> None:
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.metadata: dict[str, dict[str, str]] = {}
+        self.ended = False
+        self.notes: list[str] = []
+        self._where = where
+        self._buffer = bytearray()
+        self._at = 0  # the byte of the file at which the buffer begins
+        self._place = 0  # within the buffer: what is before it was read
+        self._skip = 0  # so many bytes from there on are of no use
+        self._begun = False
+        self._in_data = True
+
+    def take(self, data: bytes) -> list[Message | DamagedChunk]:
+        """Return the messages that are whole now, in the order of the file.
+
+        Errors: `TraceError` for what is no MCAP file, or has a chunk that no reader would read.
+        """
+        self._buffer += data
+        found: list[Message | DamagedChunk] = []
+        if self._begun or self._begins():
+            while (record := self._next_record()) is not None:
+                at = self._at + self._place - len(record)
+                try:
+                    found += self._taken(record, at)
+                except (struct.error, McapError, ValueError) as error:
+                    self._stop(at, f"a record that cannot be read ({error})")
+        del self._buffer[: self._place]
+        self._at += self._place
+        self._place = 0
+        return found
+
+    def _begins(self) -> bool:
+        head = bytes(self._buffer[: len(MAGIC)])
+        if not MAGIC.startswith(head):
+            raise TraceError(f"{self._where}: not an MCAP file: it begins with {head!r}")
+        if len(head) == len(MAGIC):
+            self._begun, self._place = True, len(MAGIC)
+        return self._begun
+
+    def _stop(self, at: int, what: str) -> None:
+        self.ended = True
+        self.notes.append(f"{self._where}: {what} at byte {at}: nothing behind it is watched")
+
+    def _next_record(self) -> bytes | None:
+        """Return the next record that is read, once it is whole; None: nothing yet, or never again."""
+        while not self.ended:
+            skipped = min(self._skip, len(self._buffer) - self._place)
+            self._skip -= skipped
+            self._place += skipped
+            if self._skip or len(self._buffer) < self._place + RECORD.size:
+                return None
+            opcode, length = RECORD.unpack_from(self._buffer, self._place)
+            end = self._place + RECORD.size + length
+            is_read = self._in_data and opcode in _READ
+            unknown = opcode not in _KNOWN and opcode < _PRIVATE
+            if unknown or length > (MOST_RECORD_BYTES if is_read else reader.MOST_RECORD_BYTES):
+                self._stop(self._at + self._place, f"no record, but one of kind {opcode} and {length} bytes,")
+            elif opcode == Opcode.FOOTER:
+                tail = bytes(self._buffer[end : end + len(MAGIC)])
+                self.ended = tail == MAGIC or not MAGIC.startswith(tail) or length != _FOOTER_BYTES
+                if not self.ended:
+                    return None
+            elif not is_read:
+                self._skip = RECORD.size + length
+            elif len(self._buffer) < end:
+                return None
+            else:
+                record = bytes(self._buffer[self._place : end])
+                self._place = end
+                return record
+        return None
+
+    def _taken(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
+        body = record[RECORD.size :]
+        opcode = record[0]
+        if opcode == Opcode.CHUNK:
+            yield from self._chunk(record, at)
+        elif opcode == Opcode.DATA_END:
+            self._in_data = False
+        elif opcode == Opcode.METADATA:
+            metadata = Metadata.read(_stream(body))
+            self.metadata.setdefault(metadata.name, metadata.metadata)
+        else:
+            yield from self._content(opcode, record, at)
+
+    def _chunk(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
+        try:
+            head = chunk_head(memoryview(record)[RECORD.size :])
+            records = chunk_records(head, f"{self._where}: byte {at}")
+        except ChunkError as error:
+            if not error.framed:
+                self._stop(at, str(error))
+                return
+            self.notes.append(f"{self._where}: {error} at byte {at}: what it held is lost")
+            yield DamagedChunk(record)
+            return
+        place = 0
+        while place + RECORD.size <= len(records):
+            opcode, length = RECORD.unpack_from(records, place)
+            end = place + RECORD.size + length
+            if end > len(records):
+                break
+            yield from self._content(opcode, records[place:end], at)
+            place = end
+        if place < len(records):
+            self.notes.append(f"{self._where}: a chunk that ends within a record at byte {at}: its rest is lost")
+            yield DamagedChunk(record)
+
+    def _content(self, opcode: int, record: bytes, at: int) -> Iterator[Message]:
+        """Take a schema, a channel or a message."""
+        if opcode == Opcode.MESSAGE:
+            number, _, log_ns, _ = MESSAGE.unpack_from(record, RECORD.size)
+            if number in self.channels:
+                yield Message(number, log_ns, record)
+            else:
+                self.notes.append(
+                    f"{self._where}: a message on channel {number}, which was never announced, at byte {at}"
+                )
+        elif opcode == Opcode.SCHEMA:
+            schema = Schema.read(_stream(record[RECORD.size :]))
+            self.schemas[schema.id] = schema
+        elif opcode == Opcode.CHANNEL:
+            channel = Channel.read(_stream(record[RECORD.size :]))
+            self.channels[channel.id] = channel
+
+
+def _stream(body: bytes) -> ReadDataStream:
+    return ReadDataStream(io.BytesIO(body))

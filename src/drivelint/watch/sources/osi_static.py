@@ -1,0 +1,89 @@
+"""What only the first OSI message of a drive says, and what of it is put into a part of the drive that begins later."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from google.protobuf.message import DecodeError
+
+from drivelint.formats.osi.schema import SENSOR_VIEW, message_class
+
+_SAID_ONCE: Final = (
+    "lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane", "traffic_sign", "road_marking",
+    "proj_string", "proj_frame_offset",
+)  # fmt: skip
+"""What is read of the first message alone, see `formats.osi.decode.read_first_message`."""
+_SHOWN: Final = ("color", "mode")
+"""What a traffic light shows at a time; all else about it is of the first message, too."""
+
+
+class StaticContent:
+    """The map, projection and traffic lights of the first message. Empty where that cannot be decoded."""
+
+    def __init__(self, first: bytes, name: str) -> None:
+        self._name = name
+        self._first: Any = None
+        try:
+            truth = _truth(_decoded(first, name), name)
+        except DecodeError:
+            return
+        kept = message_class("GroundTruth")()
+        for field in _SAID_ONCE:
+            _copy(truth, kept, field)
+        kept.traffic_light.extend(truth.traffic_light)
+        for bulb in kept.traffic_light:
+            for field in _SHOWN:
+                bulb.classification.ClearField(field)
+        self._first = kept
+
+    def added_to(self, data: bytes) -> bytes:
+        """Return a later message that is read as the first one of a log: with the first one's static content in place of its own.
+
+        What its traffic lights show stays. One that it does not name shows nothing that is known.
+        """
+        if self._first is None:
+            return data
+        try:
+            message = _decoded(data, self._name)
+        except DecodeError:
+            return data
+        truth = _truth(message, self._name)
+        for field in _SAID_ONCE:
+            truth.ClearField(field)
+            _copy(self._first, truth, field)
+        named = {bulb.id.value: bulb for bulb in truth.traffic_light}
+        for bulb in self._first.traffic_light:
+            if bulb.id.value not in named:
+                truth.traffic_light.append(bulb)
+            elif not named[bulb.id.value].HasField("base"):
+                _complete(named[bulb.id.value], bulb)
+        whole: bytes = message.SerializeToString(deterministic=True)
+        return whole
+
+
+def _decoded(data: bytes, name: str) -> Any:
+    return message_class(name.removeprefix("osi3.")).FromString(data)
+
+
+def _truth(message: Any, name: str) -> Any:
+    return message.global_ground_truth if name == SENSOR_VIEW else message
+
+
+def _copy(source: Any, target: Any, field: str) -> None:
+    value = getattr(source, field)
+    if isinstance(value, str):
+        if source.HasField(field):
+            setattr(target, field, value)
+    elif hasattr(value, "extend"):
+        getattr(target, field).extend(value)
+    elif source.HasField(field):
+        getattr(target, field).CopyFrom(value)
+
+
+def _complete(bulb: Any, first: Any) -> None:
+    """Give a bulb that only says what it shows the place and the lanes that the first message gave it."""
+    shown = type(bulb).FromString(bulb.SerializeToString())
+    bulb.CopyFrom(first)
+    for field in _SHOWN:
+        if shown.classification.HasField(field):
+            setattr(bulb.classification, field, getattr(shown.classification, field))
