@@ -1,1 +1,108 @@
-"""One module per kind of source."""
+"""One module per kind of source, and the names by which each is opened."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+from urllib.parse import urlsplit
+
+from drivelint.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.watch.source import Source
+
+UDP_PORT: Final = 48198
+"""The port that esmini sends OSI to."""
+
+
+class SourceOptions(NamedTuple):
+    """`folder`: where a recording is written, if what is watched is none itself. `idle_s`: see `open_source`."""
+
+    folder: Path
+    idle_s: float | None
+
+
+class Opener(NamedTuple):
+    """A kind of source: the pattern of its names, in small letters, how they are told to a user, and what opens one."""
+
+    pattern: str
+    told: str
+    open: Callable[[str, SourceOptions], Source]
+
+    def accepts(self, name: str) -> bool:
+        """Say whether a name is of this kind."""
+        return fnmatchcase(name.lower(), self.pattern)
+
+
+def open_source(name: str, folder: Path, *, idle_s: float | None) -> Source:
+    """Open the source of this name.
+
+    `folder`: where its recording is written, unless it is a file that grows and so is the recording itself. `idle_s`: it ends when nothing
+    has come for so many seconds; None: it does not. Errors: `UsageError` for a name of no known kind, or one that lacks its port.
+    """
+    for opener in OPENERS:
+        if opener.accepts(name):
+            return opener.open(name, SourceOptions(folder, idle_s))
+    known = ", ".join(opener.told for opener in OPENERS)
+    raise UsageError(f"{name}: no source of this kind is known: give {known}")
+
+
+def _mcap(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources.mcap_file import McapFile
+
+    return McapFile(Path(name), idle_s=options.idle_s)
+
+
+def _osi_file(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import osi
+
+    return osi.open_file(Path(name), idle_s=options.idle_s)
+
+
+def _standard_input(_: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import osi
+
+    return osi.open_standard_input(options.folder, idle_s=options.idle_s)
+
+
+def _tcp(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import osi
+
+    host, port = _address(name, None)
+    if not host or name.startswith("tcp-listen://"):
+        return osi.open_tcp_server(host, port, options.folder, idle_s=options.idle_s)
+    return osi.open_tcp(host, port, options.folder, idle_s=options.idle_s)
+
+
+def _udp(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import osi
+
+    return osi.open_udp(*_address(name, UDP_PORT), options.folder, idle_s=options.idle_s)
+
+
+def _address(name: str, usual_port: int | None) -> tuple[str, int]:
+    """Return host ("": none is named) and port. Errors: `UsageError`."""
+    try:
+        parts = urlsplit(name)
+        port = usual_port if parts.port is None else parts.port
+    except ValueError as error:
+        raise UsageError(
+            f"{name}: no address ({error}): give a host and a port, such as tcp://127.0.0.1:9000"
+        ) from error
+    if port is None or parts.path or parts.query:
+        raise UsageError(f"{name}: no address: give a host and a port, such as tcp://127.0.0.1:9000")
+    return parts.hostname or "", port
+
+
+OPENERS: Final[tuple[Opener, ...]] = (
+    Opener("tcp://*", "tcp://HOST:PORT or tcp://:PORT (OSI over TCP)", _tcp),
+    Opener("tcp-listen://*", "tcp-listen://HOST:PORT", _tcp),
+    Opener("udp://*", "udp://HOST:PORT (OSI of esmini)", _udp),
+    Opener("*.mcap", "an .mcap file that grows", _mcap),
+    Opener("*.osi", "an .osi file that grows", _osi_file),
+    Opener("-", "- (OSI on standard input)", _standard_input),
+)
+"""The first that accepts a name opens it. Each imports its module when it is asked, so that `drivelint --help` stays fast."""

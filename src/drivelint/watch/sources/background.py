@@ -1,0 +1,81 @@
+"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost while nobody asks."""
+
+from __future__ import annotations
+
+from collections import deque
+from contextlib import closing
+from threading import Condition, Thread
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sized
+
+T = TypeVar("T", bound="Sized")
+
+MOST_WAITING_BYTES: Final = 256 << 20
+"""Where more waits to be taken, no more is read. A pipe or TCP makes the writer wait then."""
+TICK_S: Final = 0.1
+"""So often whoever waits for a socket looks whether it shall stop."""
+
+
+class BackgroundReader(Generic[T]):
+    """Goes through a generator in a thread, and keeps what came until it is taken.
+
+    The generator yields something empty at least every `TICK_S`, so that it can be stopped.
+    """
+
+    def __init__(self, items: Generator[T, None, None], *, most_bytes: int = MOST_WAITING_BYTES) -> None:
+        self._items = items
+        self._most = most_bytes
+        self._changed = Condition()
+        self._waiting: deque[T] = deque()
+        self._bytes = 0
+        self._error: BaseException | None = None
+        self._ended = self._stopped = False
+        # a daemon: an interrupted watch must end even where a read never returns
+        self._thread = Thread(target=self._run, name="drivelint-source", daemon=True)
+        self._thread.start()
+
+    def take(self, timeout_s: float) -> list[T] | None:
+        """Return what came since; nothing after so many seconds; None: it has ended. Errors: those of the generator."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
+            found = list(self._waiting)
+            self._waiting.clear()
+            self._bytes = 0
+            self._changed.notify_all()
+            if found or not self._ended:
+                return found
+            if self._error is not None:
+                raise self._error
+            return None
+
+    def stop(self) -> None:
+        """End the thread. What waits is still there to be taken. May be called twice."""
+        with self._changed:
+            self._stopped = True
+            self._changed.notify_all()
+        self._thread.join(timeout=10 * TICK_S)
+
+    def _run(self) -> None:
+        try:
+            with closing(self._items):
+                for item in self._items:
+                    if not self._put(item):
+                        break
+        except BaseException as error:  # noqa: BLE001 (whoever takes gets it)
+            self._error = error
+        finally:
+            with self._changed:
+                self._ended = True
+                self._changed.notify_all()
+
+    def _put(self, item: T) -> bool:
+        """Keep what came, wait while there is too much, and say whether to go on."""
+        with self._changed:
+            if item:
+                self._waiting.append(item)
+                self._bytes += len(item)
+                self._changed.notify_all()
+            self._changed.wait_for(lambda: self._bytes < self._most or self._stopped)
+            return not self._stopped

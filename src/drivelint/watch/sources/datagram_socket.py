@@ -1,0 +1,64 @@
+"""Receives datagrams with what tells that others were lost: when each came, and how many the system dropped by then."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+import time
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.watch.sources.background import TICK_S
+from drivelint.watch.sources.osi_datagrams import Datagram
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
+_LINUX: Final = sys.platform == "linux"
+_TIME, _OVERFLOW = 35, 40  # SO_TIMESTAMPNS and SO_RXQ_OVFL of asm-generic/socket.h, which Python does not name
+_ANCILLARY_BYTES: Final = 256
+_TIMESPEC: Final = struct.Struct("@ll")
+_COUNT: Final = struct.Struct("@I")
+ROOM: Final = 16 << 20
+"""So many bytes the system is asked to keep until they are read; it may give less."""
+MOST_BYTES: Final = 65535
+
+
+def ask_for_losses(receiver: socket.socket) -> None:
+    """Let the system keep many datagrams, and tell with each what it knows of it."""
+    receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
+    receiver.settimeout(TICK_S)
+    if _LINUX:
+        for option in (_TIME, _OVERFLOW):
+            receiver.setsockopt(socket.SOL_SOCKET, option, 1)
+
+
+def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]:
+    """Yield datagrams as they come; None at least ten times a second."""
+    while True:
+        try:
+            if _LINUX:
+                data, told, _, sender = receiver.recvmsg(MOST_BYTES, _ANCILLARY_BYTES)
+            else:
+                (data, sender), told = receiver.recvfrom(MOST_BYTES), []
+        except TimeoutError:
+            yield None
+            continue
+        at_ns, dropped = _said(told)
+        # only where the system counts what it drops, it is known that nothing else was lost on this machine
+        yield Datagram(data, sender, at_ns, dropped, local=_LINUX and _is_local(sender))
+
+
+def _said(told: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
+    at_ns, dropped = time.monotonic_ns(), 0
+    for level, kind, content in told:
+        if level == socket.SOL_SOCKET and kind == _TIME and len(content) >= _TIMESPEC.size:
+            seconds, nanos = _TIMESPEC.unpack_from(content)
+            at_ns = seconds * 1_000_000_000 + nanos
+        elif level == socket.SOL_SOCKET and kind == _OVERFLOW and len(content) >= _COUNT.size:
+            (dropped,) = _COUNT.unpack_from(content)
+    return at_ns, dropped
+
+
+def _is_local(sender: Any) -> bool:
+    return isinstance(sender, tuple) and (sender[0].startswith("127.") or sender[0] == "::1")

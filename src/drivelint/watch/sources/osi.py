@@ -1,0 +1,292 @@
+"""OSI ground truths or sensor views as they come: from a file that grows, standard input, TCP, or UDP as esmini sends it."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final, Protocol, cast
+
+from drivelint.errors import TraceError, UsageError
+from drivelint.formats.osi.trace_file import LENGTH
+from drivelint.watch.source import Frame
+from drivelint.watch.sources import transports
+from drivelint.watch.sources.background import BackgroundReader
+from drivelint.watch.sources.datagram_socket import ask_for_losses, datagrams
+from drivelint.watch.sources.growing_file import GrowingFile
+from drivelint.watch.sources.osi_datagrams import Assembler
+from drivelint.watch.sources.osi_messages import MessageCutter, message_kind, message_time
+from drivelint.watch.sources.osi_static import StaticContent
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+    from pathlib import Path
+    from typing import BinaryIO
+
+RECORDING: Final = "recording.osi"
+
+
+class Receiver(Protocol):
+    """Gives messages one by one, wherever they come from."""
+
+    def take(self, timeout_s: float) -> list[bytes] | None:
+        """Return the messages that came since; nothing after so many seconds; None: no more will come."""
+        ...
+
+    def notes(self) -> list[str]:
+        """Return what was lost since the last call."""
+        ...
+
+    def close(self) -> None:
+        """Let go of what the messages come from. May be called twice."""
+        ...
+
+
+class OsiSource:
+    """A source of OSI messages, see `drivelint.watch.source.Source`.
+
+    A frame is a message; its time is the message's own. What only the first message says, such as its lanes, is put into the first
+    message of every window.
+    """
+
+    in_step = False
+
+    def __init__(self, recording: Path, receiver: Receiver) -> None:
+        self.recording = recording
+        self._receiver = receiver
+        self._first: bytes | None = None
+        self._kind: str | None = None
+        self._static: StaticContent | None = None
+        self._last_ns = 0
+        self._count = 0
+
+    def read(self, timeout_s: float) -> Sequence[Frame] | None:
+        """See `Source`."""
+        messages = self._receiver.take(timeout_s)
+        return None if messages is None else [self._frame(message) for message in messages]
+
+    def _frame(self, data: bytes) -> Frame:
+        if self._first is None:
+            self._first = data
+        if self._kind is None:
+            self._kind = message_kind(data)
+        t_ns = message_time(data, self._kind)
+        if t_ns is not None:
+            self._last_ns = t_ns
+        self._count += 1
+        return Frame(self._last_ns, (self._count == 1, data), len(data))
+
+    def notes(self) -> Sequence[str]:
+        """See `Source`."""
+        return self._receiver.notes()
+
+    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+        """See `Source`."""
+        with path.open("wb") as file:
+            for k, frame in enumerate(frames):
+                is_first, data = cast("tuple[bool, bytes]", frame.data)
+                file.write(with_length(self._with_static(data) if k == 0 and not is_first else data))
+
+    def _with_static(self, data: bytes) -> bytes:
+        if self._static is None and self._kind is not None and self._first is not None:
+            self._static = StaticContent(self._first, self._kind)
+        return data if self._static is None else self._static.added_to(data)
+
+    def halt(self) -> None:
+        """See `Source`. Who sends the messages cannot be ended from here."""
+
+    def close(self) -> None:
+        """See `Source`."""
+        self._receiver.close()
+
+
+def with_length(data: bytes) -> bytes:
+    """Return a message behind its length, as it stands in a trace file."""
+    return len(data).to_bytes(LENGTH, "little") + data
+
+
+class FileReceiver:
+    """Cuts the messages of a file that another process writes."""
+
+    def __init__(self, path: Path, *, idle_s: float | None) -> None:
+        self._path = path
+        self._file = GrowingFile(path, idle_s=idle_s)
+        self._cutter = MessageCutter()
+        self._ended = False
+        self._notes: list[str] = []
+
+    def take(self, timeout_s: float) -> list[bytes] | None:
+        """See `Receiver`."""
+        if self._ended:
+            return None
+        data = self._file.read(timeout_s)
+        found = self._cutter.cut(data or b"", ended=data is None)
+        if self._cutter.trouble is not None:
+            self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing behind that is read")
+        self._ended = data is None or self._cutter.trouble is not None
+        return found or (None if self._ended else [])
+
+    def notes(self) -> list[str]:
+        """See `Receiver`."""
+        found, self._notes = self._notes, []
+        return found
+
+    def close(self) -> None:
+        """See `Receiver`."""
+        self._file.close()
+
+
+class StreamReceiver:
+    """Cuts the messages of a stream, whose bytes are written down as they come: what is checked in the end is just what came."""
+
+    def __init__(self, where: str, blocks: Generator[bytes, None, None], recording: BinaryIO, notes: list[str]) -> None:
+        self._where = where
+        self._cutter = MessageCutter()
+        self._recording = recording
+        self._reader = BackgroundReader(_written_through(blocks, recording))
+        self._notes = notes
+        self._ended = False
+
+    def take(self, timeout_s: float) -> list[bytes] | None:
+        """See `Receiver`."""
+        if self._ended:
+            return None
+        blocks = self._reader.take(timeout_s)
+        found = self._cutter.cut(b"".join(blocks or ()), ended=blocks is None)
+        if self._cutter.trouble is not None:
+            self._notes.append(f"{self._cutter.trouble}: nothing behind that is read")
+        self._ended = blocks is None or self._cutter.trouble is not None
+        return found or (None if self._ended else [])
+
+    def notes(self) -> list[str]:
+        """See `Receiver`."""
+        found = [f"{self._where}: {note}" for note in self._notes]
+        del self._notes[: len(found)]  # the thread may have added more
+        return found
+
+    def close(self) -> None:
+        """See `Receiver`."""
+        self._reader.stop()
+        self._recording.close()
+
+
+def _written_through(blocks: Generator[bytes, None, None], recording: BinaryIO) -> Generator[bytes, None, None]:
+    for data in blocks:
+        _write_down(recording, data)
+        yield data
+
+
+def _write_down(recording: BinaryIO, data: bytes) -> None:
+    """Hand bytes over to the system at once, so that they are there even if this process is killed."""
+    try:
+        recording.write(data)
+        recording.flush()
+    except OSError as error:
+        raise TraceError(f"{recording.name}: the recording cannot be written: {error.strerror or error}") from error
+
+
+class DatagramReceiver:
+    """Puts together the messages that come over UDP, and writes down those that are whole."""
+
+    def __init__(self, where: str, receiver: socket.socket, recording: BinaryIO, *, idle_s: float | None) -> None:
+        self._where = where
+        self._recording = recording
+        self._assembler = Assembler(where)
+        self._told = 0
+        self._ended = False
+        ask_for_losses(receiver)
+        self._reader = BackgroundReader(self._messages(receiver, idle_s))
+
+    def _messages(self, receiver: socket.socket, idle_s: float | None) -> Generator[bytes, None, None]:
+        patience = transports.Patience(idle_s)
+        with receiver:
+            for datagram in datagrams(receiver):
+                if datagram is not None:
+                    patience.came()
+                message = None if datagram is None else self._assembler.take(datagram)
+                if message is not None:
+                    _write_down(self._recording, with_length(message))
+                yield message or b""
+                if patience.is_over:
+                    return
+
+    def take(self, timeout_s: float) -> list[bytes] | None:
+        """See `Receiver`."""
+        found = self._reader.take(timeout_s)
+        self._ended = found is None
+        return found
+
+    def notes(self) -> list[str]:
+        """See `Receiver`. Losses are told when there are twice as many as were told, and in the end."""
+        losses = self._assembler.losses
+        if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):
+            self._told = losses.total
+            return [f"{self._where}: lost so far: {losses.told()}"]
+        return []
+
+    def close(self) -> None:
+        """See `Receiver`."""
+        self._ended = True
+        self._reader.stop()
+        self._recording.close()
+
+
+def open_file(path: Path, *, idle_s: float | None) -> OsiSource:
+    """Watch a file, which is the recording."""
+    return OsiSource(path, FileReceiver(path, idle_s=idle_s))
+
+
+def open_standard_input(folder: Path, *, idle_s: float | None) -> OsiSource:
+    """Watch what comes from standard input."""
+    blocks = transports.from_descriptor(sys.stdin.fileno(), idle_s)
+    return _stream("standard input", blocks, folder, [])
+
+
+def open_tcp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
+    """Watch what a writer sends that waits for a connection at an address."""
+    notes: list[str] = []
+    return _stream(f"tcp://{host}:{port}", transports.connected(host, port, idle_s, notes), folder, notes)
+
+
+def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
+    """Watch what the first writer sends that connects to a port of this machine."""
+    where = f"tcp-listen://{host}:{port}"
+    server = transports.bound_socket(socket.SOCK_STREAM, host, port, where)
+    server.listen(1)
+    notes: list[str] = []
+    with _closed_on_error(server):
+        return _stream(where, transports.listening(server, idle_s, notes), folder, notes)
+
+
+def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
+    """Watch what esmini sends to a port of this machine."""
+    where = f"udp://{host}:{port}"
+    receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
+    recording = folder / RECORDING
+    with _closed_on_error(receiver):
+        return OsiSource(recording, DatagramReceiver(where, receiver, _new_file(recording), idle_s=idle_s))
+
+
+@contextmanager
+def _closed_on_error(opened: socket.socket) -> Generator[None, None, None]:
+    try:
+        yield
+    except BaseException:
+        opened.close()
+        raise
+
+
+def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:
+    recording = folder / RECORDING
+    return OsiSource(recording, StreamReceiver(where, blocks, _new_file(recording), notes))
+
+
+def _new_file(path: Path) -> BinaryIO:
+    """Open a recording that is not there yet. Errors: `UsageError` where one is, or none can be written."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path.open("xb")
+    except FileExistsError:
+        raise UsageError(f"{path}: there is a recording already: name another folder, or move it away") from None
+    except OSError as error:
+        raise UsageError(f"{path}: the recording cannot be written: {error.strerror or error}") from error

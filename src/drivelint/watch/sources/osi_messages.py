@@ -1,0 +1,115 @@
+"""This module cuts a stream of OSI messages, each behind its length, and reads their times without decoding them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW
+from drivelint.formats.osi.trace_file import LENGTH, MOST_MESSAGE_BYTES, is_osi_trace
+from drivelint.formats.protobuf.scan import fields, signed
+
+_NS: Final = 1_000_000_000
+_TIMESTAMP, _TRUTH, _MOVING_OBJECT, _BASE, _POSITION = 2, 7, 5, 2, 2
+"""Numbers of fields in a ground truth or a sensor view, of the truth in a view, and from an object down to its position."""
+
+
+class MessageCutter:
+    """Cuts bytes that come piece by piece into messages, by the same signs of damage as `formats.osi.trace_file`.
+
+    `trouble`: why nothing more can be cut, None: it goes on.
+    """
+
+    def __init__(self) -> None:
+        self.trouble: str | None = None
+        self._buffer = bytearray()
+        self._at = 0  # the byte of the stream at which the buffer begins
+
+    def cut(self, data: bytes, *, ended: bool = False) -> list[bytes]:
+        """Return the messages that are whole now. `ended`: nothing more comes, and what is left over is told as trouble."""
+        self._buffer += data
+        found: list[bytes] = []
+        place = 0
+        while self.trouble is None:
+            begin = place + LENGTH
+            length = int.from_bytes(self._buffer[place:begin], "little")
+            end = begin + length
+            if len(self._buffer) < begin or (0 < length <= MOST_MESSAGE_BYTES and len(self._buffer) < end):
+                if ended and len(self._buffer) > place:
+                    self._stop(place, f"it ends after {len(self._buffer) - place} bytes of the message that begins")
+                break
+            if not 0 < length <= MOST_MESSAGE_BYTES:
+                self._stop(place, f"no message, but one of {length} bytes, begins")
+                break
+            sure = _begins(self._buffer, place)
+            if not sure and not ended and len(self._buffer) < end + LENGTH + 1:
+                break  # what follows tells whether the length was right
+            if not sure and len(self._buffer) > end and not _begins(self._buffer, end):
+                self._stop(place, f"no message of {length} bytes and another one behind it begin")
+                break
+            found.append(bytes(self._buffer[begin:end]))
+            place = end
+        del self._buffer[:place]
+        self._at += place
+        return found
+
+    def _stop(self, place: int, what: str) -> None:
+        self.trouble = f"{what} at byte {self._at + place}"
+
+
+def _begins(buffer: bytearray, at: int) -> bool:
+    return is_osi_trace(bytes(buffer[at : at + LENGTH + 1]), LENGTH + MOST_MESSAGE_BYTES)
+
+
+def message_kind(data: bytes) -> str | None:
+    """Return whether a message is a ground truth or a sensor view, by the place of its objects; None: it has none."""
+    try:
+        if _places_objects(data, 0, len(data)):
+            return GROUND_TRUTH
+        truths = [field for field in fields(data) if field.number == _TRUTH]
+    except ValueError:
+        return None
+    for truth in truths:
+        try:
+            if _places_objects(data, truth.start, truth.end):
+                return SENSOR_VIEW
+        except ValueError:
+            continue
+    return None
+
+
+def _places_objects(data: bytes, start: int, end: int) -> bool:
+    spans = [(start, end)]
+    for number in (_MOVING_OBJECT, _BASE, _POSITION):
+        spans = [(f.start, f.end) for span in spans for f in fields(data, *span) if f.number == number]
+    return bool(spans)
+
+
+def message_time(data: bytes, kind: str | None) -> int | None:
+    """Return the time of a message in nanoseconds, of a sensor view that of its ground truth; None where it says none."""
+    try:
+        inner = outer = None
+        for field in fields(data):
+            if field.number == _TIMESTAMP:
+                outer = _nanoseconds(data, field.start, field.end)
+                if kind != SENSOR_VIEW:
+                    break
+            elif field.number == _TRUTH and kind == SENSOR_VIEW:
+                stamps = (f for f in fields(data, field.start, field.end) if f.number == _TIMESTAMP)
+                inner = next((_nanoseconds(data, f.start, f.end) for f in stamps), inner)
+    except ValueError:
+        return None
+    return outer if inner is None else inner
+
+
+def is_whole(data: bytes) -> bool:
+    """Say whether bytes are fields one after another up to their end, a time stamp among them."""
+    try:
+        numbers = {field.number for field in fields(data)}  # a set, so that all of them are gone through
+    except ValueError:
+        return False
+    return _TIMESTAMP in numbers
+
+
+def _nanoseconds(data: bytes, start: int, end: int) -> int:
+    parts = {field.number: field.value for field in fields(data, start, end)}
+    return signed(parts.get(1, 0)) * _NS + parts.get(2, 0)

@@ -1,0 +1,126 @@
+"""Bytes as they come from standard input or TCP, an empty piece at least ten times a second."""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import time
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+from drivelint.watch.sources.background import TICK_S
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+BLOCK: Final = 1 << 18
+_RETRY_S: Final = 0.5
+"""So often it is tried again to connect to a writer that is not there yet."""
+
+
+class Patience:
+    """Tells when nothing has come for `idle_s` seconds; None: it waits for ever."""
+
+    def __init__(self, idle_s: float | None) -> None:
+        self._idle_s = idle_s
+        self._came_at = time.monotonic()
+
+    def came(self) -> None:
+        """Something came."""
+        self._came_at = time.monotonic()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing has come for too long."""
+        return self._idle_s is not None and time.monotonic() - self._came_at >= self._idle_s
+
+
+def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None, None]:
+    """Yield what comes from an open file descriptor, such as standard input, up to its end."""
+    patience = Patience(idle_s)
+    while not patience.is_over:
+        if not select.select([number], [], [], TICK_S)[0]:
+            yield b""
+            continue
+        try:
+            data = os.read(number, BLOCK)
+        except OSError as error:
+            raise TraceError(f"standard input cannot be read: {error.strerror or error}") from error
+        if not data:
+            return
+        yield data
+        patience.came()
+
+
+def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+    """Yield what comes from a TCP connection until its peer closes it; that it broke is told in `notes`, and ends it, too."""
+    patience = Patience(idle_s)
+    with connection:
+        connection.settimeout(TICK_S)
+        while not patience.is_over:
+            try:
+                data = connection.recv(BLOCK)
+            except TimeoutError:
+                yield b""
+                continue
+            except OSError as error:
+                notes.append(f"the connection broke: {error.strerror or error}")
+                return
+            if not data:
+                return
+            yield data
+            patience.came()
+
+
+def connected(host: str, port: int, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+    """Connect to a writer, waiting for it if it is not there yet, and yield what it sends.
+
+    Errors: `TraceError` for a host that is not known.
+    """
+    where = f"tcp://{host}:{port}"
+    patience = Patience(idle_s)
+    while not patience.is_over:
+        try:
+            connection = socket.create_connection((host, port), timeout=_RETRY_S)
+        except socket.gaierror as error:
+            raise TraceError(f"{where}: the host is not known: {error.strerror or error}") from error
+        except OSError:
+            yield b""
+            time.sleep(_RETRY_S)
+        else:
+            yield from from_socket(connection, idle_s, notes)
+            return
+
+
+def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+    """Wait for one writer to connect, and yield what it sends."""
+    patience = Patience(idle_s)
+    with server:
+        server.settimeout(TICK_S)
+        while not patience.is_over:
+            try:
+                connection, _ = server.accept()
+            except TimeoutError:
+                yield b""
+                continue
+            server.close()  # a second writer would be another drive
+            yield from from_socket(connection, idle_s, notes)
+            return
+
+
+def bound_socket(kind: socket.SocketKind, host: str, port: int, where: str) -> socket.socket:
+    """Return a socket bound to an address of this machine, an empty host being all of them. Errors: `TraceError` where it is taken."""
+    try:
+        family = socket.getaddrinfo(host, port, type=kind)[0][0] if host else socket.AF_INET
+        bound = socket.socket(family, kind)
+        try:
+            if kind == socket.SOCK_STREAM:
+                bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            bound.bind((host, port))
+        except OSError:
+            bound.close()
+            raise
+    except OSError as error:
+        raise TraceError(f"{where}: nothing can be received there: {error.strerror or error}") from error
+    return bound
