@@ -111,6 +111,7 @@ def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
     """Return a window at whose end a rule has these margins, one every 0.1 s."""
     times = [round((end_s - 0.1 * k) * S) for k in reversed(range(len(margins)))]
     row: dict[str, Any] = {
+        "finding_id": None,
         "rule_id": RULE,
         "ego_id": "1",
         "profile": None,
@@ -119,7 +120,8 @@ def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
         "margin": margins,
     }
     kinds = pa.schema([
-        ("rule_id", pa.string()), ("ego_id", pa.string()), ("profile", pa.string()), ("object_id", pa.string()),
+        ("finding_id", pa.string()), ("rule_id", pa.string()), ("ego_id", pa.string()), ("profile", pa.string()),
+        ("object_id", pa.string()),
         ("t_ns", pa.list_(pa.int64())), ("margin", pa.list_(pa.float64())),
     ])  # fmt: skip
     return JudgedWindow(0, round(10.0 * S), pa.table({}), pa.table({}), pa.Table.from_pylist([row], schema=kinds))

@@ -134,6 +134,7 @@ def watch(
     from drivelint.result.model import exit_status
     from drivelint.watch.options import WatchOptions
     from drivelint.watch.run import Watch, check_recording, conclude
+    from drivelint.watch.server import open_server
     from drivelint.watch.sources.choice import open_source
 
     settings = WatchOptions(
@@ -168,7 +169,11 @@ def watch(
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
 
         def job() -> int:
-            with open_source(settings) as opened, Watch(settings, opened, emit, interruption) as watch:
+            with (
+                open_server(serve) as server,
+                open_source(settings) as opened,
+                Watch(settings, opened, emit, interruption, server) as watch,
+            ):
                 progress.stage("watching")
                 watched = watch.watch()
                 opened.close()

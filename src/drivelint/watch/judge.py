@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.engine.barrier import RefusedLog
     from drivelint.engine.batch import Drive
+    from drivelint.result.text import Row
     from drivelint.watch.options import WatchOptions
 
 PASSES_PER_RELEASE = 64
@@ -42,13 +43,27 @@ _KEPT = frozenset({"profile", "environment", "map_quality"})
 
 @dataclass(frozen=True)
 class JudgedWindow:
-    """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is."""
+    """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is.
+
+    `courses`: margins over time around findings and near misses; empty where nobody asks for them.
+    """
 
     t_start_ns: int
     t_end_ns: int
     findings: pa.Table
     verdicts: pa.Table
-    near_misses: pa.Table
+    courses: pa.Table
+
+    def margins_since(self, t_ns: int | None) -> list[Row]:
+        """Return the steps of the courses after a time, None: all, with the columns of `margins.parquet`, in the order of time."""
+        same = ("drive_id", "ego_id", "rule_id", "profile", "object_id")
+        steps = ("t_ns", "observed", "required", "margin", "holds")
+        rows = [
+            {**{name: row[name] for name in same}, "ref_id": None, **dict(zip(steps, values, strict=True))}
+            for row in self.courses.to_pylist()
+            for values in zip(*(row[name] for name in steps), strict=True)
+        ]
+        return sorted((row for row in rows if t_ns is None or row["t_ns"] > t_ns), key=lambda row: row["t_ns"])
 
 
 class WindowJudge:
@@ -75,8 +90,8 @@ class WindowJudge:
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
         self._library = MapLibrary(options)
-        # series of near misses are written for those who look at the tables before they are cleared
-        observers = [_look] if options.warn else []
+        # courses are written for those who look at the tables before they are cleared
+        observers = [_look] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")
         self._session = JudgingSession(
             self._con, rules, params, None, memory=self._memory, observers=observers, limits=limits
@@ -104,7 +119,7 @@ class WindowJudge:
         tables = {
             "findings": collect.findings(self._con),
             "verdicts": collect.verdicts(self._con),
-            "near_misses": self._con.execute("FROM course WHERE finding_id IS NULL ORDER BY ALL").to_arrow_table(),
+            "courses": self._con.execute("FROM course ORDER BY ALL").to_arrow_table(),
         }
         for name, drive in drives.items():
             if name not in found:

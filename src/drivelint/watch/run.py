@@ -25,7 +25,6 @@ from drivelint.watch.window import S, Window
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.drive.trace import Trace
     from drivelint.engine.interruption import Interruption
     from drivelint.report.progress import Progress
     from drivelint.result.model import Result
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
     from drivelint.watch.messages import Message
     from drivelint.watch.options import WatchOptions
+    from drivelint.watch.server import LiveServer
     from drivelint.watch.source import Source
 
 READ_S: Final = 0.05
@@ -54,7 +54,7 @@ class Watched:
 
 
 class Watch:
-    """Watches one source. `emit` takes each message as it is said; `listeners` take each window that was judged."""
+    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Watch:
         source: Source,
         emit: Callable[[Message], None],
         interruption: Interruption,
-        listeners: tuple[Callable[[Trace, JudgedWindow], None], ...] = (),
+        server: LiveServer | None = None,
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
             raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
@@ -74,7 +74,7 @@ class Watch:
         self._source = source
         self._emit = emit
         self._interruption = interruption
-        self._listeners = listeners
+        self._server = server
         self._stack = ExitStack()
         self._judge = self._stack.enter_context(WindowJudge(options))
         known = catalogue.load_rules(options.rules_dirs)
@@ -147,11 +147,13 @@ class Watch:
             self._doubt_of(judged)
             return
         self._doubt = None
+        since_ns = self._judged_until_ns
         self._take(judged)
         self.watched.n_windows += 1
         self.watched.busy_s.append(time.perf_counter() - begun_s)
-        for listener in self._listeners:
-            listener(trace, judged)
+        if self._server is not None:
+            self._server.publish_scene(trace)
+            self._server.publish_margins(judged.margins_since(since_ns))
 
     def _doubt_of(self, error: DriveLintError) -> None:
         """Say once why the log cannot be judged as far as it is known."""
@@ -183,6 +185,8 @@ class Watch:
         rule = self._judge.rules[alarm.row["rule_id"]]
         message = messages.alarm(alarm, rule, start_ns)
         self._emit(message)
+        if self._server is not None:
+            self._server.publish_alarm(message)
         for trigger in self._triggers:
             if (trouble := trigger.pull(message)) is not None:
                 self._emit(messages.note(trouble))

@@ -6,6 +6,7 @@ Topics and messages are those of annotated logs where these have them, so that t
 from __future__ import annotations
 
 import json
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
@@ -41,6 +42,22 @@ _ALARM: Final = {
     "status": ("string", "that of the rule: experimental, test or stable"),
 }
 """What an alarm says beside the columns of a finding."""
+
+
+@contextmanager
+def open_server(address: str | None) -> Iterator[LiveServer | None]:
+    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. Errors: `UsageError`."""
+    if address is None:
+        yield None
+        return
+    host, _, port = address.rpartition(":")
+    if not host or not port.isdecimal():
+        raise UsageError(f"--serve {address}: give a host and a port, such as 127.0.0.1:8765")
+    server = LiveServer(host, int(port))
+    try:
+        yield server
+    finally:
+        server.close()
 
 
 class LiveServer:

@@ -27,7 +27,9 @@ class ShrinkingMargins:
         """Return a message for each margin that is below its rule's `near_margin` at the newest steps, and shrinks."""
         found: list[dict[str, Any]] = []
         seen: dict[Key, int] = {}
-        for row in window.near_misses.to_pylist():
+        for row in window.courses.to_pylist():
+            if row["finding_id"] is not None:
+                continue
             key = row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
             t_ns, margin = np.array(row["t_ns"], np.int64), np.array(row["margin"], np.float64)
             known = np.isfinite(margin)

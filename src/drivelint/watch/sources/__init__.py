@@ -85,6 +85,12 @@ def _udp(name: str, options: SourceOptions) -> Source:
     return osi.open_udp(*_address(name, UDP_PORT), options.folder, idle_s=options.idle_s)
 
 
+def _foxglove(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources import foxglove_ws
+
+    return foxglove_ws.open(name, options.folder, idle_s=options.idle_s)
+
+
 def _sumo(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import sumo
 
@@ -109,6 +115,7 @@ OPENERS: Final[tuple[Opener, ...]] = (
     Opener("tcp://*", "tcp://HOST:PORT or tcp://:PORT (OSI over TCP)", _tcp),
     Opener("tcp-listen://*", "tcp-listen://HOST:PORT", _tcp),
     Opener("udp://*", "udp://HOST:PORT (OSI of esmini)", _udp),
+    Opener("ws://*", "ws://HOST:PORT (a Foxglove WebSocket server)", _foxglove),
     Opener("*.mcap", "an .mcap file that grows", _mcap),
     Opener("*.osi", "an .osi file that grows", _osi_file),
     Opener("*.sumocfg", "a .sumocfg (SUMO is started and stepped)", _sumo),

@@ -11,7 +11,7 @@ import numpy as np
 from drivelint.drive.lost_time import LATEST_NS
 from drivelint.formats.mcap.bag import OSI_SCHEMAS
 from drivelint.formats.mcap.writer import Sink
-from drivelint.watch.source import Frame
+from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources.growing_file import GrowingFile
 from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
 from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, Numbered
@@ -22,17 +22,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 LIBRARY: Final = "drivelint watch"
+MOST_PENDING_BYTES: Final = 512 << 20
+"""So much is kept of what no window has begun behind yet. No window is as large."""
 MOST_AT_ONCE: Final = 32 << 20
 """About so many bytes of messages are given at a time, of a file that is long when the watch begins."""
 
 
-class McapFile:
+class McapFile(WrittenWindows):
     """A source of the messages of an MCAP file, see `drivelint.watch.source.Source`.
 
     A frame is a message that our readers read, at its log time, or a damaged chunk. What holds of the messages before a window is
     written into it, so windows must begin one after another as the drive does.
     """
 
+    window_name = "window.mcap"
     in_step = False
 
     def __init__(self, path: Path, *, idle_s: float | None) -> None:
@@ -43,6 +46,7 @@ class McapFile:
         self._count = 0
         self._last_ns = 0
         self._pending: deque[Numbered] = deque()  # what no window has begun behind yet
+        self._pending_bytes = 0
         self._memories: dict[int, Memory] = {}
         self._first: dict[int, Numbered] = {}  # of each channel of OSI
         self._static: dict[int, StaticContent] = {}
@@ -81,6 +85,9 @@ class McapFile:
             if schema in OSI_SCHEMAS:
                 self._first.setdefault(each.channel, numbered)
             self._pending.append(numbered)
+            self._pending_bytes += len(each.record)
+            while self._pending_bytes > MOST_PENDING_BYTES:
+                self._remember_next()
             found.append(Frame(self._last_ns, numbered, len(each.record)))
         return found
 
@@ -96,15 +103,17 @@ class McapFile:
     def write_window(self, frames: Sequence[Frame], path: Path) -> None:
         """See `Source`."""
         records = [cast("tuple[int, Message | DamagedChunk]", frame.data) for frame in frames]
-        if records:
-            self._remember(records[0][0])
+        begin = records[0][0] if records else 0
+        while self._pending and self._pending[0].number < begin:
+            self._remember_next()
         begun: set[int] = set()
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
             held = [each for memory in self._memories.values() for each in memory.held()]
             for numbered in sorted(held, key=lambda each: each.number):
-                writer.add(numbered.message)
+                if numbered.number < begin:
+                    writer.add(numbered.message)
             for number, each in records:
                 if isinstance(each, DamagedChunk):
                     writer.add_damaged(each)
@@ -114,14 +123,14 @@ class McapFile:
                 writer.add(self._with_static(number, each) if is_first else each)
             writer.finish()
 
-    def _remember(self, number: int) -> None:
-        """Take what stands before the message of this number out of what is pending."""
-        while self._pending and self._pending[0].number < number:
-            numbered = self._pending.popleft()
-            channel = numbered.message.channel
-            if channel not in self._memories:
-                self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
-            self._memories[channel].take(numbered)
+    def _remember_next(self) -> None:
+        """Take the first message out of what is pending into the memory of its channel."""
+        numbered = self._pending.popleft()
+        self._pending_bytes -= len(numbered.message.record)
+        channel = numbered.message.channel
+        if channel not in self._memories:
+            self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
+        self._memories[channel].take(numbered)
 
     def _with_static(self, number: int, message: Message) -> Message:
         """Give the first message of an OSI channel in a window what only the first one in the file says."""

@@ -1,6 +1,7 @@
 """The entities of a Foxglove scene that are still there, as messages that say only these.
 
-How long an entity is there, and whether it stood still, follows from its last two updates (`formats.foxglove.entity_lifetime`). Schema:
+How long an entity is there, and whether it stood still, follows from its last two updates (`formats.foxglove.entity_lifetime`). One that
+went before a window and comes again in it is new there: its old place would be a sample of a track, which others interpolate. Schema:
 https://docs.foxglove.dev/docs/visualization/message-schemas/scene-update.
 """
 
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 
 GONE_KEPT_NS: Final = 120_000_000_000
 """An entity that is gone is remembered for so long: one of its name that comes again has moved in between, or not."""
-MOST_DELETIONS: Final = 1000
+MOST_DOUBTFUL: Final = 1000
+"""So many deletions are kept that delete nothing by the entities' own clock, and may do so by the log's, if a reader chooses that."""
 _DELETIONS, _ENTITIES = 1, 2
 _TIMESTAMP, _ID, _LIFETIME = 1, 3, 4
 _DELETE_ALL: Final = 1
@@ -52,7 +54,7 @@ class SceneMemory:
     def __init__(self, encoding: str) -> None:
         self._codec: _Protobuf | _Json = _Json() if encoding == "json" else _Protobuf()
         self._tracks: dict[Any, _Track] = defaultdict(_Track)
-        self._deletions: deque[_Deletion] = deque(maxlen=MOST_DELETIONS)
+        self._doubtful: deque[_Deletion] = deque(maxlen=MOST_DOUBTFUL)
         self._latest_ns = 0
 
     def take(self, numbered: Numbered) -> None:
@@ -75,31 +77,29 @@ class SceneMemory:
 
     def _delete(self, whom: Any, t_ns: int, deletion: _Deletion) -> None:
         tracks = self._tracks.values() if whom is None else [self._tracks[whom]] if whom in self._tracks else []
-        doubtful = False
         for track in tracks:
-            if not track.gone:
-                track.gone = track.updates[-1].t_ns < t_ns
-                doubtful |= not track.gone
-        if doubtful:  # whether it holds depends on the clock, which the reader chooses
-            self._deletions.append(deletion)
+            if not track.gone and track.updates[-1].t_ns < t_ns:
+                track.gone = True
+            elif not track.gone and (not self._doubtful or self._doubtful[-1] is not deletion):
+                self._doubtful.append(deletion)
 
     def held(self) -> list[Numbered]:
-        """Return messages with the updates of the entities that are still there, each with the log time of its own."""
-        by_source: dict[int, tuple[Numbered, list[Any], list[Any]]] = {}
+        """Return messages with the updates of the entities that are still there, each at the log time of its own."""
         for track in self._tracks.values():
             expires = track.updates[-1].expires_ns
             track.gone |= expires is not None and expires < self._latest_ns
         forgotten = self._latest_ns - GONE_KEPT_NS
         for name in [n for n, track in self._tracks.items() if track.gone and track.updates[-1].t_ns < forgotten]:
             del self._tracks[name]
-        for track in self._tracks.values():
-            for update in () if track.gone else track.updates:
-                by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
-        for deletion in self._deletions:
+        updates = [update for track in self._tracks.values() if not track.gone for update in track.updates]
+        by_source: dict[int, tuple[Numbered, list[Any], list[Any]]] = {}
+        for update in updates:
+            by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
+        for deletion in self._doubtful:
             by_source.setdefault(deletion.source.number, (deletion.source, [], []))[2].append(deletion.content)
         return [
             source._replace(message=source.message.with_content(self._codec.joined(entities, deletions)))
-            for _, (source, entities, deletions) in sorted(by_source.items())
+            for _, (source, entities, deletions) in sorted(by_source.items(), key=lambda item: item[0])
         ]
 
 

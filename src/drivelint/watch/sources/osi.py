@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import socket
 import sys
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final, Protocol, cast
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.osi.trace_file import LENGTH
-from drivelint.watch.source import Frame
+from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources import transports
 from drivelint.watch.sources.background import BackgroundReader
 from drivelint.watch.sources.datagram_socket import ask_for_losses, datagrams
@@ -41,13 +42,14 @@ class Receiver(Protocol):
         ...
 
 
-class OsiSource:
+class OsiSource(WrittenWindows):
     """A source of OSI messages, see `drivelint.watch.source.Source`.
 
     A frame is a message; its time is the message's own. What only the first message says, such as its lanes, is put into the first
     message of every window.
     """
 
+    window_name = "window.osi"
     in_step = False
 
     def __init__(self, recording: Path, receiver: Receiver) -> None:
@@ -253,7 +255,8 @@ def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None)
     server = transports.bound_socket(socket.SOCK_STREAM, host, port, where)
     server.listen(1)
     notes: list[str] = []
-    return _stream(where, transports.listening(server, idle_s, notes), folder, notes)
+    with _closed_on_error(server):
+        return _stream(where, transports.listening(server, idle_s, notes), folder, notes)
 
 
 def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
@@ -261,12 +264,17 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
     where = f"udp://{host}:{port}"
     receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
     recording = folder / RECORDING
+    with _closed_on_error(receiver):
+        return OsiSource(recording, DatagramReceiver(where, receiver, _new_file(recording), idle_s=idle_s))
+
+
+@contextmanager
+def _closed_on_error(opened: socket.socket) -> Generator[None, None, None]:
     try:
-        file = _new_file(recording)
+        yield
     except BaseException:
-        receiver.close()
+        opened.close()
         raise
-    return OsiSource(recording, DatagramReceiver(where, receiver, file, idle_s=idle_s))
 
 
 def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:

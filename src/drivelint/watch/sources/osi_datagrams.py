@@ -11,9 +11,12 @@ and ended each message with -1, so that a lost datagram cannot be told: such a s
 from __future__ import annotations
 
 import struct
+from collections import deque
 from dataclasses import dataclass
+from statistics import median
 from typing import Final
 
+from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.errors import TraceError
 from drivelint.formats.osi.trace_file import MOST_MESSAGE_BYTES
 from drivelint.phrases import plural
@@ -22,8 +25,10 @@ from drivelint.watch.sources.osi_messages import is_whole, message_time
 HEADER: Final = struct.Struct("<iI")
 MOST_PAUSE_NS: Final = 10_000_000
 """The datagrams of a message are sent at once. A longer pause between two from another machine is where others were lost."""
-MOST_LATE_NS: Final = 1_000_000_000
-"""A message that is older than the one before it, by no more than that, was overtaken on its way."""
+HOLE_PERIODS: Final = MAX_GAP_PERIODS + 0.25
+"""Where a message is known to be lost, so many steps of time are left out: the checker joins what is less far apart."""
+_STEPS: Final = 101
+"""Of so many messages the usual step of time is known."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,6 @@ class Losses:
 
     gaps: int = 0
     distrusted: int = 0
-    late: int = 0
     strange: int = 0
     foreign: int = 0
     dropped: int = 0
@@ -61,8 +65,7 @@ class Losses:
         counts = {
             f"datagrams missing or out of order in {plural(self.gaps, 'place')}": self.gaps,
             f"{plural(self.dropped, 'datagram')} that found no room": self.dropped,
-            f"{plural(self.distrusted, 'message')} next to missing datagrams": self.distrusted,
-            f"{plural(self.late, 'message')} that came late": self.late,
+            f"{plural(self.distrusted, 'message')} left out behind them": self.distrusted,
             f"{plural(self.strange, 'datagram')} of no OSI message": self.strange,
             f"{plural(self.foreign, 'datagram')} of another sender": self.foreign,
         }
@@ -72,8 +75,13 @@ class Losses:
 class Assembler:
     """Puts messages together of which every datagram came in its order; all others are counted in `losses`, and left out.
 
-    Behind a message that is not complete the next one of several datagrams is left out, too: what is missing of the first may have
-    come in its place. All messages are of the sender of the first one.
+    The next messages behind a lost one are left out, too. What is missing of it may have come in their place; and the checker, which
+    takes a single missing step for a slow recorder, then sees a hole, across which it judges nothing. All messages are of the sender
+    of the first one.
+
+    What nothing tells: that all datagrams of a message were lost on the way from another machine; that one came as late as the message
+    after the next, in the place of one that was lost; and, where messages follow one another within `MOST_PAUSE_NS`, that what is left
+    of two counts on from one to the other.
     """
 
     def __init__(self, where: str) -> None:
@@ -83,10 +91,12 @@ class Assembler:
         self._previous: Datagram | None = None
         self._is_lost = False  # the message whose datagrams come now
         self._in_doubt = False
+        self._left_out = 0  # messages since the last one that was not
         self._sender: object = None
         self._last = b""
         self._last_part = b""
         self._last_ns: int | None = None
+        self._steps_ns: deque[int] = deque(maxlen=_STEPS)
 
     def take(self, datagram: Datagram) -> bytes | None:
         """Return the message that this datagram completes, if any. Errors: `TraceError` for a stream that counts from 0."""
@@ -103,11 +113,8 @@ class Assembler:
                 f"{self._where}: the datagrams are counted from 0, as an old esmini does: one that is lost could not be told: "
                 "use a newer one, or let it write a file (--osi_file) and watch that"
             )
-        previous, self._previous = self._previous, datagram
-        if previous is not None:
-            self.losses.dropped += max(datagram.dropped - previous.dropped, 0)
-            if self._parts and _is_interrupted(previous, datagram):
-                self._give_up()
+        if self._is_interrupted(datagram) and self._parts:
+            self._give_up()
         if not self._is_next(counter, data):
             return None
         self._parts.append(data)
@@ -118,8 +125,9 @@ class Assembler:
     def _is_next(self, counter: int, data: bytes) -> bool:
         """Say whether a datagram is the one that is waited for; if not, what came of its message is left out."""
         # the first part of a message has its time in it: none of another message is the same
-        again = [data] == self._parts if counter == 1 else not self._parts and data == self._last_part
-        if again:
+        if counter == 1 and [data] == self._parts:
+            return False
+        if counter < 0 and not self._parts and data == self._last_part:
             return False
         if counter in {1, -1}:
             if self._parts:
@@ -132,33 +140,51 @@ class Assembler:
             return False
         return True
 
+    def _is_interrupted(self, datagram: Datagram) -> bool:
+        """Say whether others may have been lost just before this one."""
+        previous, self._previous = self._previous, datagram
+        if previous is None:
+            return False
+        paused = not datagram.local and datagram.at_ns - previous.at_ns > MOST_PAUSE_NS
+        dropped = max(datagram.dropped - previous.dropped, 0)
+        self.losses.dropped += dropped
+        if dropped:
+            self._in_doubt = True
+        if paused or dropped:
+            self._last_part = b""
+        return paused or dropped > 0 or previous.sender != datagram.sender
+
     def _give_up(self) -> None:
         self.losses.gaps += 1
         self._is_lost = self._in_doubt = True
         self._parts.clear()
 
     def _finished(self, sender: object) -> bytes | None:
-        message, several = b"".join(self._parts), len(self._parts) > 1
+        message = b"".join(self._parts)
         self._last_part = self._parts[-1]
         self._parts.clear()
-        if several and self._in_doubt:
-            self._in_doubt = False
-            self.losses.distrusted += 1
-            return None
         t_ns = message_time(message, None)
         if t_ns is None or not is_whole(message):
             self.losses.strange += 1
             return None
         if message == self._last:
             return None
-        if self._last_ns is not None and 0 < self._last_ns - t_ns <= MOST_LATE_NS:
-            self.losses.late += 1
+        if self._in_doubt:
+            self._left_out += 1
+            self._in_doubt = self._is_in_hole(t_ns)
+            self.losses.distrusted += 1
             return None
+        if self._last_ns is not None and t_ns > self._last_ns and not self._left_out:
+            self._steps_ns.append(t_ns - self._last_ns)
         self._last, self._last_ns, self._sender = message, t_ns, sender
+        self._left_out = 0
         return message
 
-
-def _is_interrupted(previous: Datagram, datagram: Datagram) -> bool:
-    """Whether others may have been lost between two."""
-    paused = not datagram.local and datagram.at_ns - previous.at_ns > MOST_PAUSE_NS
-    return paused or datagram.dropped != previous.dropped or previous.sender != datagram.sender
+    def _is_in_hole(self, t_ns: int) -> bool:
+        """Say whether the message that follows one of this time is still too near to the last one for a hole between them."""
+        if self._last_ns is None:
+            return False
+        if not self._steps_ns:
+            return self._left_out < 2
+        period = median(self._steps_ns)
+        return 0 <= t_ns + period - self._last_ns < HOLE_PERIODS * period
