@@ -66,7 +66,7 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
         until: int | None = None
         for each, (_, is_whole) in zip(judged, made, strict=True):
             if isinstance(each, JudgedWindow):
-                alarms.take(each, until, is_whole=is_whole)
+                alarms.take(each, until, None if is_whole else each.t_end_ns - round(options.window_s * S))
                 until = each.t_end_ns
     result = run.check(checked(options, folder), Silent())
     findings = result.findings.to_pylist()

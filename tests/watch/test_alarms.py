@@ -84,63 +84,63 @@ def log() -> AlarmLog:
 
 def test_a_finding_that_goes_on_is_one_alarm_and_its_end_is_told() -> None:
     alarms = log()
-    new = alarms.take(window(0, 10, finding(9, 10)), None, is_whole=True).new
+    new = alarms.take(window(0, 10, finding(9, 10)), None, None).new
     assert [(a.row["t_start_ns"], a.latency_s) for a in new] == [(9 * S, 1.0)]
-    assert alarms.take(window(0, 12, finding(9, 12)), 10 * S, is_whole=True) == Change([], [], [])
-    change = alarms.take(window(0, 14, finding(9, 12.5)), 12 * S, is_whole=True)
+    assert alarms.take(window(0, 12, finding(9, 12)), 10 * S, None) == Change([], [], [])
+    change = alarms.take(window(0, 14, finding(9, 12.5)), 12 * S, None)
     assert (change.new, change.withdrawn) == ([], [])
     assert [a.t_end_ns for a in change.over] == [round(12.5 * S)]
 
 
 def test_failing_steps_within_the_gap_of_the_rule_are_the_same_finding_and_later_ones_another() -> None:
     alarms = log()
-    alarms.take(window(0, 10, finding(9, 10)), None, is_whole=True)
-    assert alarms.take(window(0, 12, finding(10.9, 11)), 10 * S, is_whole=True).new == []
-    assert len(alarms.take(window(0, 14, finding(9, 11), finding(12.5, 13)), 12 * S, is_whole=True).new) == 1
+    alarms.take(window(0, 10, finding(9, 10)), None, None)
+    assert alarms.take(window(0, 12, finding(10.9, 11)), 10 * S, None).new == []
+    assert len(alarms.take(window(0, 14, finding(9, 11), finding(12.5, 13)), 12 * S, None).new) == 1
 
 
 def test_another_object_is_another_alarm() -> None:
     alarms = log()
-    new = alarms.take(window(0, 10, finding(9, 10), finding(9, 10, object_id="2")), None, is_whole=True).new
+    new = alarms.take(window(0, 10, finding(9, 10), finding(9, 10, object_id="2")), None, None).new
     assert [a.row["object_id"] for a in new] == ["1", "2"]
 
 
 def test_what_fails_only_because_the_window_begins_there_is_no_alarm() -> None:
     alarms = log()
     cut = WARM_UP_NS / S - 1
-    assert alarms.take(window(100, 130, finding(100, 100 + cut)), 129 * S, is_whole=False).new == []
-    assert len(alarms.take(window(100, 130, finding(100, 100 + cut)), 129 * S, is_whole=True).new) == 1
+    assert alarms.take(window(100, 130, finding(100, 100 + cut)), 129 * S, 0 * S).new == []
+    assert len(alarms.take(window(100, 130, finding(100, 100 + cut)), 129 * S, None).new) == 1
 
 
 def test_what_fails_at_the_newest_steps_is_an_alarm_wherever_it_began() -> None:
     alarms = log()
-    assert len(alarms.take(window(100, 130, finding(100, 130)), 129 * S, is_whole=False).new) == 1
+    assert len(alarms.take(window(100, 130, finding(100, 130)), 129 * S, 100 * S).new) == 1
 
 
 def test_what_is_known_in_hindsight_is_an_alarm() -> None:
     alarms = log()
-    (alarm,) = alarms.take(window(100, 130, finding(110, 111)), 129 * S, is_whole=False).new
+    (alarm,) = alarms.take(window(100, 130, finding(110, 111)), 129 * S, 100 * S).new
     assert alarm.latency_s == 20
 
 
 def test_a_reference_point_that_moved_a_little_is_the_same() -> None:
     alarms = log()
-    alarms.take(window(0, 10, finding(5, 5, ref_id=0), refs={0: 5}), None, is_whole=True)
-    assert alarms.take(window(0, 11, finding(5.5, 5.5, ref_id=0), refs={0: 5.5}), 10 * S, is_whole=True).new == []
+    alarms.take(window(0, 10, finding(5, 5, ref_id=0), refs={0: 5}), None, None)
+    assert alarms.take(window(0, 11, finding(5.5, 5.5, ref_id=0), refs={0: 5.5}), 10 * S, None).new == []
     both = window(0, 20, finding(5.5, 5.5, ref_id=0), finding(15, 15, ref_id=1), refs={0: 5, 1: 15})
-    assert len(alarms.take(both, 11 * S, is_whole=True).new) == 1
+    assert len(alarms.take(both, 11 * S, None).new) == 1
 
 
 def test_a_profile_that_only_gives_advice_gives_no_alarm() -> None:
     alarms = log()
     row = finding(9, 10) | {"profile": "relaxed"}
-    assert alarms.take(window(0, 10, row), None, is_whole=True).new == []
-    assert len(alarms.take(window(0, 10, row | {"profile": "nominal"}), None, is_whole=True).new) == 1
+    assert alarms.take(window(0, 10, row), None, None).new == []
+    assert len(alarms.take(window(0, 10, row | {"profile": "nominal"}), None, None).new) == 1
 
 
 def test_alarms_are_held_against_the_findings_of_the_whole_log() -> None:
     alarms = log()
-    alarms.take(window(0, 10, finding(9, 10), finding(3, 4, object_id="2")), None, is_whole=True)
+    alarms.take(window(0, 10, finding(9, 10), finding(3, 4, object_id="2")), None, None)
     missed = alarms.hold_against([finding(9, 12), finding(30, 31)], window(0, 1).verdicts)
     assert [row["t_start_ns"] for row in missed] == [30 * S]
     assert [alarm.finding_ids for alarm in alarms.alarms] == [["r-1-9"], []]
@@ -148,15 +148,15 @@ def test_alarms_are_held_against_the_findings_of_the_whole_log() -> None:
 
 def test_what_later_windows_do_not_show_any_more_is_withdrawn_and_may_come_again() -> None:
     alarms = log()
-    (alarm,) = alarms.take(window(0, 10, finding(9, 9, ref_id=0), refs={0: 9}), None, is_whole=True).new
-    assert alarms.take(window(0, 11), 10 * S, is_whole=True) == Change([], [], [alarm])
+    (alarm,) = alarms.take(window(0, 10, finding(9, 9, ref_id=0), refs={0: 9}), None, None).new
+    assert alarms.take(window(0, 11), 10 * S, None) == Change([], [], [alarm])
     assert alarm.withdrawn_ns == 11 * S
-    assert alarms.take(window(0, 12), 11 * S, is_whole=True) == Change([], [], [])
-    assert len(alarms.take(window(0, 13, finding(9, 9, ref_id=0), refs={0: 9}), 12 * S, is_whole=True).new) == 1
+    assert alarms.take(window(0, 12), 11 * S, None) == Change([], [], [])
+    assert len(alarms.take(window(0, 13, finding(9, 9, ref_id=0), refs={0: 9}), 12 * S, None).new) == 1
 
 
 def test_an_alarm_that_the_window_cannot_know_any_more_is_not_withdrawn() -> None:
     alarms = log()
-    alarms.take(window(100, 130, finding(110, 111)), None, is_whole=False)
-    assert alarms.take(window(107, 137), 130 * S, is_whole=False).withdrawn == []
-    assert len(alarms.take(window(104, 134), 130 * S, is_whole=False).withdrawn) == 1
+    alarms.take(window(100, 130, finding(110, 111)), None, 0 * S)
+    assert alarms.take(window(107, 137), 130 * S, 107 * S).withdrawn == []
+    assert len(alarms.take(window(104, 134), 130 * S, 104 * S).withdrawn) == 1

@@ -86,12 +86,13 @@ class AlarmLog:
         self._open: list[Alarm] = []
         self._standing: list[Alarm] = []
 
-    def take(self, window: JudgedWindow, judged_until_ns: int | None, *, is_whole: bool) -> Change:
+    def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
         """Take the findings of a window; return what they change.
 
-        `judged_until_ns`: the last step of the window before; None: this is the first. `is_whole`: it begins where the log does.
+        `judged_until_ns`: the last step of the window before; None: this is the first. `from_ns`: the window's own beginning, before which
+        it may have single states that still hold; None: it begins where the log does.
         """
-        known_from_ns = window.t_start_ns + (0 if is_whole else WARM_UP_NS)
+        known_from_ns = window.t_start_ns if from_ns is None else max(window.t_start_ns, from_ns) + WARM_UP_NS
         new: list[Alarm] = []
         seen: set[int] = set()
         for row in _with_reference_times(window.findings.to_pylist(), window.verdicts):
@@ -119,7 +120,8 @@ class AlarmLog:
         self._standing = [
             each
             for each in self._standing
-            if each not in withdrawn and (each in self._open or each.t_end_ns + self._gap_ns(each) >= window.t_start_ns)
+            if each not in withdrawn
+            and (each in self._open or each.t_end_ns + self._gap_ns(each) >= known_from_ns - WARM_UP_NS)
         ]
         return Change(new, over, withdrawn)
 

@@ -166,7 +166,8 @@ class Watch:
         """Say what is new in a window."""
         if self._start_ns is None:
             self._start_ns = judged.t_start_ns
-        change = self.alarms.take(judged, self._judged_until_ns, is_whole=self._window.is_whole)
+        from_ns = None if self._window.is_whole else judged.t_end_ns - self._window_ns
+        change = self.alarms.take(judged, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged.t_end_ns
         for alarm in change.withdrawn:
             self._emit(messages.withdrawn(alarm, judged.t_end_ns, self._start_ns))

@@ -265,8 +265,9 @@ def test_standard_input_of_a_watch_that_is_ended(tmp_path: Path, number: signal.
 
 def test_an_old_recording_stays(tmp_path: Path) -> None:
     (tmp_path / "recording.osi").write_bytes(WHOLE)
-    with pytest.raises(UsageError, match="there is a recording already"):
-        open_source(f"tcp-listen://127.0.0.1:{free_port()}", tmp_path, idle_s=None)
+    source = open_source(f"tcp-listen://127.0.0.1:{free_port()}", tmp_path, idle_s=None)
+    source.close()
+    assert source.recording == tmp_path / "recording-2.osi"
     assert (tmp_path / "recording.osi").read_bytes() == WHOLE
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import sys
 from contextlib import contextmanager
+from itertools import count
 from typing import TYPE_CHECKING, Final, Protocol, cast
 
 from drivelint.errors import TraceError, UsageError
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import BinaryIO
 
-RECORDING: Final = "recording.osi"
+RECORDING: Final = "recording"
 
 
 class Receiver(Protocol):
@@ -263,9 +264,9 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
     """Watch what esmini sends to a port of this machine."""
     where = f"udp://{host}:{port}"
     receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
-    recording = folder / RECORDING
     with _closed_on_error(receiver):
-        return OsiSource(recording, DatagramReceiver(where, receiver, _new_file(recording), idle_s=idle_s))
+        recording, file = _new_recording(folder)
+        return OsiSource(recording, DatagramReceiver(where, receiver, file, idle_s=idle_s))
 
 
 @contextmanager
@@ -278,16 +279,19 @@ def _closed_on_error(opened: socket.socket) -> Generator[None, None, None]:
 
 
 def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:
-    recording = folder / RECORDING
-    return OsiSource(recording, StreamReceiver(where, blocks, _new_file(recording), notes))
+    recording, file = _new_recording(folder)
+    return OsiSource(recording, StreamReceiver(where, blocks, file, notes))
 
 
-def _new_file(path: Path) -> BinaryIO:
-    """Open a recording that is not there yet. Errors: `UsageError` where one is, or none can be written."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        return path.open("xb")
-    except FileExistsError:
-        raise UsageError(f"{path}: there is a recording already: name another folder, or move it away") from None
-    except OSError as error:
-        raise UsageError(f"{path}: the recording cannot be written: {error.strerror or error}") from error
+def _new_recording(folder: Path) -> tuple[Path, BinaryIO]:
+    """Open a recording under a name that no other has: none is ever replaced. Errors: `UsageError` where none can be written."""
+    for number in count(1):
+        path = folder / (f"{RECORDING}.osi" if number == 1 else f"{RECORDING}-{number}.osi")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            return path, path.open("xb")
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise UsageError(f"{path}: the recording cannot be written: {error.strerror or error}") from error
+    raise AssertionError
