@@ -76,7 +76,7 @@ def watch(
             "Seconds of the log after which they are judged again, where the machine keeps up.",
             min=0.01,
         ),
-    ] = 0.5,
+    ] = 1.0,
     idle: Annotated[
         float,
         option("--idle", "S", "Seconds without anything new after which the source has ended; 0: never.", min=0.0),

@@ -86,7 +86,7 @@ class WindowJudge:
         asked = profiles.keys() if options.advise else self.profiles
         self.styles = {name: profile.style for name, profile in profiles.items()}
         self._stack = ExitStack()
-        self._con = self._stack.enter_context(store.workspace(options.memory))
+        self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
         self._library = MapLibrary(options)

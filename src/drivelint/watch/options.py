@@ -10,7 +10,7 @@ from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
 
 DEFAULT_WINDOW_S = 30.0
-DEFAULT_EVERY_S = 0.5
+DEFAULT_EVERY_S = 1.0
 DEFAULT_IDLE_S = 10.0
 
 
