@@ -143,19 +143,6 @@ class LiveServer:
         return self._clock
 
 
-def newest_margins(courses: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the newest judged step of each row of `course`, as a row of `margins.parquet`."""
-    found = []
-    for row in courses:
-        steps = row["t_ns"]
-        if not steps:
-            continue
-        last = int(np.argmax(steps))
-        of_step = {name: row[name][last] for name in ("t_ns", "observed", "required", "margin", "holds")}
-        found.append({**{name: row[name] for name in ("rule_id", "profile", "ego_id", "object_id")}, **of_step})
-    return found
-
-
 def alarm_schema() -> Schema:
     """Return the schema of alarms: the columns of a finding that they have, and their own."""
     finding = result_messages.schema("finding")
