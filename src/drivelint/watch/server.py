@@ -38,8 +38,8 @@ _ALARM: Final = {
     "title": ("string", "what the rule demands"),
     "t_s": ("number", "when the rule was broken, seconds since the log's first step"),
     "said_s": ("number", "when it was said"),
-    "latency_s": ("number", "seconds between both on the watch's own clock"),
-    "status": ("string", "that of the rule: experimental, test or stable"),
+    "latency_s": ("number", "seconds of the log between both"),
+    "status": ("string", "that of the rule"),
 }
 """What an alarm says beside the columns of a finding."""
 
