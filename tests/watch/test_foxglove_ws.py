@@ -123,6 +123,16 @@ def test_it_ends_where_nothing_comes_for_long(tmp_path: Path) -> None:
         source.close()
 
 
+def test_a_recording_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    with player(COLLISION) as server:
+        source = foxglove_ws.open(server.uri, tmp_path / "file")
+        server.play()
+        with pytest.raises(TraceError, match="the recording cannot be written"):
+            received(source, 1)
+        source._client.close()
+
+
 def test_no_server_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"ws://127\.0\.0\.1:1: no Foxglove WebSocket server answers"):
         foxglove_ws.open("ws://127.0.0.1:1", tmp_path)

@@ -14,7 +14,7 @@ from drivelint.drive.cut import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
-from drivelint.watch.server import ALARMS, LiveServer, alarm_schema, newest_margins
+from drivelint.watch.server import ALARMS, LiveServer, alarm_schema
 from tests.shared_data import ROOT
 
 pytest.importorskip("foxglove")
@@ -26,7 +26,7 @@ from tests.watch.foxglove_server import until
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from drivelint.watch.sources.mcap_recording import LiveMessage
+    from drivelint.watch.sources.recordings import LiveMessage
 
 RULE = "ukhc.r162.safe-distance-ahead"
 MARGIN = {
@@ -126,15 +126,6 @@ def test_messages_are_of_their_schemas() -> None:
     jsonschema = pytest.importorskip("jsonschema")
     known = {k: v for k, v in ALARM.items() if k not in {"object_id", "observed"}}
     jsonschema.validate(known, json.loads(alarm_schema().data))
-
-
-def test_newest_margins() -> None:
-    course = {
-        **{k: MARGIN[k] for k in ("rule_id", "profile", "ego_id", "object_id")},
-        "t_ns": [1, 2], "observed": [3.0, 4.0], "required": [5.0, 5.0], "margin": [-2.0, -1.0], "holds": [False, False],
-    }  # fmt: skip
-    (row,) = newest_margins([course, {**course, "t_ns": []}])
-    assert (row["t_ns"], row["observed"], row["margin"], row["rule_id"]) == (2, 4.0, -1.0, RULE)
 
 
 def test_a_port_that_is_taken_is_one_line() -> None:

@@ -265,6 +265,15 @@ def test_an_error_in_the_middle_is_told_and_the_recording_stays(scenario: Path, 
     assert read_trace(source.recording, IngestOptions(ego="a")).tables["actor_state"].num_rows > 10
 
 
+def test_a_recording_that_cannot_be_written_is_one_line(scenario: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    conf = config(scenario, "unwritten.sumocfg", "c.rou.xml")
+    source = sumo.open(str(conf), tmp_path / "file")
+    with pytest.raises(TraceError, match="the recording cannot be written"):
+        played(source)
+    assert not processes(str(conf))
+
+
 def test_what_is_left_out_is_told(scenario: Path, tmp_path: Path) -> None:
     more = '<device.fcd.probability value="0.5"/>'
     source = sumo.open(str(config(scenario, "some.sumocfg", "c.rou.xml", more=more)), tmp_path)

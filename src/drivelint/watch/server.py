@@ -38,8 +38,8 @@ _ALARM: Final = {
     "title": ("string", "what the rule demands"),
     "t_s": ("number", "when the rule was broken, seconds since the log's first step"),
     "said_s": ("number", "when it was said"),
-    "latency_s": ("number", "seconds between both on the watch's own clock"),
-    "status": ("string", "that of the rule: experimental, test or stable"),
+    "latency_s": ("number", "seconds of the log between both"),
+    "status": ("string", "that of the rule"),
 }
 """What an alarm says beside the columns of a finding."""
 
@@ -141,19 +141,6 @@ class LiveServer:
         if self._clock is None or t_ns + self._clock.shift_ns < 0:
             self._clock = of_trace(t_ns)
         return self._clock
-
-
-def newest_margins(courses: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the newest judged step of each row of `course`, as a row of `margins.parquet`."""
-    found = []
-    for row in courses:
-        steps = row["t_ns"]
-        if not steps:
-            continue
-        last = int(np.argmax(steps))
-        of_step = {name: row[name][last] for name in ("t_ns", "observed", "required", "margin", "holds")}
-        found.append({**{name: row[name] for name in ("rule_id", "profile", "ego_id", "object_id")}, **of_step})
-    return found
 
 
 def alarm_schema() -> Schema:

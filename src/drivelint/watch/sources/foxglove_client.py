@@ -19,7 +19,7 @@ from mcap.records import Schema
 from drivelint.errors import TraceError, UsageError
 from drivelint.phrases import listed, one_line
 from drivelint.watch.sources.mcap_memory import is_watched
-from drivelint.watch.sources.mcap_recording import LiveChannel, LiveMessage
+from drivelint.watch.sources.recordings import LiveChannel, LiveMessage
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

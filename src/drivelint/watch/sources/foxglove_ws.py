@@ -11,14 +11,14 @@ from drivelint.errors import TraceError
 from drivelint.watch.source import WrittenWindows
 from drivelint.watch.sources.foxglove_client import FoxgloveClient
 from drivelint.watch.sources.mcap_file import McapFile
-from drivelint.watch.sources.mcap_recording import McapRecording
+from drivelint.watch.sources.recordings import McapRecording, writing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from drivelint.watch.source import Frame
-    from drivelint.watch.sources.mcap_recording import LiveMessage
+    from drivelint.watch.sources.recordings import LiveMessage
 
 
 def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWebSocket:  # noqa: A001
@@ -62,9 +62,10 @@ class FoxgloveWebSocket(WrittenWindows):
         return None if found is None or is_idle else []
 
     def _write(self, messages: Sequence[LiveMessage]) -> None:
-        if self._writer is None:
-            self._writer = McapRecording(self.recording)
-        self._writer.add(messages)
+        with writing(self.recording):
+            if self._writer is None:
+                self._writer = McapRecording(self.recording)
+            self._writer.add(messages)
 
     def notes(self) -> Sequence[str]:
         """Return what the server said of itself, and which of its channels are not read, once."""
@@ -89,4 +90,5 @@ class FoxgloveWebSocket(WrittenWindows):
             self._write(rest)
         self._reader.close()
         if self._writer is not None:
-            self._writer.finish()
+            with writing(self.recording):
+                self._writer.finish()

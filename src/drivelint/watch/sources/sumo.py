@@ -16,6 +16,7 @@ from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.phrases import listed
 from drivelint.watch.source import Frame, WrittenWindows
+from drivelint.watch.sources.recordings import writing
 from drivelint.watch.sources.sumo_process import Step, SumoProcess
 
 if TYPE_CHECKING:
@@ -83,7 +84,8 @@ class SumoSimulation(WrittenWindows):
                 self._is_over = True
                 break
             step = self._sumo.step()
-            self._record(step)
+            with writing(self.recording):
+                self._record(step)
             frames.append(
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
@@ -115,8 +117,8 @@ class SumoSimulation(WrittenWindows):
         self.halt()
         for file, end in self._files.values():
             if not file.closed:
-                file.write(end)
-                file.close()
+                with writing(self.recording), file:
+                    file.write(end)
 
     def _record(self, step: Step) -> None:
         """Write a step through, so that nothing of it is lost with us."""
@@ -132,9 +134,11 @@ class SumoSimulation(WrittenWindows):
     def _append(self, path: Path, begin: bytes, content: bytes, end: bytes) -> None:
         if path not in self._files:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._files[path] = path.open("xb", buffering=0), end
+            self._files[path] = path.open("xb"), end
             self._files[path][0].write(begin)
-        self._files[path][0].write(content)
+        file, _ = self._files[path]
+        file.write(content)
+        file.flush()
 
     @staticmethod
     def _vtypes(types: dict[bytes, VehicleType | None]) -> bytes:

@@ -1,18 +1,20 @@
-"""Messages that come live, written as an MCAP file that grows."""
+"""Recordings that grow: messages that come live, written as MCAP, and why one cannot be written."""
 
 from __future__ import annotations
 
 import struct
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from mcap.opcode import Opcode
 
+from drivelint.errors import TraceError
 from drivelint.formats.mcap.copy import index_arrays
 from drivelint.formats.mcap.writer import Sink
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from mcap.records import Schema
@@ -21,6 +23,15 @@ LIBRARY: Final = "drivelint watch"
 _HEAD: Final = struct.Struct("<BQHIQQ")
 _FIELDS_BYTES: Final = 22
 _MOST_NUMBERS: Final = 1 << 32
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Write a recording within. Errors: `TraceError` for what the system says, such as a full disk."""
+    try:
+        yield
+    except OSError as error:
+        raise TraceError(f"{path}: the recording cannot be written: {error.strerror or error}") from error
 
 
 class LiveChannel(NamedTuple):
