@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from drivelint import run
+from drivelint.drive.trace import DriveInput
 from drivelint.errors import DriveLintError
 from drivelint.report.progress import Silent
 from drivelint.watch.alarms import Alarm, AlarmLog
@@ -76,15 +77,9 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
 
 def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
     """Return the options with which `check` judges the same log."""
+    same = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
     return run.CheckOptions(
-        traces=(str(folder / options.source),),
-        map=options.map,
-        rules=options.rules,
-        profiles=options.profiles,
-        mapping=options.mapping,
-        ego=options.ego,
-        env=options.env,
-        robustness=False,
+        traces=(str(folder / options.source),), rules=options.rules, profiles=options.profiles, robustness=False, **same
     )
 
 

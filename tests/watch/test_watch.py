@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -132,6 +133,60 @@ def test_nothing_halts_below_the_severity() -> None:
     messages = watched(*options("ukhc.r126.ds-disjoint"), "--halt-on", "critical", code=0, every=5)
     assert of_type(messages, "alarm")
     assert not of_type(messages, "halt")
+
+
+WRITER = """
+import pathlib, sys, time
+source, target, pause_s = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), float(sys.argv[3])
+content = source.read_bytes()
+with target.open("wb") as file:
+    for at in range(0, len(content) - 2000, 2000):
+        file.write(content[at : at + 2000])
+        file.flush()
+    time.sleep(pause_s)
+    file.write(content[at + 2000 :])
+"""
+
+
+def test_a_program_that_writes_a_log_is_watched_and_halted(tmp_path: Path) -> None:
+    """The program stops for long before the end of the log, so that only the halt can end it in time."""
+    script, log = tmp_path / "writer.py", tmp_path / "growing.mcap"
+    script.write_text(WRITER, encoding="utf-8")
+    begun_s = time.monotonic()
+    status, out, err = drivelint(
+        "watch",
+        log,
+        *options("ukhc.no-collision"),
+        "--halt-on",
+        "critical",
+        "--",
+        sys.executable,
+        script,
+        LOG,
+        log,
+        "300",
+    )
+    assert time.monotonic() - begun_s < 120
+    messages = [json.loads(line) for line in out.splitlines()]
+    assert status == 1, err
+    assert [each["t_s"] for each in of_type(messages, "alarm")] == [9.7]
+    assert of_type(messages, "halt")
+    assert len(log.read_bytes()) < len(LOG.read_bytes())
+    assert messages[-1]["n_alarms_that_are_findings"] == 1
+
+
+@pytest.mark.slow
+def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
+    script, log, out = tmp_path / "writer.py", tmp_path / "growing.mcap", tmp_path / "out"
+    script.write_text(WRITER + "sys.exit(7)", encoding="utf-8")
+    status, said, err = drivelint(
+        "watch", log, *options("ukhc.no-collision"), "--out", out, "--", sys.executable, script, LOG, log, "1"
+    )
+    messages = [json.loads(line) for line in said.splitlines()]
+    assert status == 1, err
+    assert [each["t_s"] for each in of_type(messages, "alarm")] == [9.7]
+    assert any("ended with exit code 7" in each["text"] for each in of_type(messages, "note"))
+    assert log.read_bytes() == LOG.read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,12 @@ class Child:
         """The program's exit code; None: it runs."""
         return self._process.poll()
 
+    def leave(self) -> None:
+        """Give the program time to end by itself, then end it."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(GRACE_S)
+        self.end()
+
     def end(self) -> None:
         """Ask the group to end, and kill it if it does not."""
         for number in (signal.SIGTERM, signal.SIGKILL):

@@ -121,8 +121,12 @@ class Watch:
                         break
                 if is_over:
                     break
+            if child is not None and self.watched.halted is None and not self._interruption.requested:
+                child.leave()
+                if child.code:
+                    self._emit(messages.note(f"{self._options.command[0]} ended with exit code {child.code}"))
         finally:
-            if child is not None and (self.watched.halted is not None or child.code is None):
+            if child is not None:
                 child.end()
         return self.watched
 
