@@ -9,9 +9,10 @@ from drivelint import run
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import DriveLintError
 from drivelint.report.progress import Silent
-from drivelint.watch.alarms import Alarm, AlarmLog
+from drivelint.watch.alarms import WARM_UP_NS, Alarm, AlarmLog
 from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
+from drivelint.watch.settled import SettledVerdicts
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S, Window
 
@@ -25,12 +26,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Watched:
-    """The alarms of a log, the findings of the whole log that no alarm is of, and the windows."""
+    """The alarms of a log, the findings of the whole log that no alarm is of, and the windows.
+
+    `settled`: how many verdicts were said before its end. `revised`: those of the whole log that are others than was said.
+    """
 
     alarms: list[Alarm]
     missed: list[Row]
     findings: list[Row]
     windows: list[JudgedWindow | DriveLintError]
+    settled: int
+    revised: list[Row]
 
     @property
     def false(self) -> list[Alarm]:
@@ -59,20 +65,25 @@ def windows_of(options: WatchOptions, folder: Path) -> list[tuple[Trace, bool]]:
 def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
     """Watch a log of a folder, with so many windows in a pass."""
     made = windows_of(options, folder)
+    start_ns = made[0][0].tables["data_log"]["t_start_ns"][0].as_py()
     with WindowJudge(options) as judge:
         judged: list[JudgedWindow | DriveLintError] = []
         for at in range(0, len(made), at_once):
-            judged += judge.judge([trace for trace, _ in made[at : at + at_once]])
+            judged += judge.judge([trace for trace, _ in made[at : at + at_once]], start_ns)
         alarms = AlarmLog(judge.gaps_ns, judge.profiles)
+        settled = SettledVerdicts()
         until: int | None = None
         for each, (_, is_whole) in zip(judged, made, strict=True):
             if isinstance(each, JudgedWindow):
-                alarms.take(each, until, None if is_whole else each.t_end_ns - round(options.window_s * S))
+                from_ns = None if is_whole else each.t_end_ns - round(options.window_s * S)
+                settled.take(each, each.t_start_ns if from_ns is None else from_ns + WARM_UP_NS)
+                alarms.take(each, until, from_ns)
                 until = each.t_end_ns
     result = run.check(checked(options, folder), Silent())
     findings = result.findings.to_pylist()
     missed = alarms.hold_against(findings, result.verdicts)
-    return Watched(alarms.alarms, missed, findings, judged)
+    _, revised = settled.hold_against(result.verdicts)
+    return Watched(alarms.alarms, missed, findings, judged, len(settled), revised)
 
 
 def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:

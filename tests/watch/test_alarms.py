@@ -29,6 +29,7 @@ def test_alarms_are_the_findings(name: str) -> None:
     watched = watch(options, FOLDER)
     assert [each for each in watched.windows if isinstance(each, Exception)] == []
     assert (told([alarm.row for alarm in watched.false]), told(watched.missed)) == ([], [])
+    assert told(watched.revised) == []
     assert name not in QUICK or watched.alarms
 
 

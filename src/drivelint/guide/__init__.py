@@ -11,8 +11,9 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 TOPICS: Final = (
-    "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "incident", "evidence-pack", "viewer", "columns", "python",
-    "ci", "watching", "fleets", "fleet-results", "fleet-costs", "writing-a-rule", "rule-durations", "rule-reference", "adding-a-format", "architecture",
+    "traces", "mapping", "maps", "convert", "reading-an-unknown", "explain", "incident", "evidence-pack", "viewer",
+    "columns", "python", "ci", "watching", "fleets", "fleet-results", "fleet-costs", "writing-a-rule", "rule-durations",
+    "rule-reference", "adding-a-format", "architecture",
 )  # fmt: skip
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Self
 import pyarrow.compute as pc
 
 from drivelint import catalogue
+from drivelint.arrays import with_columns
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.copies import renamed
@@ -98,8 +99,11 @@ class WindowJudge:
         )
         self._n_passes = 0
 
-    def judge(self, traces: Sequence[Trace]) -> list[JudgedWindow | DriveLintError]:
-        """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's."""
+    def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
+        """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's.
+
+        `start_ns`: the log's first step, from which reasons and seconds count; None: the window's.
+        """
         store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _KEPT])
         self._session.forget_judged()
         found: dict[str, JudgedWindow | DriveLintError] = {}
@@ -111,7 +115,7 @@ class WindowJudge:
             except DriveLintError as error:
                 found[name] = error
             else:
-                drives[name] = replace(drive, trace=renamed(drive.trace, name))
+                drives[name] = replace(drive, trace=_as_of(renamed(drive.trace, name), start_ns))
         refusals: list[RefusedLog] = []
         if drives:
             judge_apart(self._session, list(drives.values()), refusals)
@@ -121,9 +125,9 @@ class WindowJudge:
             "verdicts": collect.verdicts(self._con),
             "courses": self._con.execute("FROM course ORDER BY ALL").to_arrow_table(),
         }
-        for name, drive in drives.items():
+        for name in drives:
             if name not in found:
-                log = drive.trace.tables["data_log"]
+                log = traces[int(name)].tables["data_log"]
                 own = {key: rows.filter(pc.equal(rows["drive_id"], name)) for key, rows in tables.items()}
                 found[name] = JudgedWindow(log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **own)
         self._n_passes += 1
@@ -136,6 +140,14 @@ class WindowJudge:
 
     def __exit__(self, *_error: object) -> None:
         self._stack.close()
+
+
+def _as_of(trace: Trace, start_ns: int | None) -> Trace:
+    """Return a window in which seconds count from the log's first step."""
+    if start_ns is None:
+        return trace
+    log = with_columns(trace.tables["data_log"], {"t_start_ns": [start_ns]})
+    return replace(trace, tables={**trace.tables, "data_log": log})
 
 
 def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.watch.settled import KEY, SAID
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -90,9 +92,20 @@ def confirmed(each: Alarm) -> Message:
     }
 
 
+def settled(row: Row, start_ns: int) -> Message:
+    """Return the message of a verdict that is said before the log's end."""
+    said = {name: _plain(row[name]) for name in (*KEY, *SAID)}
+    return {"type": "verdict", "t_s": _seconds(row["t_start_ns"], start_ns), **said}
+
+
 def verdict(row: Row) -> Message:
-    """Return the message of a row of `verdicts.parquet`, with the names that it has there."""
+    """Return the message of a row of `verdicts.parquet` that was not said before, with the names that it has there."""
     return {"type": "verdict", **{name: _plain(value) for name, value in row.items()}}
+
+
+def revised(row: Row) -> Message:
+    """Return the message of a verdict of the whole log that is another than was said; `verdict` None: the whole log has none."""
+    return {"type": "revised", **{name: _plain(value) for name, value in row.items()}}
 
 
 def end(counts: Mapping[str, int], exit_code: int, why: str) -> Message:

@@ -19,6 +19,7 @@ from drivelint.watch.advice import Advice
 from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
 from drivelint.watch.halting import Child
 from drivelint.watch.judge import WindowJudge
+from drivelint.watch.settled import SettledVerdicts
 from drivelint.watch.shrinking import ShrinkingMargins
 from drivelint.watch.window import S, Window
 
@@ -83,6 +84,7 @@ class Watch:
         self._ingest = options.ingest_options()
         self._window = Window(round(options.window_s * S))
         self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)
+        self.settled = SettledVerdicts()
         self._warnings = ShrinkingMargins() if options.warn else None
         self._advice = Advice(self._judge.styles) if options.advise else None
         self._judged_until_ns: int | None = None
@@ -146,7 +148,7 @@ class Watch:
         except TraceError as error:
             self._doubt_of(error)
             return
-        judged = self._judge.judge([trace])[0]
+        judged = self._judge.judge([trace], self._start_ns)[0]
         if isinstance(judged, DriveLintError):
             self._doubt_of(judged)
             return
@@ -171,6 +173,8 @@ class Watch:
         if self._start_ns is None:
             self._start_ns = judged.t_start_ns
         from_ns = None if self._window.is_whole else judged.t_end_ns - self._window_ns
+        for row in self.settled.take(judged, judged.t_start_ns if from_ns is None else from_ns + WARM_UP_NS):
+            self._emit(messages.settled(row, self._start_ns))
         change = self.alarms.take(judged, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged.t_end_ns
         for alarm in change.withdrawn:
@@ -242,13 +246,17 @@ def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> s
     missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.confirmed(alarm))
-    for row in result.verdicts.to_pylist():
-        if row["verdict"] != "not_applicable":
-            emit(messages.verdict(row))
+    late, other = watch.settled.hold_against(result.verdicts)
+    for row in late:
+        emit(messages.verdict(row))
+    for row in other:
+        emit(messages.revised(row))
     status = exit_status(result)
     alarms = watch.alarms.alarms
     counts = {
         "n_windows": watch.watched.n_windows,
+        "n_verdicts_said_before_the_end": len(watch.settled),
+        "n_verdicts_revised": len(other),
         "n_alarms": len(alarms),
         "n_alarms_withdrawn": sum(alarm.withdrawn_ns is not None for alarm in alarms),
         "n_alarms_that_are_findings": sum(bool(alarm.finding_ids) for alarm in alarms),
