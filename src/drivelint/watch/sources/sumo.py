@@ -72,14 +72,16 @@ class SumoSimulation(WrittenWindows):
         self._sumo = SumoProcess(config, precision=max(LEAST_PRECISION, _precision(options)), until_s=until_s)
         self._is_over = False
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
+        # a window ends where a span does: the first one begins with the log's first step, the others after the last of the one before
+        self._n_left = self._n_steps + 1
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Simulate the next span, a frame for each step; less of it where a step takes longer than `timeout_s`."""
+        """Simulate the next span, a frame for each step; only a part of it where that takes longer than `timeout_s`."""
         if self._is_over:
             return None
         until = time.monotonic() + timeout_s
         frames: list[Frame] = []
-        while len(frames) < self._n_steps and not (frames and time.monotonic() > until):
+        while self._n_left and not (frames and time.monotonic() > until):
             if self._sumo.is_over():
                 self._is_over = True
                 break
@@ -89,6 +91,8 @@ class SumoSimulation(WrittenWindows):
             frames.append(
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
+            self._n_left -= 1
+        self._n_left = self._n_left or self._n_steps
         return frames or None
 
     def notes(self) -> Sequence[str]:
