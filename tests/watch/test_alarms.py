@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
@@ -18,6 +19,11 @@ from tests.watch.prefixes import told, watch
 
 FOLDER = ROOT / "fixtures" / "scenes"
 SCENES = {scene.name: scene.map_name for scene in all_scenes()}
+VERDICTS = pa.schema([
+    *((name, pa.string()) for name in ("drive_id", "rule_id", "ego_id", "profile", "verdict")),
+    ("ref_id", pa.int32()),
+    ("t_ref_ns", pa.int64()),
+])  # fmt: skip
 QUICK = ("collision-25mph", "exit-omitted")
 
 
@@ -58,23 +64,22 @@ def finding(
 
 def window(start_s: float, end_s: float, *rows: dict[str, Any], refs: dict[int, float] | None = None) -> JudgedWindow:
     verdicts = [
-        {"drive_id": "d", "rule_id": "r", "ego_id": "e", "ref_id": ref, "t_ref_ns": round(t * S)}
+        {
+            "drive_id": "d",
+            "rule_id": "r",
+            "ego_id": "e",
+            "profile": None,
+            "verdict": "fail",
+            "ref_id": ref,
+            "t_ref_ns": round(t * S),
+        }
         for ref, t in (refs or {}).items()
     ]
-    kinds = pa.schema(
-        [
-            ("drive_id", pa.string()),
-            ("rule_id", pa.string()),
-            ("ego_id", pa.string()),
-            ("ref_id", pa.int32()),
-            ("t_ref_ns", pa.int64()),
-        ]
-    )
     return JudgedWindow(
         round(start_s * S),
         round(end_s * S),
         pa.Table.from_pylist(list(rows)) if rows else pa.table({}),
-        pa.Table.from_pylist(verdicts, schema=kinds),
+        pa.Table.from_pylist(verdicts, schema=VERDICTS),
         pa.table({}),
     )
 
@@ -161,3 +166,43 @@ def test_an_alarm_that_the_window_cannot_know_any_more_is_not_withdrawn() -> Non
     alarms.take(window(100, 130, finding(110, 111)), None, 0 * S)
     assert alarms.take(window(107, 137), 130 * S, 107 * S).withdrawn == []
     assert len(alarms.take(window(104, 134), 130 * S, 104 * S).withdrawn) == 1
+
+
+def unknown(window: JudgedWindow, verdict: str) -> JudgedWindow:
+    """Return a window in which the rule says nothing."""
+    row = {
+        "drive_id": "d",
+        "rule_id": "r",
+        "ego_id": "e",
+        "profile": None,
+        "verdict": verdict,
+        "ref_id": None,
+        "t_ref_ns": None,
+    }
+    return replace(window, verdicts=pa.Table.from_pylist([row], schema=VERDICTS))
+
+
+@pytest.mark.parametrize("verdict", ["error", "unknown"])
+def test_a_rule_that_says_nothing_withdraws_nothing(verdict: str) -> None:
+    alarms = log()
+    alarms.take(window(0, 10, finding(9, 10)), None, None)
+    assert alarms.take(unknown(window(0, 11), verdict), 10 * S, None).withdrawn == []
+    assert alarms.take(window(0, 12, finding(9, 12)), 11 * S, None).new == []
+
+
+def test_two_alarms_that_turn_out_to_be_one_finding_both_stand() -> None:
+    alarms = log()
+    alarms.take(window(0, 10, finding(5, 6), finding(9, 10)), None, None)
+    assert alarms.take(window(0, 11, finding(5, 11)), 10 * S, None) == Change([], [], [])
+
+
+def test_an_alarm_that_goes_on_after_all_is_over_once_more() -> None:
+    alarms = log()
+    alarms.take(window(0, 10, finding(9, 10)), None, None)
+    assert len(alarms.take(window(0, 12, finding(9, 10)), 10 * S, None).over) == 1
+    assert alarms.take(window(0, 13, finding(9, 13)), 12 * S, None) == Change([], [], [])
+    assert len(alarms.take(window(0, 15, finding(9, 13)), 13 * S, None).over) == 1
+
+
+def test_the_first_window_that_could_be_judged_may_lack_the_past() -> None:
+    assert log().take(window(100, 130, finding(101, 103)), None, 100 * S).new == []

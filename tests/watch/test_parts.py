@@ -83,22 +83,22 @@ def test_a_program_that_is_not_there() -> None:
 def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     for _ in range(5):
-        assert trigger.pull({"rule_id": RULE}) is None
-    assert trigger.pull({"rule_id": "another"}) is None
+        assert trigger.pull([{"rule_id": RULE}]) is None
+    assert trigger.pull([{"rule_id": "another"}]) is None
     assert (trigger.n_run, trigger.n_left_out) == (1, 4)
     trigger.close()
 
 
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
-    assert trigger.pull({"rule_id": RULE}) is None
+    assert trigger.pull([{"rule_id": RULE}]) is None
     trigger.close()
     assert not (tmp_path / "b").exists()
 
 
 def test_a_command_that_is_not_there_is_told() -> None:
     (trigger,) = triggers.parse([f"{RULE}=no-such-program"], KNOWN, KNOWN)
-    assert "no-such-program: cannot be started" in (trigger.pull({"rule_id": RULE}) or "")
+    assert "no-such-program: cannot be started" in (trigger.pull([{"rule_id": RULE}]) or "")
 
 
 @pytest.mark.parametrize("text", ["true", "=true", f"{RULE}=", f"{RULE}='"])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path  # noqa: TC003 - typer reads it
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
@@ -12,6 +13,7 @@ from drivelint.cli import completion, options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import inert_json
 
 if TYPE_CHECKING:
@@ -37,7 +39,11 @@ def watch(
     drive: options.DriveInputValues,
     halt_on: Annotated[
         Severity | None,
-        option("--halt-on", None, "End COMMAND or the simulation at the first alarm of this severity or a worse one."),
+        option(
+            "--halt-on",
+            None,
+            "End the watch, and COMMAND or the simulation, at the first alarm of this severity or a worse one.",
+        ),
     ] = None,
     warn: Annotated[
         bool, option("--warn", None, "Also say where a margin is small and shrinks, and when it will be used up.")
@@ -129,9 +135,10 @@ def watch(
     once more leaves at once.
     """
     from drivelint.engine.interruption import Interruption
-    from drivelint.errors import ExitCode
+    from drivelint.errors import DriveLintError, ExitCode
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
+    from drivelint.watch import messages
     from drivelint.watch.options import WatchOptions
     from drivelint.watch.run import Watch, check_recording, conclude
     from drivelint.watch.server import open_server
@@ -162,33 +169,54 @@ def watch(
         serve=serve,
     )
 
+    has_left = False
+
     def emit(message: Message) -> None:
-        typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
+        """Print a message. Whoever reads may leave: the watch goes on, for its result and what it halts."""
+        nonlocal has_left
+        try:
+            if not has_left:
+                typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
+        except ReaderLeftError:
+            has_left = True
 
     interruption = Interruption()
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
 
         def job() -> int:
             with (
+                TemporaryDirectory(prefix="drivelint-") as folder,
                 open_server(serve) as server,
-                open_source(settings) as opened,
+                open_source(settings, progress) as opened,
                 Watch(settings, opened, emit, interruption, server) as watch,
             ):
                 progress.stage("watching")
                 watched = watch.watch()
                 opened.close()
                 for text in opened.notes():
-                    progress.note(text)
+                    emit(messages.note(text))
+                progress.note(watched.told())
                 result = check_recording(
-                    settings, opened.recording, work, watch, progress=progress, interruption=Interruption()
+                    settings,
+                    opened.recording,
+                    work,
+                    watch,
+                    folder=Path(folder),
+                    progress=progress,
+                    interruption=Interruption(),
                 )
                 told = conclude(result, watch, emit)
                 if out is not None:
                     write(result, out, work, overwrite=overwrite)
                 progress.note(told)
-                code = exit_status(result).code
-                halted = watched.halted is not None and code in {ExitCode.OK, ExitCode.LOSSY, ExitCode.NOT_JUDGED}
-                return int(ExitCode.FAILED if halted else code)
+                broken = watched.broken is not None and exit_status(result).code == ExitCode.OK
+                return int(ExitCode.NOT_JUDGED if broken else exit_status(result).code)
 
-        code = run_interruptible(job, interruption.request)
+        try:
+            code = run_interruptible(job, interruption.request)
+        except DriveLintError as error:
+            emit(messages.end({}, int(error.exit_code), str(error)))
+            raise
+    if has_left:
+        raise ReaderLeftError
     raise typer.Exit(code)

@@ -45,6 +45,7 @@ class Result:
     `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
     `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
+    `halted`: where and by what alarm a watch halted the drive; None: none did.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -68,6 +69,7 @@ class Result:
     asked: RunRequest | None = None
     folder: Path | None = None
     notes: tuple[str, ...] = ()
+    halted: str | None = None
 
     def __post_init__(self) -> None:
         for name, table in TABLE_OF_FILE.items():
@@ -100,6 +102,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     if len(erring):
         rules = listed(sorted(erring.unique().to_pylist()))
         yield ExitStatus(ExitCode.USAGE, f"{plural(len(erring), 'verdict')} in error: could not be run: {rules}")
+    if result.halted is not None:
+        yield ExitStatus(ExitCode.FAILED, result.halted)
     stopped, let_through = _stopped(result), _let_through(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")

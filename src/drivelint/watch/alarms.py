@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     import pyarrow as pa
 
@@ -34,6 +34,8 @@ class Alarm:
     row: Row
     said_ns: int
     t_end_ns: int
+    is_over: bool = False
+    """Its rule is kept again."""
     withdrawn_ns: int | None = None
     """The newest step that was known when a window did not show it any more: what came since told more of what was done."""
     finding_ids: list[str] = field(default_factory=list)
@@ -83,7 +85,6 @@ class AlarmLog:
         self._gaps_ns = gaps_ns
         self._profiles = frozenset(profiles)
         self.alarms: list[Alarm] = []
-        self._open: list[Alarm] = []
         self._standing: list[Alarm] = []
 
     def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
@@ -93,37 +94,61 @@ class AlarmLog:
         it may have single states that still hold; None: it begins where the log does.
         """
         known_from_ns = window.t_start_ns if from_ns is None else max(window.t_start_ns, from_ns) + WARM_UP_NS
+        is_first = judged_until_ns is None and from_ns is None
         new: list[Alarm] = []
         seen: set[int] = set()
         for row in _with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
-            same = next((each for each in self._standing if self._is_same(each, row)), None)
-            if same is None:
-                same = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
-                fails_now = judged_until_ns is None or row["t_end_ns"] > judged_until_ns
-                if same.from_ns < known_from_ns and not fails_now:
+            same = [each for each in self._standing if self._is_same(each, row)]
+            if not same:
+                alarm = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
+                fails_now = is_first or (judged_until_ns is not None and row["t_end_ns"] > judged_until_ns)
+                if alarm.from_ns < known_from_ns and not fails_now:
                     continue
-                for each in (self.alarms, self._open, self._standing, new):
-                    each.append(same)
-            same.t_end_ns = max(same.t_end_ns, row["t_end_ns"])
-            seen.add(same.number)
-        withdrawn = [each for each in self._standing if each.number not in seen and each.from_ns >= known_from_ns]
-        for alarm in withdrawn:
-            alarm.withdrawn_ns = window.t_end_ns
-        over = [
-            each
-            for each in self._open
-            if window.t_end_ns > each.t_end_ns + self._gap_ns(each) and each not in withdrawn
-        ]
-        self._open = [each for each in self._open if each not in over and each not in withdrawn]
+                for alarms in (self.alarms, self._standing, new):
+                    alarms.append(alarm)
+                same = [alarm]
+            for each in same:
+                each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
+                seen.add(each.number)
+        withdrawn = self._withdrawn(window, seen, known_from_ns)
+        self._standing = [each for each in self._standing if each not in withdrawn]
+        over = self._over(window.t_end_ns)
         self._standing = [
             each
             for each in self._standing
-            if each not in withdrawn
-            and (each in self._open or each.t_end_ns + self._gap_ns(each) >= known_from_ns - WARM_UP_NS)
+            if not each.is_over or each.t_end_ns + self._gap_ns(each) >= window.t_start_ns
         ]
         return Change(new, over, withdrawn)
+
+    def _withdrawn(self, window: JudgedWindow, seen: Collection[int], known_from_ns: int) -> list[Alarm]:
+        """Return the alarms that a window knows and does not show. A rule that says nothing in it withdraws none."""
+        silent = {
+            (row["rule_id"], row["ego_id"], row["profile"])
+            for row in window.verdicts.select(["rule_id", "ego_id", "profile", "verdict"]).to_pylist()
+            if row["verdict"] in {"error", "unknown"}
+        }
+        found = [
+            each
+            for each in self._standing
+            if each.number not in seen
+            and each.from_ns >= known_from_ns
+            and not {(*key_of(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent
+        ]
+        for alarm in found:
+            alarm.withdrawn_ns = window.t_end_ns
+        return found
+
+    def _over(self, now_ns: int) -> list[Alarm]:
+        """Return the alarms whose rule is kept again; one that goes on after all can be over once more."""
+        found = []
+        for each in self._standing:
+            ended = now_ns > each.t_end_ns + self._gap_ns(each)
+            if ended and not each.is_over:
+                found.append(each)
+            each.is_over = ended
+        return found
 
     def _gap_ns(self, alarm: Alarm) -> int:
         return self._gaps_ns[alarm.row["rule_id"]]

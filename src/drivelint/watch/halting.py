@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
@@ -14,16 +16,26 @@ from drivelint.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+_PR_SET_PDEATHSIG: Final = 1
 GRACE_S: Final = 5.0
 """So long a program may take to end by itself when it is asked to."""
 
 
 class Child:
-    """A program and all that it starts, in a process group of its own. What it prints goes to stderr: stdout is for data."""
+    """A program and all that it starts, in a process group of its own. What it prints goes to stderr: stdout is for data.
+
+    It is told to end where this process dies, however that comes.
+    """
 
     def __init__(self, command: Sequence[str]) -> None:
         try:
-            self._process = subprocess.Popen(command, stdout=sys.stderr.fileno(), start_new_session=True)  # noqa: S603 - asked for
+            self._process = subprocess.Popen(  # noqa: S603 - asked for
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=sys.stderr.fileno(),
+                start_new_session=True,
+                preexec_fn=_end_with_parent if sys.platform == "linux" else None,  # noqa: PLW1509 - one system call
+            )
         except OSError as error:
             raise UsageError(f"{command[0]}: cannot be started: {error.strerror or error}") from error
 
@@ -32,19 +44,34 @@ class Child:
         """The program's exit code; None: it runs."""
         return self._process.poll()
 
-    def leave(self) -> None:
-        """Give the program time to end by itself, then end it."""
+    def leave(self) -> int | None:
+        """Give the program time to end by itself, then end it. Return its own exit code; None: it did not end by itself."""
         with suppress(subprocess.TimeoutExpired):
-            self._process.wait(GRACE_S)
+            return self._process.wait(GRACE_S)
         self.end()
+        return None
 
     def end(self) -> None:
-        """Ask the group to end, and kill it if it does not."""
-        for number in (signal.SIGTERM, signal.SIGKILL):
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, number)
-            with suppress(subprocess.TimeoutExpired):
-                self._process.wait(GRACE_S)
-                break
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)  # children that outlived it
+        """Ask the group to end, and kill what is left of it after a while."""
+        self._signal(signal.SIGTERM)
+        until = time.monotonic() + GRACE_S
+        while self._is_there() and time.monotonic() < until:
+            time.sleep(0.02)
+        self._signal(signal.SIGKILL)
+        self._process.wait()
+
+    def _is_there(self) -> bool:
+        """Whether any process of the group runs: the program may be a shell that has ended before what it started."""
+        self._process.poll()  # a program that nobody waited for is there
+        return self._signal(0)
+
+    def _signal(self, number: int) -> bool:
+        try:
+            os.killpg(self._process.pid, number)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True
+
+
+def _end_with_parent() -> None:
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

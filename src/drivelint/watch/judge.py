@@ -55,6 +55,11 @@ class JudgedWindow:
     verdicts: pa.Table
     courses: pa.Table
 
+    def errors(self) -> list[tuple[str, str]]:
+        """Return the rules that could not be run, and why."""
+        rows = self.verdicts.filter(pc.equal(self.verdicts["verdict"], "error")).select(["rule_id", "reason"])
+        return sorted({(row["rule_id"], row["reason"]) for row in rows.to_pylist()})
+
     def margins_since(self, t_ns: int | None) -> list[Row]:
         """Return the steps of the courses after a time, None: all, with the columns of `margins.parquet`, in the order of time."""
         same = ("drive_id", "ego_id", "rule_id", "profile", "object_id")

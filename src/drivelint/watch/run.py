@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass, field, fields, replace
@@ -10,7 +12,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from drivelint import catalogue, run
-from drivelint.errors import DriveLintError, TraceError, UsageError
+from drivelint.engine.barrier import refused
+from drivelint.errors import ChangedLogError, DriveLintError, TraceError, UsageError
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.model import exit_status
@@ -24,7 +27,7 @@ from drivelint.watch.shrinking import ShrinkingMargins
 from drivelint.watch.window import S, Window
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from drivelint.engine.interruption import Interruption
     from drivelint.report.progress import Progress
@@ -34,7 +37,7 @@ if TYPE_CHECKING:
     from drivelint.watch.messages import Message
     from drivelint.watch.options import WatchOptions
     from drivelint.watch.server import LiveServer
-    from drivelint.watch.source import Source
+    from drivelint.watch.source import Frame, Source
 
 READ_S: Final = 0.05
 """So long a source is waited for at a time."""
@@ -46,12 +49,21 @@ AFTER_CHILD_S: Final = 1.0
 class Watched:
     """What the live part of a watch came to."""
 
-    n_windows: int = 0
-    n_unreadable: int = 0
+    n_unjudged: int = 0
+    """Windows that could not be read or judged."""
+    broken: str | None = None
+    """Why the source ended, if it broke."""
     halted: Alarm | None = None
     halted_ns: int | None = None
     busy_s: list[float] = field(default_factory=list)
-    """The seconds that each window took: for the last line on stderr, not for results."""
+    """The seconds that each window took that was judged: for a line on stderr, not for results."""
+
+    def told(self) -> str:
+        """Say how many windows were judged, and how long that took."""
+        took = sorted(self.busy_s)
+        if not took:
+            return "no window could be judged"
+        return f"{plural(len(took), 'window')} judged, each in {took[len(took) // 2]:.1f} s (median), {took[-1]:.1f} s at most"
 
 
 class Watch:
@@ -90,6 +102,7 @@ class Watch:
         self._judged_until_ns: int | None = None
         self._start_ns: int | None = None
         self._doubt: str | None = None
+        self._erred: set[str] = set()
         self.watched = Watched()
 
     def __enter__(self) -> Self:
@@ -101,77 +114,103 @@ class Watch:
         self._stack.close()
 
     def watch(self) -> Watched:
-        """Judge until the source has ended, an alarm halts it, or the run is interrupted. Errors: those of the source."""
-        every_ns = round(self._options.every_s * S)
-        # what came while a window was judged is judged at once, but no step without its past
-        most_ns = every_ns if self._source.in_step else self._window_ns - WARM_UP_NS
+        """Judge until the source has ended, an alarm halts it, or the run is interrupted; then let go of the windows' database.
+
+        A source that breaks has ended; what it recorded is there to be checked. Errors: `UsageError`, faults of the machine.
+        """
         child = Child(self._options.command) if self._options.command else None
-        quiet_since = time.monotonic()
         try:
-            while not self._interruption.requested and self.watched.halted is None:
-                frames = self._source.read(READ_S)
-                self._tell_notes()
-                if frames:
-                    self._window.add(frames)
-                    quiet_since = time.monotonic()
-                is_over = frames is None or (
-                    child is not None and child.code is not None and time.monotonic() - quiet_since > AFTER_CHILD_S
-                )
-                while (self._window.behind_ns >= every_ns or is_over) and self._window.advance(most_ns):
-                    self._pass()
-                    if self.watched.halted is not None or self._interruption.requested:
-                        break
-                if is_over:
-                    break
+            self._loop(child)
             if child is not None and self.watched.halted is None and not self._interruption.requested:
-                child.leave()
-                if child.code:
-                    self._emit(messages.note(f"{self._options.command[0]} ended with exit code {child.code}"))
+                code = child.leave()
+                if code:
+                    self._emit(messages.note(f"{self._options.command[0]} ended with exit code {code}"))
         finally:
             if child is not None:
                 child.end()
+            self._stack.close()
         return self.watched
+
+    def _loop(self, child: Child | None) -> None:
+        in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
+        # what came while a window was judged is judged at once, but no step without its past
+        most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
+        quiet_since = time.monotonic()
+        is_over = False
+        while not (is_over or self._is_stopped):
+            frames = self._read()
+            if frames:
+                self._window.add(frames)
+                quiet_since = time.monotonic()
+            is_quiet = time.monotonic() - quiet_since > AFTER_CHILD_S
+            is_over = frames is None or (child is not None and child.code is not None and is_quiet)
+            while (in_step or is_over or self._window.behind_ns >= every_ns) and self._window.advance(most_ns):
+                self._pass()
+                if self._is_stopped:
+                    break
+
+    @property
+    def _is_stopped(self) -> bool:
+        return self._interruption.requested or self.watched.halted is not None
+
+    def _read(self) -> Sequence[Frame] | None:
+        """Return what the source gives, and say what it has to tell; a source that breaks has ended."""
+        try:
+            frames = self._source.read(READ_S)
+        except TraceError as error:
+            self.watched.broken = str(error)
+            self._emit(messages.note(str(error)))
+            frames = None
+        for text in self._source.notes():
+            self._emit(messages.note(text))
+        while self._window.jumps:
+            since_ns, until_ns = self._window.jumps.pop(0)
+            self._emit(
+                messages.note(
+                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across"
+                )
+            )
+        return frames
 
     @property
     def _window_ns(self) -> int:
         return round(self._options.window_s * S)
 
-    def _tell_notes(self) -> None:
-        for text in self._source.notes():
-            self._emit(messages.note(text))
-
     def _pass(self) -> None:
-        """Judge the window, and say what is new."""
+        """Judge the window, and say what is new. A window that cannot be read or judged is told, and the watch goes on."""
         begun_s = time.perf_counter()
         try:
             trace = self._source.read_window(self._window.frames, self._folder, self._ingest)
-        except TraceError as error:
-            self._doubt_of(error)
-            return
-        judged = self._judge.judge([trace], self._start_ns)[0]
+            judged = self._judge.judge([trace], self._start_ns)[0]
+        except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
+            judged = refused(Path(self._options.source), error).error
         if isinstance(judged, DriveLintError):
             self._doubt_of(judged)
             return
         self._doubt = None
         since_ns = self._judged_until_ns
         self._take(judged)
-        self.watched.n_windows += 1
         self.watched.busy_s.append(time.perf_counter() - begun_s)
         if self._server is not None:
             self._server.publish_scene(trace)
             self._server.publish_margins(judged.margins_since(since_ns))
 
     def _doubt_of(self, error: DriveLintError) -> None:
-        """Say once why the log cannot be judged as far as it is known."""
-        self.watched.n_unreadable += 1
-        if str(error) != self._doubt:
-            self._doubt = str(error)
-            self._emit(messages.note(f"not judged yet: {error}"))
+        """Say why the log cannot be judged as far as it is known; once, whatever numbers are in it."""
+        self.watched.n_unjudged += 1
+        text = str(error).replace(str(self._folder), "...")
+        if (what := re.sub(r"\d+", "0", text)) != self._doubt:
+            self._doubt = what
+            self._emit(messages.note(f"not judged yet: {text}"))
 
     def _take(self, judged: JudgedWindow) -> None:
         """Say what is new in a window."""
         if self._start_ns is None:
             self._start_ns = judged.t_start_ns
+        for rule_id, reason in judged.errors():
+            if rule_id not in self._erred:
+                self._erred.add(rule_id)
+                self._emit(messages.note(f"{rule_id} cannot be run on a window: {reason}"))
         from_ns = None if self._window.is_whole else judged.t_end_ns - self._window_ns
         for row in self.settled.take(judged, judged.t_start_ns if from_ns is None else from_ns + WARM_UP_NS):
             self._emit(messages.settled(row, self._start_ns))
@@ -179,8 +218,7 @@ class Watch:
         self._judged_until_ns = judged.t_end_ns
         for alarm in change.withdrawn:
             self._emit(messages.withdrawn(alarm, judged.t_end_ns, self._start_ns))
-        for alarm in change.new:
-            self._say(alarm, judged.t_end_ns, self._start_ns)
+        self._say(change.new, judged.t_end_ns, self._start_ns)
         for alarm in change.over:
             self._emit(messages.over(alarm, self._start_ns))
         if self._warnings is not None:
@@ -190,28 +228,29 @@ class Watch:
             for message in self._advice.take(judged, self._start_ns):
                 self._emit(message)
 
-    def _say(self, alarm: Alarm, now_ns: int, start_ns: int) -> None:
-        rule = self._judge.rules[alarm.row["rule_id"]]
-        message = messages.alarm(alarm, rule, start_ns)
-        self._emit(message)
-        if self._server is not None:
-            self._server.publish_alarm(message)
+    def _say(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:
+        """Say the alarms of a window, start commands with them, and halt if one of them halts."""
+        said = []
+        for alarm in alarms:
+            said.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], start_ns))
+            self._emit(said[-1])
+            if self._server is not None:
+                self._server.publish_alarm(said[-1])
         for trigger in self._triggers:
-            if (trouble := trigger.pull(message)) is not None:
+            if (trouble := trigger.pull(said)) is not None:
                 self._emit(messages.note(trouble))
-        if self.watched.halted is None and self._halts(alarm, rule.status):
-            self.watched.halted, self.watched.halted_ns = alarm, now_ns
-            self._emit(messages.halt(alarm, now_ns, start_ns))
+        halting = next((alarm for alarm in alarms if self._halts(alarm)), None)
+        if halting is not None:
+            self.watched.halted, self.watched.halted_ns = halting, now_ns
+            self._emit(messages.halt(halting, now_ns, start_ns))
             self._source.halt()
 
-    def _halts(self, alarm: Alarm, status: str) -> bool:
+    def _halts(self, alarm: Alarm) -> bool:
         """Whether an alarm halts: at or above the severity that was asked for, by a rule that is no draft."""
-        least = self._options.halt_on
-        return (
-            least is not None
-            and status == "stable"
-            and SEVERITIES.index(alarm.row["severity"]) <= SEVERITIES.index(least)
-        )
+        least, severity = self._options.halt_on, alarm.row["severity"]
+        if least is None or self._judge.rules[alarm.row["rule_id"]].status != "stable":
+            return False
+        return SEVERITIES.index(severity) <= SEVERITIES.index(least)
 
 
 def check_recording(
@@ -220,25 +259,32 @@ def check_recording(
     work: Path | None,
     watch: Watch,
     *,
+    folder: Path,
     progress: Progress,
     interruption: Interruption,
 ) -> Result:
-    """Check what was recorded as any log, and hold the alarms against it. Errors: as `check`."""
+    """Check what was recorded as any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
     names = {each.name for each in fields(run.CheckOptions)}
     same: dict[str, Any] = {each.name: getattr(options, each.name) for each in fields(options) if each.name in names}
     same["out"] = work
-    if not recording.exists():
-        raise TraceError(f"{options.source}: nothing was recorded: no frame came")
-    result = run.check(run.CheckOptions(traces=(str(recording),), **same), progress, interruption)
+    if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
+        raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
+    try:
+        result = run.check(run.CheckOptions(traces=(str(recording),), **same), progress, interruption)
+    except ChangedLogError:
+        # another program goes on with it: what is there now is checked
+        copy = folder / recording.name
+        shutil.copy(recording, copy)
+        result = run.check(run.CheckOptions(traces=(str(copy),), **same), progress, interruption)
     halted = watch.watched.halted
-    if halted is not None and watch.watched.halted_ns is not None:
-        start_ns = result.drives["t_start_ns"][0].as_py() or 0
-        told = (
-            f"halted at {(watch.watched.halted_ns - start_ns) / S:.2f} s by an alarm of {halted.row['rule_id']} "
-            f"at {(halted.row['t_start_ns'] - start_ns) / S:.2f} s"
-        )
-        result = replace(result, notes=(*result.notes, told))
-    return result
+    if halted is None or watch.watched.halted_ns is None:
+        return result
+    start_ns = result.drives["t_start_ns"][0].as_py() or 0
+    told = (
+        f"halted at {(watch.watched.halted_ns - start_ns) / S:.2f} s by an alarm of {halted.row['rule_id']} "
+        f"at {(halted.row['t_start_ns'] - start_ns) / S:.2f} s"
+    )
+    return replace(result, halted=told, notes=(*result.notes, told))
 
 
 def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
@@ -254,7 +300,8 @@ def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> s
     status = exit_status(result)
     alarms = watch.alarms.alarms
     counts = {
-        "n_windows": watch.watched.n_windows,
+        "n_windows": len(watch.watched.busy_s),
+        "n_windows_not_judged": watch.watched.n_unjudged,
         "n_verdicts_said_before_the_end": len(watch.settled),
         "n_verdicts_revised": len(other),
         "n_alarms": len(alarms),

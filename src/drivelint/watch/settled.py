@@ -38,14 +38,13 @@ class SettledVerdicts:
         yet, nor has one that may go on. An unknown is said at the end: what is missing may still come.
         """
         found = []
-        for row in window.verdicts.to_pylist():
-            key = _key(row)
-            if row["verdict"] not in {"pass", "fail"} or key in self._said:
+        for key, row in _single(window.verdicts).items():
+            if row["verdict"] not in {"pass", "fail"} or row["t_start_ns"] is None or key in self._said:
                 continue
             begin = row["t_start_ns"] if row["t_ref_ns"] is None else min(row["t_start_ns"], row["t_ref_ns"])
             begins_here = begin > known_from_ns or known_from_ns == window.t_start_ns
             if begins_here and row["t_end_ns"] + SETTLE_NS < window.t_end_ns:
-                self._said[key] = row
+                self._said[key] = {name: row[name] for name in (*KEY, *SAID)}
                 found.append(row)
         return found
 
@@ -57,10 +56,21 @@ class SettledVerdicts:
 
         A verdict that was said and that the whole log does not have is among the latter, as it was said, its verdict None.
         """
-        rows = {_key(row): row for row in verdicts.to_pylist() if row["verdict"] != "not_applicable"}
-        other = [row for key, row in rows.items() if key in self._said and not _same(self._said[key], row)]
-        gone = [{**row, "verdict": None} for key, row in self._said.items() if key not in rows]
-        return [row for key, row in rows.items() if key not in self._said], [*other, *gone]
+        judged = [row for row in verdicts.to_pylist() if row["verdict"] != "not_applicable"]
+        there = {_key(row) for row in judged}
+        late = [row for row in judged if _key(row) not in self._said]
+        other = [row for row in judged if (mine := self._said.get(_key(row))) is not None and not _same(mine, row)]
+        gone = [{**row, "verdict": None} for key, row in self._said.items() if key not in there]
+        return late, [*other, *gone]
+
+
+def _single(verdicts: pa.Table) -> dict[Key, Row]:
+    """Return the verdicts that apply, by their key; none of those that share one, such as overtakes whose beginnings are not known."""
+    rows: dict[Key, list[Row]] = {}
+    for row in verdicts.to_pylist():
+        if row["verdict"] != "not_applicable":
+            rows.setdefault(_key(row), []).append(row)
+    return {key: same[0] for key, same in rows.items() if len(same) == 1}
 
 
 def _key(row: Row) -> Key:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 SLOPE_NS: Final = 1_000_000_000
 """The last second tells how fast a margin shrinks."""
 
+MOST_S: Final = 60.0
+"""A margin that would be used up later does not shrink: the numbers of a constant one differ in their last digits."""
+
 
 class ShrinkingMargins:
     """The near misses of a watch that were told of; each again only after its rule was kept with room to spare."""
@@ -37,7 +40,7 @@ class ShrinkingMargins:
             if not len(t_ns):
                 continue
             rule = rules[row["rule_id"]]
-            last = (t_ns > t_ns[-1] - SLOPE_NS) if len(t_ns) else known
+            last = t_ns > t_ns[-1] - SLOPE_NS
             is_now = t_ns[-1] >= window.t_end_ns - SLOPE_NS // 2
             is_near = rule.near_margin is not None and 0 <= margin[-1] < rule.near_margin
             if not (is_now and is_near):
@@ -46,7 +49,7 @@ class ShrinkingMargins:
             if key in self._open or last.sum() < 2:
                 continue
             per_s = np.polyfit((t_ns[last] - t_ns[-1]) / 1e9, margin[last], 1)[0]
-            if per_s >= 0:
+            if per_s >= 0 or -margin[-1] / per_s > MOST_S:
                 seen.pop(key)
                 continue
             found.append({

@@ -17,14 +17,13 @@ if TYPE_CHECKING:
 class Frame(NamedTuple):
     """A piece of a log that came at one time: what it holds is known to its source alone.
 
-    `t_ns`: its time on a clock of the log that advances as the drive does. `static`: what follows cannot be read without it,
-    such as a map that only the first message has; it stays in every window.
+    `t_ns`: its time on a clock of the log that advances as the drive does, in nanoseconds. `size`: about how many bytes it takes.
+    What must be known of earlier frames, such as a map that only the first message has, its source adds to a window.
     """
 
     t_ns: int
     data: object
     size: int
-    static: bool = False
 
 
 class Source(Protocol):

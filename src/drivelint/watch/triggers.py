@@ -27,7 +27,7 @@ MOST_RUNNING: Final = 4
 
 @dataclass
 class Trigger:
-    """A command and the rules whose alarms start it. It gets the alarm as JSON on stdin, and no shell."""
+    """A command and the rules whose alarms start it. It gets the alarms on stdin, a line of JSON each, and no shell."""
 
     rules: frozenset[str]
     command: Sequence[str]
@@ -36,14 +36,15 @@ class Trigger:
     _last_s: float = -LEAST_S
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
-    def pull(self, alarm: Mapping[str, Any]) -> str | None:
-        """Run the command for an alarm of its rules, unless it ran just now. Return what went wrong."""
-        if alarm["rule_id"] not in self.rules:
+    def pull(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
+        """Run the command once for the alarms of its rules, unless it ran just now. Return what went wrong."""
+        mine = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
+        if not mine:
             return None
         now = time.monotonic()
         self._running = [each for each in self._running if each.poll() is None]
         if now - self._last_s < LEAST_S or len(self._running) >= MOST_RUNNING:
-            self.n_left_out += 1
+            self.n_left_out += len(mine)
             return None
         self._last_s = now
         try:
@@ -52,7 +53,7 @@ class Trigger:
             return f"--on: {self.command[0]}: cannot be started: {error.strerror or error}"
         assert process.stdin is not None  # noqa: S101 - it is a pipe
         with suppress(BrokenPipeError, OSError):  # it need not read
-            process.stdin.write(json.dumps(alarm).encode() + b"\n")
+            process.stdin.writelines(json.dumps(alarm).encode() + b"\n" for alarm in mine)
             process.stdin.close()
         self._running.append(process)
         self.n_run += 1

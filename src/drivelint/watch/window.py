@@ -1,9 +1,9 @@
-"""Keeps the frames of the last seconds of a log, and reads them as a log of their own."""
+"""Keeps the frames of the last seconds of a log, and those that came and are not judged yet."""
 
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -14,60 +14,76 @@ S: Final = 1_000_000_000
 """Nanoseconds of a second."""
 
 
-class Window:
-    """The frames of the last `length_ns` of a log, and those that have come but are not judged yet.
+class _Placed(NamedTuple):
+    """A frame, its time on a clock that does not jump, and whether the log's clock jumped before it."""
 
-    Static frames stay for good. Memory: frames of the window and of what waits.
+    at_ns: int
+    frame: Frame
+    is_cut: bool
+
+
+class Window:
+    """The frames of the last `length_ns` of a log, and those that wait.
+
+    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across.
+    Memory: the frames of the window and those that wait.
     """
 
     def __init__(self, length_ns: int) -> None:
         self._length_ns = length_ns
-        self._static: list[Frame] = []
-        self._frames: deque[Frame] = deque()
-        self._waiting: deque[Frame] = deque()
+        self._frames: deque[_Placed] = deque()
+        self._waiting: deque[_Placed] = deque()
+        self._last: _Placed | None = None
+        self._latest_ns = 0
+        """The latest time of all frames on the clock without jumps."""
         self._newest_ns: int | None = None
-        self._newest_waiting_ns: int | None = None
+        """The same of the frames in the window."""
         self.is_whole = True
         """No frame of the log has left the window yet."""
+        self.jumps: list[tuple[int, int]] = []
+        """From when to when the log's clock jumped; for whoever tells it."""
 
     def add(self, frames: Iterable[Frame]) -> None:
         """Take frames that came; they wait until `advance`."""
         for frame in frames:
-            self._waiting.append(frame)
-            self._newest_waiting_ns = max(frame.t_ns, self._newest_waiting_ns or frame.t_ns)
+            last = self._last
+            step_ns = 0 if last is None else frame.t_ns - last.frame.t_ns
+            is_cut = abs(step_ns) > self._length_ns
+            if is_cut and last is not None:
+                self.jumps.append((last.frame.t_ns, frame.t_ns))
+            at_ns = frame.t_ns if last is None else self._latest_ns + 1 if is_cut else last.at_ns + step_ns
+            self._last = _Placed(at_ns, frame, is_cut)
+            self._waiting.append(self._last)
+            self._latest_ns = at_ns if last is None else max(at_ns, self._latest_ns)
 
     @property
     def behind_ns(self) -> int:
         """How much log time waits to be judged."""
-        if self._newest_waiting_ns is None:
+        if not self._waiting:
             return 0
-        first = self._newest_ns if self._newest_ns is not None else self._waiting[0].t_ns if self._waiting else 0
-        return max(0, self._newest_waiting_ns - first)
+        since_ns = self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns
+        return max(0, self._latest_ns - since_ns)
 
     def advance(self, most_ns: int) -> bool:
         """Move the window forward over what waits, by at most `most_ns`. Return whether it moved."""
         if not self._waiting:
             return False
-        until = (self._waiting[0].t_ns if self._newest_ns is None else self._newest_ns) + most_ns
+        until_ns = most_ns + (self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns)
         moved = False
-        # behind a hole in the log's time the window moves all the same
-        while self._waiting and (self._waiting[0].t_ns <= until or not moved):
-            frame = self._waiting.popleft()
-            (self._static if frame.static else self._frames).append(frame)
-            self._newest_ns = max(frame.t_ns, frame.t_ns if self._newest_ns is None else self._newest_ns)
+        while self._waiting and (not moved or (self._waiting[0].at_ns <= until_ns and not self._waiting[0].is_cut)):
+            placed = self._waiting.popleft()
+            if placed.is_cut:
+                self._frames.clear()
+                self.is_whole = False
+            self._frames.append(placed)
+            self._newest_ns = placed.at_ns if self._newest_ns is None else max(placed.at_ns, self._newest_ns)
             moved = True
-        assert self._newest_ns is not None  # noqa: S101 - one frame was taken
-        while self._frames and self._frames[0].t_ns < self._newest_ns - self._length_ns:
+        while self._newest_ns is not None and self._frames[0].at_ns < self._newest_ns - self._length_ns:
             self._frames.popleft()
             self.is_whole = False
         return moved
 
     @property
     def frames(self) -> list[Frame]:
-        """The frames in the order in which they came, the static ones first."""
-        return [*self._static, *self._frames]
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether there is nothing to judge."""
-        return not self._frames and not self._static
+        """The frames in the order in which they came."""
+        return [placed.frame for placed in self._frames]

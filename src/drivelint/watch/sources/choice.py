@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
@@ -15,6 +16,7 @@ from drivelint.watch.window import S
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from drivelint.report.progress import Progress
     from drivelint.watch.options import WatchOptions
     from drivelint.watch.source import Source
 
@@ -23,21 +25,54 @@ RECORDED: Final = "recorded"
 
 
 @contextmanager
-def open_source(options: WatchOptions) -> Iterator[Source]:
-    """Open the source of a watch; close it afterwards. Errors: `UsageError` for a name that means none, those of the source."""
-    with TemporaryDirectory(prefix="drivelint-") as elsewhere:
-        source = _opened(options, Path(elsewhere) if options.out is None else options.out / RECORDED)
-        try:
-            yield source
-        finally:
+def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
+    """Open the source of a watch; close it afterwards. A recording that no `--out` keeps goes, unless something went wrong.
+
+    Errors: `UsageError` for a name that means none, those of the source.
+    """
+    folder: Path | None
+    folder = home = Path(mkdtemp(prefix="drivelint-")) if options.out is None else options.out / RECORDED
+    source = None
+    try:
+        source = _opened(options, home)
+        yield source
+    except BaseException:
+        if source is not None:
             source.close()
+        if options.out is None and any(home.iterdir()):
+            progress.note(f"what was recorded is kept: {home}")
+            folder = None
+        raise
+    finally:
+        if source is not None:
+            source.close()
+        if options.out is None and folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _opened(options: WatchOptions, folder: Path) -> Source:
     if options.replay is None:
+        _refuse_with_command(options)
         return sources.open_source(options.source, folder, idle_s=options.idle_s, every_s=options.every_s)
     if options.command:
         raise UsageError("--replay watches a finished log: there is no program to start")
     return Replay(
         Path(options.source), options.ingest_options(), speed=options.replay, every_ns=round(options.every_s * S)
     )
+
+
+def _refuse_with_command(options: WatchOptions) -> None:
+    """Refuse what a program that is started with the watch cannot be the source of. Errors: `UsageError`."""
+    if not options.command:
+        return
+    if (
+        options.source == "-"
+        or ("://" not in options.source and Path(options.source).exists())
+        or options.source.startswith("ws")
+    ):
+        why = (
+            "is there already: the program behind -- must write a new file: remove it, or name another"
+            if options.source != "-" and "://" not in options.source
+            else "is there before the program behind -- is started: start that by itself"
+        )
+        raise UsageError(f"{options.source}: {why}")
