@@ -179,6 +179,20 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
     assert (asked.n_copies, asked.n_stays) == (few, few)
 
 
+def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
+    few, most = N_COPIES
+    small = question(-SMALL_MARGIN["m"])
+    small.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
+    assert not small.is_settled
+    kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
+    small.take((0, *range(few + 1, most + 1)), kept)
+    assert (small.n_copies, small.n_stays) == (most, most - 1)
+    large = question(-5.0)
+    for numbers in (range(1, 21), range(21, few + 1)):
+        large.take((0, *numbers), dict.fromkeys((0, *numbers), -5.0))
+    assert (large.n_copies, large.n_stays) == (few, few)
+
+
 @pytest.mark.slow
 def test_the_same_drive_in_another_file_is_as_sure(tmp_path: Path) -> None:
     """Blank lines and the name of the file change the log's hash and the drive's id, and nothing else."""

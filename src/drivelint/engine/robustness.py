@@ -86,16 +86,19 @@ class Question:
     @property
     def numbers(self) -> range:
         """The copies to judge next."""
-        margin = self.finding["margin"]
-        is_small = margin is not None and abs(margin) <= SMALL_MARGIN.get(self.rule.unit or "", 0.0)
-        return range(
-            self.n_copies + 1, N_COPIES[bool(self.n_copies or is_small or self.is_doubtful or self.is_hasty)] + 1
-        )
+        return range(self.n_copies + 1, (N_COPIES[-1] if self.is_hasty else self._n_needed) + 1)
 
     @property
     def is_settled(self) -> bool:
         """Whether the copies suffice."""
-        return self.n_copies == N_COPIES[-1] or 0 < self.n_copies == self.n_stays
+        return self.n_copies >= self._n_needed
+
+    @property
+    def _n_needed(self) -> int:
+        """How many copies suffice by what is known now."""
+        margin = self.finding["margin"]
+        is_small = margin is not None and abs(margin) <= SMALL_MARGIN.get(self.rule.unit or "", 0.0)
+        return N_COPIES[is_small or self.is_doubtful or self.n_stays < self.n_copies]
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
         """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors.
