@@ -26,7 +26,7 @@ WITH _outcome_or_clean_group AS (
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
     UNION ALL BY NAME
-    SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'other_nation' AS code FROM _foreign
+    SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, code FROM _excluded
 ), _blind_stretch_of_rule AS (
     SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
     FROM _blind b

@@ -1,4 +1,4 @@
--- What the statements of all rules read and fill. Python fills _rule, _needs and _law.
+-- What the statements of all rules read and fill. Python fills _rule, _needs and _allowed.
 CREATE OR REPLACE TEMP TABLE _subject AS
     SELECT c.drive_id, c.ego_id, c.period_ns, c.max_gap_ns, c.t_start_ns, c.t_end_ns, l.sha256, l.sensor_range_m,
         coalesce(l.t_start_ns, 0) AS start_ns
@@ -10,9 +10,9 @@ CREATE OR REPLACE TEMP TABLE _segment AS
     FROM step s ASOF LEFT JOIN lost_time l ON l.drive_id = s.drive_id AND l.t_from_ns < s.t_ns GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
     sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
-    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN);
+    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN, limit_min_mps DOUBLE, limit_max_mps DOUBLE);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR, is_assumed BOOLEAN);
-CREATE OR REPLACE TEMP TABLE _law (rule_no INTEGER, nation VARCHAR);
+CREATE OR REPLACE TEMP TABLE _allowed (rule_no INTEGER, code VARCHAR, condition VARCHAR, word VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, code VARCHAR, reason VARCHAR);
 CREATE OR REPLACE TEMP TABLE _group (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, object_id VARCHAR, clean BOOLEAN,
     t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT,

@@ -1,11 +1,31 @@
--- The law of one nation says nothing about a drive in another; where the nation is not known, it is judged.
-CREATE OR REPLACE TEMP TABLE _foreign AS
-SELECT r.rule_no, n.drive_id, n.ego_id
-FROM (SELECT DISTINCT rule_no FROM _law) r
-CROSS JOIN (SELECT DISTINCT drive_id, ego_id, nation FROM ego_condition) n
-LEFT JOIN _law l ON l.rule_no = r.rule_no AND l.nation = n.nation
-GROUP BY ALL
-HAVING bool_and(n.nation IS NOT NULL AND l.nation IS NULL);
+-- The subjects to which a rule does not apply, whatever happens in the drive: at every step some condition is known, and is not one that the
+-- rule allows. `other_nation`: the law of one nation says nothing about a drive in another. `outside_conditions`: the conditions of a rule's header.
+CREATE OR REPLACE TEMP TABLE _excluded AS
+WITH _conditions AS (
+    SELECT row_number() OVER () AS no, * FROM (
+        SELECT DISTINCT
+            s.drive_id, s.ego_id, e.road_type::VARCHAR AS road_type, e.carriageway::VARCHAR AS carriageway, e.area::VARCHAR AS area,
+            e.nation::VARCHAR AS nation, e.weather::VARCHAR AS weather, e.light::VARCHAR AS light,
+            e.vehicle_class::VARCHAR AS vehicle_class, e.limit_mps
+        FROM step s
+        LEFT JOIN ego_condition e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
+    )
+), _condition AS (
+    SELECT no, drive_id, ego_id, condition, word
+    FROM _conditions UNPIVOT INCLUDE NULLS (word FOR condition IN (road_type, carriageway, area, nation, weather, light, vehicle_class))
+), _known AS (
+    SELECT r.rule_no, r.code, c.no, c.drive_id, c.ego_id, c.word IS NOT NULL AND a.word IS NULL AS is_outside
+    FROM (SELECT DISTINCT rule_no, code, condition FROM _allowed) r
+    JOIN _condition c ON c.condition = r.condition
+    LEFT JOIN _allowed a ON a.rule_no = r.rule_no AND a.code = r.code AND a.condition = r.condition AND a.word = c.word
+    UNION ALL
+    SELECT r.rule_no, 'outside_conditions', c.no, c.drive_id, c.ego_id,
+        coalesce(c.limit_mps < r.limit_min_mps, false) OR coalesce(c.limit_mps > r.limit_max_mps, false)
+    FROM _rule r JOIN _conditions c ON r.limit_min_mps IS NOT NULL OR r.limit_max_mps IS NOT NULL
+), _of_conditions AS (
+    SELECT rule_no, code, drive_id, ego_id, bool_or(is_outside) AS is_outside FROM _known GROUP BY rule_no, code, drive_id, ego_id, no
+)
+SELECT rule_no, drive_id, ego_id, code FROM _of_conditions GROUP BY ALL HAVING bool_and(is_outside);
 
 -- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing, if it is
 -- not one that a log is taken to have.
@@ -17,11 +37,18 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     FROM _needs n CROSS JOIN _subject s
     LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
     WHERE coalesce(c.available, n.is_assumed) IS DISTINCT FROM true
-    GROUP BY ALL) g
-ANTI JOIN _foreign f ON f.rule_no = g.rule_no AND f.drive_id = g.drive_id AND f.ego_id = g.ego_id;
+    GROUP BY ALL);
+
+-- A rule with all its signals is run, and says itself at which steps or occasions its conditions do not hold.
+DELETE FROM _excluded e WHERE code = 'outside_conditions' AND NOT EXISTS (
+    SELECT 1 FROM _gated g WHERE g.rule_no = e.rule_no AND g.drive_id = e.drive_id AND g.ego_id = e.ego_id);
+DELETE FROM _excluded e WHERE code = 'outside_conditions' AND EXISTS (
+    SELECT 1 FROM _excluded f WHERE f.code = 'other_nation' AND f.rule_no = e.rule_no AND f.drive_id = e.drive_id AND f.ego_id = e.ego_id);
+DELETE FROM _gated g WHERE EXISTS (
+    SELECT 1 FROM _excluded e WHERE e.rule_no = g.rule_no AND e.drive_id = g.drive_id AND e.ego_id = g.ego_id);
 
 -- The subjects for which a rule is to be run.
 CREATE OR REPLACE TEMP TABLE _todo AS
 SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
-ANTI JOIN _foreign f ON f.rule_no = r.rule_no AND f.drive_id = s.drive_id AND f.ego_id = s.ego_id;
+ANTI JOIN _excluded e ON e.rule_no = r.rule_no AND e.drive_id = s.drive_id AND e.ego_id = s.ego_id;

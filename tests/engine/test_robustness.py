@@ -10,10 +10,11 @@ import duckdb
 import pytest
 
 from drivelint import catalogue, demo, run
-from drivelint.engine.robustness import N_COPIES, SMALL_MARGIN, Question
+from drivelint.engine.robustness import LEAST_SHARE, N_COPIES, SMALL_MARGIN, Question
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
+from drivelint.result import certainty as certainties
 from drivelint.result.certainty import POSSIBLE, SURE, certainty
 
 RULES = ("ukhc.no-collision", "ukhc.contact-signature", "ukhc.r162.safe-distance-ahead", "ukhc.r126.ds-ov-out-of-av")
@@ -104,7 +105,8 @@ def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do() -> None:
 
 
 def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Question:
-    return Question({"margin": margin}, catalogue.load_rules(())[rule_id])
+    times = {"t_ref_ns": None, "t_start_ns": 0, "t_end_ns": 300_000_000, "t_worst_ns": 100_000_000, "profile": None}
+    return Question({"margin": margin, **times}, catalogue.load_rules(())[rule_id])
 
 
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
@@ -135,6 +137,60 @@ def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
     assert (asked.size, asked.n_copies, asked.n_stays) == (1, 0, 0)
     asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
     assert asked.n_copies == 0  # the copies before these are still to be judged
+
+
+def long_question() -> Question:
+    """Return a finding whose stretch lasts longer than its first window."""
+    asked = question(-5.0)
+    asked.finding["t_end_ns"] = 10_000_000_000
+    return asked
+
+
+def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole() -> None:
+    few, most = N_COPIES
+    kept = dict.fromkeys(range(few), -5.0)  # all but the last
+    asked = long_question()
+    asked.take((0, *asked.numbers), kept)
+    assert (asked.size, asked.n_copies) == (1, 0)
+    assert asked.numbers == range(1, most + 1)  # some copies lost it already
+    passed = long_question()
+    passed.take((0, *passed.numbers), kept, {few})
+    assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
+    short = question(-5.0)
+    short.take((0, *short.numbers), kept)
+    assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
+
+
+def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
+    assert LEAST_SHARE == certainties.LEAST_SHARE
+    few, _ = N_COPIES
+    asked = long_question()
+    asked.take((0, *asked.numbers), dict.fromkeys(range(few - 6), -5.0), set(range(few - 6, few)))
+    assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
+
+
+def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None:
+    few, most = N_COPIES
+    asked = question(-5.0)
+    asked.is_hasty = True
+    assert asked.numbers == range(1, most + 1)
+    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -5.0))
+    asked.take((0, *range(few + 1, most + 1)), {0: -5.0})
+    assert (asked.n_copies, asked.n_stays) == (few, few)
+
+
+def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
+    few, most = N_COPIES
+    small = question(-SMALL_MARGIN["m"])
+    small.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
+    assert not small.is_settled
+    kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
+    small.take((0, *range(few + 1, most + 1)), kept)
+    assert (small.n_copies, small.n_stays) == (most, most - 1)
+    large = question(-5.0)
+    for numbers in (range(1, 21), range(21, few + 1)):
+        large.take((0, *numbers), dict.fromkeys((0, *numbers), -5.0))
+    assert (large.n_copies, large.n_stays) == (few, few)
 
 
 @pytest.mark.slow

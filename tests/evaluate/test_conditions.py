@@ -155,6 +155,41 @@ def test_the_law_of_a_nation_is_not_applied_in_another(
     assert (row["verdict"], row["reason_code"]) == (("unknown", "missing_map") if judged else foreign)
 
 
+@pytest.mark.parametrize(
+    ("applies", "given", "expected"),
+    [
+        ('light = ["night"]', {"light": "day"}, OUT),
+        ('light = ["night"]', {"light": ["day", "day", "day"]}, OUT),
+        ('light = ["night"]', {"light": ["day", "night", "day"]}, None),
+        ('light = ["night"]', {"light": ["day", None, "day"]}, None),
+        ('light = ["night"]', {"light": "night"}, None),
+        ('light = ["night"]', {}, None),
+        ('road_type = ["townLocal"]', {"road_type": "town"}, None),  # may be one
+        ('weather = ["wet"]\nlight = ["night"]', {"light": "day"}, OUT),
+        # at each step another condition is not met
+        (
+            'weather = ["wet"]\nlight = ["night"]',
+            {"light": ["day", "night", "day"], "weather": ["wet", "dry", "dry"]},
+            OUT,
+        ),
+        ("limit_min_mps = 13.5", {"limit_mps": 13.4112}, OUT),
+        ("limit_min_mps = 13.41", {"limit_mps": 13.4112}, None),
+        ("limit_max_mps = 13.3", {"limit_mps": [13.4112, None, 13.4112]}, None),
+        ('light = ["night"]\nlimit_max_mps = 13.3', {"limit_mps": 13.4112}, OUT),
+    ],
+)
+def test_a_signal_is_not_missed_where_known_conditions_exclude_the_rule(
+    tmp_path: Path, applies: str, given: dict[str, Any], expected: tuple[str, str] | None
+) -> None:
+    """`expected` None: the missing signal leaves the rule unknown."""
+    needed = {"requires": '["map"]'}
+    rules = invariant(tmp_path, applies, **needed), at_event(tmp_path, applies, EXECUTION | needed)
+    for rule in rules:
+        found = verdicts(rule, drive([9, 12, 9], at=0.2, **given), missing=("map",))
+        assert brief(found) == [expected or ("unknown", "missing_map")]
+        assert found[0]["assumes"] is None
+
+
 def test_each_drive_has_its_own_nation(tmp_path: Path) -> None:
     scene = {
         "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1], "speed_mps": [9, 12]} for e in "abc"],

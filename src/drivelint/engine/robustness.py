@@ -1,37 +1,47 @@
 """Counts for each critical and major finding in how many copies with the errors of a recording it is a finding too.
 
-Only a window of the drive around a finding is copied, with the actors near the ego, and judged by the rules that failed.
-The window's copy without errors must give the finding with the same margin: where it does not, a wider window is tried, and
-then none. 100 copies are judged, or 32 where all of these keep the finding. Margins do not tell whether fewer suffice: a copy may
-lose a finding because the rule does not apply to it any more, however far the margin is from 0.
+Only a window of the drive around a finding is copied, with the actors near the ego, and judged by the rules that failed. The first
+window has some seconds around the worst step. Its copy without errors must give the finding with the same margin: where it does not,
+a wider window is tried, and then none.
+
+A stretch stays in a copy where any step of it fails. The errors of a copy are the same at all steps, so a copy in which the worst step
+passes loses the stretch. Where the first window has only a part of the stretch and a copy tells neither, the wider one is judged,
+unless so few copies keep the finding that it is only possible anyway.
+
+100 copies are judged, or 32 where all of these keep the finding. Margins do not tell whether fewer suffice: a copy may lose a finding
+because the rule does not apply to it any more, however far the margin is from 0.
 """
 
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint.engine.batch import BATCH_STATES, are_large
 from drivelint.engine.copies import copies
 from drivelint.engine.derive import derive
-from drivelint.engine.window import Window, windows
+from drivelint.engine.window import SIZES, Window, span, windows
 from drivelint.errors import DriveLintError, RuleError
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
+from drivelint.sql.derivations import with_sources
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
     from drivelint.engine.copies import MeasurementErrors
     from drivelint.engine.memory import Memory
+    from drivelint.engine.window import Extent
     from drivelint.evaluate.limits import RuleLimits
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
@@ -39,8 +49,12 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 N_COPIES: Final = (32, 100)
 """The first copies suffice if all keep the finding. Of a finding that 90 % of all copies would keep, 32 of 32 do in 3.4 % of draws,
 and 95 of 100 or more in 2.4 %; of one that 93 % would, in 10 % and in 25 %."""
+LEAST_SHARE: Final = 0.95
+"""A finding that fewer of its copies keep is only possible, as `result.certainty` says."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which all copies are judged at once, as errors of a decimetre may take it away."""
+HASTY_STATES: Final = 10_000
+"""So many copied states cost a quarter of what a pass over none costs, which most runs do not need."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
 """What the evaluation reads itself, without what it reads for verdicts that are unknown."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
@@ -57,33 +71,76 @@ class Question:
     n_copies: int = 0
     n_stays: int = 0
     """How many of them keep it."""
+    is_doubtful: bool = False
+    """Some copies lost it in the first window, so that all are judged in the next."""
+    is_hasty: bool = False
+    """All copies are judged at once, which saves a pass. The last ones count only where one of the first loses the finding."""
+    extent: Extent | None = None
+    """What its copies of this size are copies of."""
+
+    @cached_property
+    def of_overtake(self) -> bool:
+        """Whether its rule is about overtakes."""
+        return "overtake" in with_sources(self.rule.reads)
 
     @property
     def numbers(self) -> range:
         """The copies to judge next."""
-        margin = self.finding["margin"]
-        is_small = margin is not None and abs(margin) <= SMALL_MARGIN.get(self.rule.unit or "", 0.0)
-        return range(self.n_copies + 1, N_COPIES[bool(self.n_copies or is_small)] + 1)
+        return range(self.n_copies + 1, (N_COPIES[-1] if self.is_hasty else self._n_needed) + 1)
 
     @property
     def is_settled(self) -> bool:
         """Whether the copies suffice."""
-        return self.n_copies == N_COPIES[-1] or 0 < self.n_copies == self.n_stays
+        return self.n_copies >= self._n_needed
 
-    def take(self, numbers: Sequence[int], margins: Mapping[int, float | None]) -> None:
-        """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors."""
-        if numbers[1] != self.n_copies + 1:
-            return  # the window of the copies before these does not do
+    @property
+    def _n_needed(self) -> int:
+        """How many copies suffice by what is known now."""
+        margin = self.finding["margin"]
+        is_small = margin is not None and abs(margin) <= SMALL_MARGIN.get(self.rule.unit or "", 0.0)
+        return N_COPIES[is_small or self.is_doubtful or self.n_stays < self.n_copies]
+
+    def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
+        """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors.
+
+        `passes`: copies in which the rule is kept at the finding's worst step.
+        """
+        if numbers[1] != self.n_copies + 1 or self.is_settled:
+            return  # the window of the copies before these does not do, or these copies suffice
         margin, whole = self.finding["margin"], margins.get(0)
-        if 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6)):
+        same = 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6))
+        if not same:
+            self.restart(self.size + 1)
+        elif self._is_whole or self._is_decided(numbers, {*margins, *passes}, len(margins) - 1):
             self.n_copies = numbers[-1]
             self.n_stays += len(margins) - 1
         else:
             self.restart(self.size + 1)
+            self.is_doubtful = True
+
+    @property
+    def _is_whole(self) -> bool:
+        """Whether no step outside the window can keep the finding: one of a stretch does, and the first window may not have all."""
+        start, end = span(self)
+        whole = start <= self.finding["t_start_ns"] and end >= self.finding["t_end_ns"]
+        return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
+
+    def _is_decided(self, numbers: Sequence[int], told: Collection[int], n_stays: int) -> bool:
+        """Whether copies that do not tell can be counted as lost: there are none, or the finding is only possible anyway."""
+        may_stay = self.n_stays + n_stays + len(set(numbers) - set(told)) + N_COPIES[-1] - numbers[-1]
+        return set(told) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
 
     def restart(self, size: int) -> None:
         """Forget the copies, and try this size of window; none is left: it stays without an answer."""
-        self.size, self.n_copies, self.n_stays = size, 0, 0
+        self.size, self.n_copies, self.n_stays, self.extent = size, 0, 0, None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Of a finding in a window: the copies that keep it with their margins, and those in which its worst step passes."""
+
+    margins: dict[int, float | None] = field(default_factory=dict)
+    passes: set[int] = field(default_factory=set)
 
 
 class Robustness:
@@ -112,26 +169,37 @@ class Robustness:
         self._limits = limits
         self._limits.memory = memory.most_growth
         self._is_stopped = is_stopped
+        self._waiting: dict[str, Drive] = {}
 
-    def judge(self, drives: Sequence[Drive]) -> None:
-        """Write `n_copies` and `n_stays` of the findings of these drives, whose own tables are not needed any more.
+    def add(self, drives: Sequence[Drive]) -> None:
+        """Keep the drives with findings until there are enough of them: a pass over few copies costs nearly what one over many does."""
+        ids = [drive.trace.drive_id for drive in drives]
+        found = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
+        with_findings = set(pc.unique(found["drive_id"]).to_pylist())
+        self._waiting |= {name: drive for name, drive in zip(ids, drives, strict=True) if name in with_findings}
+        if sum(drive.n_states for drive in self._waiting.values()) > BATCH_STATES:
+            self.judge()
+
+    def judge(self) -> None:
+        """Write `n_copies` and `n_stays` of the findings of the drives that wait, whose own tables are not needed any more.
 
         A finding that is not settled when the run is stopped stays without an answer.
         """
-        ids = [drive.trace.drive_id for drive in drives]
-        rows = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table().to_pylist()
+        by_id, self._waiting = self._waiting, {}
+        if not by_id:
+            return
+        rows = self._con.execute(statement("robustness/findings"), {"drives": list(by_id)}).to_arrow_table().to_pylist()
         questions = [Question(row, self._rules[row["rule_id"]]) for row in rows]
-        by_id = {drive.trace.drive_id: drive for drive in drives}
         most_states = BATCH_STATES
-        if are_large(drives):
+        if are_large(by_id.values()):
             self._memory.release()
             most_states //= 2
         open_ = questions
         while open_ and not self._is_stopped():
-            chunks = _chunks(windows(by_id, open_, N_COPIES), most_states)
+            chunks = _chunks(_windows(by_id, open_), most_states)
             for chunk in takewhile(lambda _chunk: not self._is_stopped(), chunks):
                 self._try(chunk)
-            open_ = [q for q in open_ if q.size < Window.SIZES and not q.is_settled]
+            open_ = [q for q in open_ if q.size < SIZES and not q.is_settled]
         self._answer([q for q in questions if q.n_copies and q.is_settled])
 
     def _try(self, chunk: Sequence[Window]) -> None:
@@ -147,14 +215,15 @@ class Robustness:
                 self._try(chunk)
                 return
             for question in chunk[0].questions:
-                question.restart(Window.SIZES)
+                question.restart(SIZES)
             return
-        for window, stays in zip(chunk, found, strict=True):
+        for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
-                question.take(window.numbers, stays.get(id(question), {}))
+                outcome = outcomes.get(id(question), Outcome())
+                question.take(window.numbers, outcome.margins, outcome.passes)
 
-    def _stays(self, chunk: Sequence[Window]) -> list[dict[int, dict[int, float | None]]]:
-        """Return for each window: question -> copy that keeps it -> its margin there."""
+    def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
+        """Return for each window: question -> what its copies tell."""
         made = [copies(window.part(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)]
         asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
         rules = {question.rule.id: question.rule for _, question in asked}
@@ -176,10 +245,14 @@ class Robustness:
             stays = self._con.execute(
                 statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_NS}
             ).fetchall()
-        found: list[dict[int, dict[int, float | None]]] = [{} for _ in chunk]
-        for finding_no, copy_no, margin in stays:
+        found: list[dict[int, Outcome]] = [{} for _ in chunk]
+        for finding_no, copy_no, keeps, margin in stays:
             no, question = asked[finding_no]
-            found[no].setdefault(id(question), {})[copy_no] = margin
+            outcome = found[no].setdefault(id(question), Outcome())
+            if keeps:
+                outcome.margins[copy_no] = margin
+            else:
+                outcome.passes.add(copy_no)
         return found
 
     def _answer(self, questions: Sequence[Question]) -> None:
@@ -196,6 +269,19 @@ class Robustness:
         self._con.register("_answer", pa.Table.from_pylist(rows))
         self._con.execute(statement("robustness/answer"))
         self._con.unregister("_answer")
+
+
+def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
+    """Return the windows to judge next, with all copies at once where that costs less than another pass."""
+    found = windows(drives, questions, N_COPIES)
+    more = sum(
+        window.n_states * (N_COPIES[1] - N_COPIES[0]) // N_COPIES[0] for window in found if window.numbers[1] == 1
+    )
+    if more > HASTY_STATES:
+        return found
+    for question in questions:
+        question.is_hasty = True
+    return windows(drives, questions, N_COPIES)
 
 
 def _asked(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, list[dict[str, object]]]:
@@ -215,6 +301,7 @@ def _asked(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, l
             "any_object": question.rule.combine != "each",  # else the object is only the one that decided
             "t_from_ns": question.finding["t_start_ns"],
             "t_to_ns": question.finding["t_end_ns"],
+            "t_worst_ns": question.finding["t_worst_ns"],
         }
         for finding_no, (no, question) in enumerate(asked)
     ]

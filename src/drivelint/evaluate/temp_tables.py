@@ -9,6 +9,7 @@ import pyarrow as pa
 
 from drivelint.catalogue.header import CONTACT, OTHERS
 from drivelint.drive import conditions
+from drivelint.evaluate import applicability
 from drivelint.sql import store
 from drivelint.sql.derivations import with_sources
 from drivelint.sql.statements import statement, texts
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """Tables that hold what rules found; those of a second connection are appended to them."""
+_ALLOWED = pa.schema([("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))])
 _MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
@@ -32,7 +34,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     # as Arrow tables: lists bound as parameters took a tenth of a second each
     store.insert(con, "_rule", _rules(bindings))
     store.insert(con, "_needs", _needs(bindings))
-    store.insert(con, "_law", _laws(bindings))
+    store.insert(con, "_allowed", _allowed(bindings))
     con.execute(statement("judging/todo"))
     counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
     return {int(no): int(n) for no, n in counts}
@@ -46,7 +48,9 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
-        rows.append(row | {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags})
+        row |= {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags}
+        limits = applicability.bound_values(rule)
+        rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
     return pa.Table.from_pylist(rows)
 
 
@@ -58,12 +62,18 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
     ])  # fmt: skip
 
 
-def _laws(bindings: Sequence[Binding]) -> pa.Table:
+def _allowed(bindings: Sequence[Binding]) -> pa.Table:
+    """Return the words that each rule's law and conditions allow, and those that leave it open whether they do."""
+    columns = ("rule_no", "code", "condition", "word")
     rows = []
     for b in bindings:
-        words = (*conditions.with_narrower_values(b.rule.law), *conditions.broader_values(b.rule.law))
-        rows += [{"rule_no": b.no, "nation": word} for word in words]
-    return pa.Table.from_pylist(rows)
+        asked = [("outside_conditions", *each) for each in b.rule.applies.restricting.items()]
+        if b.rule.law:
+            asked.append(("other_nation", "nation", b.rule.law))
+        for code, condition, words in asked:
+            known = (*conditions.with_narrower_values(words), *conditions.broader_values(words))
+            rows += [(b.no, code, condition, word) for word in known]
+    return pa.table({name: [row[at] for row in rows] for at, name in enumerate(columns)}, schema=_ALLOWED)
 
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
