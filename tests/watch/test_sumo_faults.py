@@ -78,7 +78,7 @@ def live(made: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float
             assert halted is None or not processes(str(made.config))
             source.close()
             result = check_recording(
-                options, source.recording, None, watching, progress=Silent(), interruption=interruption
+                options, source.recording, None, watching, folder=folder, progress=Silent(), interruption=interruption
             )
             watching.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
     finally:
