@@ -134,11 +134,11 @@ def write(folder: Path, fault: Fault, driver: str) -> Scenario:
     return scenario(folder / fault.place, name, [*told, *map(_vehicle, fault.cars)], fault.end_s)
 
 
-def ordinary(folder: Path, end_s: int) -> Scenario:
-    """Write SUMO's default drivers on the road that `build` made: the ego follows a slower one, with traffic both ways."""
+def ordinary(folder: Path, end_s: int, *, overtakes: bool) -> Scenario:
+    """Write SUMO's default drivers on the road that `build` made: traffic both ways, and a lorry that the ego comes up to and overtakes."""
     kinds = "".join(f'<vType id="{kind}" {said}/>' for kind, (said, _) in world.ORDINARY.items())
     cars = [
-        Car("lorry", 0, "ab", "lorry", 'departSpeed="max" departPos="150"'),
+        *([Car("lorry", 0, "ab", "lorry", 'departSpeed="max" departPos="150"')] if overtakes else []),
         Car("ego", 0, "ab", "car"),
         *(
             Car(f"oncoming-{n}", n, "ba", "car", f'departSpeed="max" departPos="{2400 if n == 0 else 0}"')
@@ -147,7 +147,7 @@ def ordinary(folder: Path, end_s: int) -> Scenario:
         *(Car(f"behind-{n}", n, "ab", "car") for n in range(8, end_s, 12)),
     ]
     cars.sort(key=lambda car: car.depart)
-    return scenario(folder / "road", "ordinary", [kinds, *map(_vehicle, cars)], end_s)
+    return scenario(folder / "road", f"ordinary-{overtakes}", [kinds, *map(_vehicle, cars)], end_s)
 
 
 def scenario(place: Path, name: str, traffic: Sequence[str], end_s: int) -> Scenario:
