@@ -21,7 +21,7 @@ from drivelint.watch.window import S
 from tests.sumo import world
 from tests.watch import faults
 from tests.watch.prefixes import told, watch
-from tests.watch.test_sumo_source import processes
+from tests.watch.sumo_processes import processes
 
 if TYPE_CHECKING:
     from pathlib import Path

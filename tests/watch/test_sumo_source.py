@@ -22,6 +22,7 @@ from drivelint.road.map_reader import MapSource
 from drivelint.watch.sources import sumo, sumo_process
 from tests.scenes import judged
 from tests.sumo import crossroads, world
+from tests.watch.sumo_processes import processes
 
 if TYPE_CHECKING:
     from drivelint.watch.source import Frame
@@ -105,19 +106,6 @@ def verdicts(logs: list[Path], road: Path) -> list[list[dict[str, Any]]]:
         [{k: v for k, v in row.items() if k not in own} for row in rows if row["drive_id"] == drive.trace.drive_id]
         for drive in drives
     ]
-
-
-def processes(word: str) -> list[str]:
-    """Return the commands that run now and name this file."""
-    found = []
-    for each in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            command = each.read_bytes().replace(b"\0", b" ").decode(errors="replace")
-        except OSError:
-            continue
-        if word in command and "/sumo " in command:
-            found.append(command)
-    return found
 
 
 def test_the_recording_is_what_sumo_alone_writes(scenario: Path, tmp_path: Path) -> None:
