@@ -109,12 +109,8 @@ def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
         partial = check(options(pack, out=tmp_path / "a"), stopper, stopper.interruption)
     alone = check(options(pack, TRACES[:1], tmp_path / "b"), Silent())
     assert partial.interrupted
-    for name in ("verdicts", "courses", "tracks", "scenes"):
+    for name in ("verdicts", "findings", "courses", "tracks", "scenes"):
         assert getattr(partial, name).equals(getattr(alone, name)), name
-    # how sure findings are is judged of all drives together, at the end
-    counts = ["n_copies", "n_stays"]
-    assert partial.findings.drop_columns(counts).equals(alone.findings.drop_columns(counts))
-    assert partial.findings["n_copies"].null_count == partial.findings.num_rows > alone.findings["n_copies"].null_count
     assert set(partial.verdicts["verdict"].to_pylist()) <= {"pass", "fail", "unknown", "not_applicable"}
     rows = partial.drives.select(["file_name", "status", "status_reason"]).to_pylist()
     why = "the run was interrupted before this drive was judged"

@@ -140,7 +140,6 @@ def check(
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
                     _judge(session, batch, refused, progress, notes)
-            session.judge_copies()
         finally:
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}

@@ -132,7 +132,7 @@ class LiveServer:
         return made
 
     def _log(self, channel: foxglove.Channel, message: Mapping[str, Any], t_ns: int) -> None:
-        # what is not known is left out: viewers refuse a schema that allows null
+        # viewers refuse a schema that allows null, so a message leaves unknown values out
         known = {name: value for name, value in message.items() if finite(value) is not None}
         channel.log(msgspec.json.encode(known), log_time=self._times(t_ns).at(t_ns))
 

@@ -20,7 +20,7 @@ SAID: Final = (
     "verdict", "severity", "t_end_ns", "t_worst_ns", "reason_code", "reason", "observed", "required", "margin", "unit", "near_miss",
     "n_expected", "n_judged", "x_m", "y_m", "lanelet_id",
 )  # fmt: skip
-"""What is said of it beside its key."""
+"""The columns that a message has beside the key."""
 _COMPARED: Final = tuple(name for name in SAID if name != "reason")
 Key = tuple[Any, ...]
 

@@ -78,7 +78,7 @@ class McapFile(WrittenWindows):
             schema = self._schema(each.channel)
             if not is_watched(schema):
                 continue
-            if each.log_ns <= LATEST_NS:  # what is later is malformed, and no clock
+            if each.log_ns <= LATEST_NS:  # a later time is malformed and says nothing of the clock
                 self._last_ns = each.log_ns
             numbered = Numbered(self._count, each)
             self._count += 1

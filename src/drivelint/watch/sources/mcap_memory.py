@@ -31,7 +31,7 @@ _READ: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_R
 
 
 class Memory(Protocol):
-    """What is kept of a channel's messages before a window."""
+    """Keeps the messages of a channel that still hold when a window begins."""
 
     def take(self, numbered: Numbered) -> None:
         """Take the next message."""

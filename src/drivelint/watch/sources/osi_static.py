@@ -12,7 +12,7 @@ _SAID_ONCE: Final = (
     "lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane", "traffic_sign", "road_marking",
     "proj_string", "proj_frame_offset",
 )  # fmt: skip
-"""What is read of the first message alone, see `formats.osi.decode.read_first_message`."""
+"""Fields that the reader takes from the first message only, see `formats.osi.decode.read_first_message`."""
 _SHOWN: Final = ("color", "mode")
 """What a traffic light shows at a time; all else about it is of the first message, too."""
 
