@@ -2,7 +2,8 @@
 -- the distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
 -- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
 -- An ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known.
--- If the log ends before the ego is back, its highest speed until then stands for the mean speed.
+-- If the log ends before the ego is back, it may have sped up yet: the highest speed that it had or that the limit allows stands for the
+-- mean speed. Without a limit in the map, that of the fastest roads counts. After a collision it cannot speed up.
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
@@ -32,10 +33,18 @@ closed_distance AS (
     WHERE s.t_ns <= m.t_both_ns
     GROUP BY s.drive_id, s.ego_id, s.occurrence, s.ov_id, s.da_m
 ),
-top_speed AS (
-    SELECT o.drive_id, o.ego_id, o.occurrence, max(e.speed_mps) AS v_top_mps
+collision AS (
+    SELECT drive_id, ego_id, t_ns FROM impact
+    UNION
+    SELECT drive_id, ego_id, t_ns FROM pair WHERE clearance_m <= 0 AND NOT clearance_is_bound
+),
+speed_within_reach AS (
+    SELECT
+        o.drive_id, o.ego_id, o.occurrence,
+        greatest(max(e.speed_mps), CASE WHEN count(c.t_ns) = 0 THEN max(coalesce(e.limit_mps, fastest_mps())) END) AS v_reach_mps
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
+    LEFT JOIN collision c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.t_ns = e.t_ns
     WHERE o.status = 'truncated'
     GROUP BY ALL
 ),
@@ -43,7 +52,7 @@ top_speed AS (
 -- at t0 counts. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
 driven_distance AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_top_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
+        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_reach_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
         CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
         coalesce(c.closed_m, 0.0) + greatest(0.0, b.front_s_m - a.front_s_m) + v.v_ov_mps * greatest(0, h.t_ns - h.t_seen_ns) / 1e9 + stopping_distance_m(v.v_ov_mps) AS driven_m
     FROM overtake o
@@ -54,7 +63,7 @@ driven_distance AS (
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = h.t_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN top_speed m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
+    LEFT JOIN speed_within_reach m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 formula_input AS (
     SELECT
@@ -62,7 +71,7 @@ formula_input AS (
             CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps,
             d.ov_id AS ov_id, d.da_m AS da_m, d.v_ov_mps AS v_ov_mps
         ),
-        o.ov_id AS nearest_id, d.out_s, d.stands, p.profile, coalesce(d.v_mean_mps, d.v_top_mps) AS v_later_mps,
+        o.ov_id AS nearest_id, d.out_s, d.stands, p.profile, coalesce(d.v_mean_mps, d.v_reach_mps) AS v_later_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta_rad,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta_rad,
@@ -121,7 +130,7 @@ SELECT
         WHEN sda_m IS NULL AND profile = 'observed' AND status <> 'completed' THEN CASE status WHEN 'truncated' THEN why('overtake_truncated') ELSE why('overtake_aborted') END
         WHEN sda_m IS NULL AND ov_id IS NULL AND v_ov_mps IS NULL THEN why('no_oncoming_no_limit')
         WHEN sda_m IS NULL THEN why('speed_or_size_unknown')
-        WHEN has_sped_up THEN why(CASE status WHEN 'truncated' THEN 'sped_up_truncated' ELSE 'sped_up' END, {'v_mps': v_av_mps, 'sda_m': sda_m, 'v_later_mps': v_later_mps, 'later_sda_m': sped_up_m, 'da_m': da_m})
+        WHEN has_sped_up THEN why(CASE status WHEN 'truncated' THEN 'may_speed_up' ELSE 'sped_up' END, {'v_mps': v_av_mps, 'sda_m': sda_m, 'v_later_mps': v_later_mps, 'later_sda_m': sped_up_m, 'da_m': da_m})
         WHEN n_unplaced > 0 AND da_m > sda_m THEN why('record_actor_unbroken', {'lack': unplaced_reason})
         WHEN ov_id IS NULL AND da_m <= sda_m THEN why(CASE free_reason WHEN 'sensor_range' THEN 'short_sight_sensors' ELSE 'short_sight_map' END, {'free_m': da_m})
         WHEN ov_id IS NULL THEN why('no_oncoming', {'free_m': da_m})

@@ -399,7 +399,7 @@ def test_safe_distance_ahead_is_the_papers_formula(
         assert row["spare_m"] == pytest.approx(spare)
         assert row["spare_s"] == pytest.approx(spare / (o["v_av_mps"] + o["v_ov_mps"]))
         seconds = spare / (o["v_av_mps"] + o["v_ov_mps"])
-        if '"sped_up_truncated"' in (row["reason"] or ""):
+        if '"may_speed_up"' in (row["reason"] or ""):
             assert spare <= 0
             assert row["zone"] is None
             continue
@@ -442,7 +442,13 @@ def test_an_ego_that_speeds_up_to_overtake_is_not_held_to_its_speed_at_the_start
 def test_nor_is_one_that_is_still_out_when_the_log_ends(far: float, verdict: str) -> None:
     found = _judged_speeding_up("lht", far, until_s=20.0)
     assert found["nominal"]["verdict"] == verdict
-    assert ("highest speed until the log ended" in found["nominal"]["reason"]) == (verdict == "unknown")
+    assert ("may still reach (26.8 m/s)" in found["nominal"]["reason"]) == (verdict == "unknown")
+
+
+@pytest.mark.parametrize(("far", "verdict"), [(700.0, "unknown"), (120.0, "fail")])
+def test_nor_is_one_that_has_not_yet_sped_up_when_the_log_ends(far: float, verdict: str) -> None:
+    """Two seconds after it pulled out it drives at 9.5 m/s as before; the limit is 60 mph."""
+    assert _judged_speeding_up("lht", far, until_s=13.0)["nominal"]["verdict"] == verdict
 
 
 def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]:

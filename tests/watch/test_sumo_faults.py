@@ -140,16 +140,8 @@ def test_the_same_scenario_without_the_fault_is_not_halted(fault: Fault, places:
     assert came.last_ns > 10 * S
 
 
-FALSE_HALT = (
-    "a log that ends while the ego speeds up to overtake fails r162.safe-distance-ahead: the formula takes the highest speed until the log "
-    "ends, which is hardly more than that of the lorry ahead"
-)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "overtakes", [False, pytest.param(True, marks=pytest.mark.xfail(strict=True, reason=FALSE_HALT))]
-)
+@pytest.mark.parametrize("overtakes", [False, True])
 def test_ordinary_traffic_is_not_halted(places: Path, tmp_path: Path, *, overtakes: bool) -> None:
     """All stable rules of ukhc, SUMO's default drivers with their own speeds, a minute live."""
     made = faults.ordinary(places, ORDINARY_S, overtakes=overtakes)
