@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint import run
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import DriveLintError
 from drivelint.report.progress import Silent
+from drivelint.watch import contact
 from drivelint.watch.alarms import WARM_UP_NS, Alarm, AlarmLog
 from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
+from drivelint.watch.run import egos_of
 from drivelint.watch.settled import SettledVerdicts
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S, Window
@@ -49,8 +51,16 @@ class Watched:
         return [alarm for alarm in self.alarms if alarm.withdrawn_ns is not None]
 
 
-def windows_of(options: WatchOptions, folder: Path) -> list[tuple[Trace, bool]]:
-    """Return each window of a replayed log as a trace, and whether it begins where the log does."""
+class Made(NamedTuple):
+    """A window of a replayed log, whether it begins where the log does, and the newest steps, which are looked at before it is judged."""
+
+    trace: Trace
+    is_whole: bool
+    latest: Trace
+
+
+def windows_of(options: WatchOptions, folder: Path) -> list[Made]:
+    """Return each window of a replayed log."""
     every_ns = round(options.every_s * S)
     source = Replay(folder / options.source, options.ingest_options(), speed=0, every_ns=every_ns)
     window = Window(round(options.window_s * S))
@@ -58,23 +68,30 @@ def windows_of(options: WatchOptions, folder: Path) -> list[tuple[Trace, bool]]:
     while (frames := source.read(0)) is not None:
         window.add(frames)
         while window.advance(every_ns):
-            found.append((source.read_window(window.frames, folder, options.ingest_options()), window.is_whole))
+            ingest = options.ingest_options()
+            latest = source.latest(window.since(frames[0].t_ns - contact.LOOK_NS), folder, ingest)
+            found.append(Made(source.window(window.frames, folder, ingest)(), window.is_whole, latest))
     return found
 
 
 def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
     """Watch a log of a folder, with so many windows in a pass."""
     made = windows_of(options, folder)
-    start_ns = made[0][0].tables["data_log"]["t_start_ns"][0].as_py()
+    start_ns = made[0].trace.tables["data_log"]["t_start_ns"][0].as_py()
     with WindowJudge(options) as judge:
         judged: list[JudgedWindow | DriveLintError] = []
         for at in range(0, len(made), at_once):
-            judged += judge.judge([trace for trace, _ in made[at : at + at_once]], start_ns)
+            judged += judge.judge([each.trace for each in made[at : at + at_once]], start_ns)
         alarms = AlarmLog(judge.gaps_ns, judge.profiles)
         settled = SettledVerdicts()
+        contacts = judge.contact_look()
+        egos: set[str] = set()
         until: int | None = None
-        for each, (_, is_whole) in zip(judged, made, strict=True):
+        for each, (trace, is_whole, latest) in zip(judged, made, strict=True):
+            if contacts is not None and until is not None and egos == egos_of(latest):
+                alarms.look(contacts.look(latest, until), latest.tables["data_log"]["t_end_ns"][0].as_py())
             if isinstance(each, JudgedWindow):
+                egos = egos_of(trace)
                 from_ns = None if is_whole else each.t_end_ns - round(options.window_s * S)
                 settled.take(each, each.t_start_ns if from_ns is None else from_ns + WARM_UP_NS)
                 alarms.take(each, until, from_ns)

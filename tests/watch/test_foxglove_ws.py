@@ -72,7 +72,7 @@ def test_the_recording_has_the_states_of_what_is_played(tmp_path: Path) -> None:
         assert mine[table].drop_columns("drive_id").equals(there)
 
     since = frames[-60].t_ns
-    window = source.read_window(frames[-60:], tmp_path, options).tables["actor_state"].to_pylist()
+    window = source.window(frames[-60:], tmp_path, options)().tables["actor_state"].to_pylist()
     whole = [row for row in mine["actor_state"].to_pylist() if row["t_ns"] >= min(row["t_ns"] for row in window)]
     key = ("t_ns", "actor_id", "x_m", "y_m")
     assert since > frames[0].t_ns

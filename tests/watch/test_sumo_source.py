@@ -136,7 +136,7 @@ def test_a_window_is_the_end_of_the_recording(scenario: Path, tmp_path: Path) ->
     source = sumo.open(str(config(scenario, "window.sumocfg", "c.rou.xml", end=15)), tmp_path)
     frames = played(source)
     options = IngestOptions(ego="all")
-    window = source.read_window(frames[-50:], tmp_path, options).tables
+    window = source.window(frames[-50:], tmp_path, options)().tables
     whole = read_trace(source.recording, options).tables
     for table in ("actor_state", "signal_state"):
         since = [row for row in whole[table].to_pylist() if row["t_ns"] >= frames[-50].t_ns]

@@ -222,7 +222,7 @@ def test_a_mistake_is_one_line() -> None:
 class Broken:
     """A source that has a recording, gives windows that no reader can read, and then breaks."""
 
-    in_step = True
+    in_step = is_due = True
     recording = LOG
 
     def __init__(self) -> None:
@@ -237,8 +237,10 @@ class Broken:
     def notes(self) -> list[str]:
         return []
 
-    def read_window(self, frames: Any, folder: Path, options: Any) -> Any:  # noqa: ARG002 - of all sources
+    def window(self, frames: Any, folder: Path, options: Any) -> Any:  # noqa: ARG002 - of all sources
         raise ValueError("what a reader never expected")
+
+    latest = window
 
     def halt(self) -> None: ...
 

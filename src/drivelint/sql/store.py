@@ -334,8 +334,17 @@ def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
     """Append an Arrow table by column name; a column that the table does not have is refused."""
     if not rows.num_rows and set(rows.column_names) <= column_comments().get(table, {}).keys():
         return  # most of a trace's and a map's tables are empty: two milliseconds each
-    con.register("_incoming", rows)
-    try:
+    with registered(con, {"_incoming": rows}):
         con.execute(f"INSERT INTO {table} BY NAME SELECT * FROM _incoming")
+
+
+@contextmanager
+def registered(con: duckdb.DuckDBPyConnection, tables: Mapping[str, pa.Table]) -> Iterator[None]:
+    """Let statements of this connection read Arrow tables under these names, for so long."""
+    for name, rows in tables.items():
+        con.register(name, rows)
+    try:
+        yield
     finally:
-        con.unregister("_incoming")
+        for name in tables:
+            con.unregister(name)

@@ -40,6 +40,8 @@ class Alarm:
     """The newest step that was known when a window did not show it any more: what came since told more of what was done."""
     finding_ids: list[str] = field(default_factory=list)
     """The findings of the whole log that it is of, once they are known."""
+    is_early: bool = False
+    """It was seen in the newest frames, before a window with them was judged."""
 
     @property
     def from_ns(self) -> int:
@@ -86,6 +88,20 @@ class AlarmLog:
         self._profiles = frozenset(profiles)
         self.alarms: list[Alarm] = []
         self._standing: list[Alarm] = []
+
+    def look(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
+        """Take what was seen in the newest frames, up to the step at `now_ns`; return the alarms that are new."""
+        new: list[Alarm] = []
+        for row in rows:
+            same = [each for each in self._standing if self._is_same(each, row)]
+            if not same:
+                same = [Alarm(len(self.alarms), row, now_ns, row["t_end_ns"], is_early=True)]
+                new += same
+                self.alarms += same
+                self._standing += same
+            for each in same:
+                each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
+        return new
 
     def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
         """Take the findings of a window; return what they change.
@@ -134,6 +150,7 @@ class AlarmLog:
             for each in self._standing
             if each.number not in seen
             and each.from_ns >= known_from_ns
+            and each.row["t_start_ns"] <= window.t_end_ns
             and not {(*key_of(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent
         ]
         for alarm in found:

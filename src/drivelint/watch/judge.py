@@ -23,6 +23,8 @@ from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.result import collect
 from drivelint.sql import store
+from drivelint.watch import contact
+from drivelint.watch.contact import ContactLook
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -103,6 +105,14 @@ class WindowJudge:
             self._con, rules, params, None, memory=self._memory, observers=observers, limits=limits
         )
         self._n_passes = 0
+
+    def contact_look(self) -> ContactLook | None:
+        """Return what looks for contacts in frames that no window was judged with; None: the rule of contacts is not asked for."""
+        rule = self.rules.get(contact.RULE)
+        if rule is None:
+            return None
+        # a cursor of its own, which a rule's time limit does not interrupt
+        return ContactLook(self._stack.enter_context(self._con.cursor()), rule)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
         """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's.

@@ -37,6 +37,7 @@ def alarm(each: Alarm, rule: Rule, start_ns: int) -> Message:
         "t_s": _seconds(row["t_start_ns"], start_ns),
         "said_s": _seconds(each.said_ns, start_ns),
         "latency_s": round(each.latency_s, 6),
+        "is_early": each.is_early,
         "status": rule.status,
         **{name: _plain(row[name]) for name in _OF_ROW},
     }

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import sys
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
 from drivelint import catalogue, run
 from drivelint.engine.barrier import refused
@@ -17,7 +21,7 @@ from drivelint.errors import ChangedLogError, DriveLintError, TraceError, UsageE
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.model import exit_status
-from drivelint.watch import messages, triggers
+from drivelint.watch import contact, messages, triggers
 from drivelint.watch.advice import Advice
 from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
 from drivelint.watch.halting import Child
@@ -28,7 +32,9 @@ from drivelint.watch.window import S, Window
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from concurrent.futures import Future
 
+    from drivelint.drive.trace import Trace
     from drivelint.engine.interruption import Interruption
     from drivelint.report.progress import Progress
     from drivelint.result.model import Result
@@ -41,6 +47,8 @@ if TYPE_CHECKING:
 
 READ_S: Final = 0.05
 """So long a source is waited for at a time."""
+LOOK_PAUSE_S: Final = 0.05
+"""So long there is no look at new frames after the last one: it would take as much as the windows do."""
 AFTER_CHILD_S: Final = 1.0
 """After the program that writes the log has ended, the source is read until nothing new came for so long."""
 
@@ -64,6 +72,26 @@ class Watched:
         if not took:
             return "no window could be judged"
         return f"{plural(len(took), 'window')} judged, each in {took[len(took) // 2]:.1f} s (median), {took[-1]:.1f} s at most"
+
+
+class _Pass(NamedTuple):
+    """What became of a window, and the seconds that it took."""
+
+    trace: Trace | None
+    judged: JudgedWindow | DriveLintError
+    took_s: float
+
+
+def _give_way() -> None:
+    """Let the looks at new frames have the machine before this thread and those that it starts, where threads have priorities."""
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 10)
+
+
+def egos_of(trace: Trace) -> set[str]:
+    """Return the ids of a log's egos."""
+    actors = trace.tables["actor"]
+    return set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
 
 
 class Watch:
@@ -90,6 +118,16 @@ class Watch:
         self._server = server
         self._stack = ExitStack()
         self._judge = self._stack.enter_context(WindowJudge(options))
+        self._worker = self._stack.enter_context(
+            ThreadPoolExecutor(1, initializer=None if source.in_step else _give_way)
+        )
+        self._running: Future[_Pass] | None = None
+        self._contacts = self._judge.contact_look()
+        self._egos: set[str] = set()
+        """Those of the window that was judged last."""
+        self._looked_until_ns: int | None = None
+        self._unseen: list[Frame] = []
+        self._look_at_s = 0.0
         known = catalogue.load_rules(options.rules_dirs)
         self._triggers = triggers.parse(options.on, known, self._judge.rules)
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-")))
@@ -132,22 +170,38 @@ class Watch:
         return self.watched
 
     def _loop(self, child: Child | None) -> None:
-        in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
-        # what came while a window was judged is judged at once, but no step without its past
-        most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
         quiet_since = time.monotonic()
         is_over = False
         while not (is_over or self._is_stopped):
             frames = self._read()
             if frames:
                 self._window.add(frames)
+                self._unseen += frames
                 quiet_since = time.monotonic()
+            if self._unseen and (self._source.in_step or time.monotonic() >= self._look_at_s):
+                self._look(self._unseen)
+                self._unseen = []
+                self._look_at_s = time.monotonic() + LOOK_PAUSE_S
             is_quiet = time.monotonic() - quiet_since > AFTER_CHILD_S
             is_over = frames is None or (child is not None and child.code is not None and is_quiet)
-            while (in_step or is_over or self._window.behind_ns >= every_ns) and self._window.advance(most_ns):
-                self._pass()
-                if self._is_stopped:
-                    break
+            self._judge_what_waits(is_over=is_over)
+
+    def _judge_what_waits(self, *, is_over: bool) -> None:
+        """Judge the windows that are due, one after another: while a source goes on by itself, in the background."""
+        in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
+        # what came while a window was judged is judged at once, but no step without its past
+        most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
+        while not self._is_stopped:
+            if self._running is not None:
+                if not (in_step or is_over or self._running.done()):
+                    return
+                running, self._running = self._running, None
+                self._conclude(running.result())
+                continue
+            is_due = self._source.is_due or is_over or self._window.behind_ns >= every_ns
+            if not (is_due and self._window.advance(most_ns)):
+                return
+            self._running = self._worker.submit(self._window_to_judge())
 
     @property
     def _is_stopped(self) -> bool:
@@ -176,24 +230,60 @@ class Watch:
     def _window_ns(self) -> int:
         return round(self._options.window_s * S)
 
-    def _pass(self) -> None:
-        """Judge the window, and say what is new. A window that cannot be read or judged is told, and the watch goes on."""
-        begun_s = time.perf_counter()
+    def _look(self, frames: Sequence[Frame]) -> None:
+        """Say the contacts in frames that came, once it is known who the ego is."""
+        if self._contacts is None or self._start_ns is None:
+            return
+        latest = self._window.since(min(frame.t_ns for frame in frames) - contact.LOOK_NS)
         try:
-            trace = self._source.read_window(self._window.frames, self._folder, self._ingest)
-            judged = self._judge.judge([trace], self._start_ns)[0]
-        except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
+            trace = self._source.latest(latest, self._folder, self._ingest)
+            if self._egos != egos_of(trace):
+                return
+            rows = self._contacts.look(trace, self._looked_until_ns)
+        except DriveLintError:
+            return  # too little of a log, or none: the window tells what is wrong with it
+        except Exception as error:  # noqa: BLE001 - the windows are still judged
+            self._contacts = None
+            self._emit(messages.note(f"contacts are found by windows alone: {error}"))
+            return
+        now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
+        self._say(self.alarms.look(rows, now_ns), now_ns, self._start_ns)
+
+    def _window_to_judge(self) -> Callable[[], _Pass]:
+        """Return what judges the window as it is now. It may be called in another thread, and raises nothing."""
+        begun_s = time.perf_counter()
+        frames, start_ns = self._window.frames, self._start_ns
+
+        def judge() -> _Pass:
+            trace = None
+            try:
+                trace = read()
+                judged = self._judge.judge([trace], start_ns)[0]
+            except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
+                judged = refused(Path(self._options.source), error).error
+            return _Pass(trace, judged, time.perf_counter() - begun_s)
+
+        try:
+            read = self._source.window(frames, self._folder, self._ingest)
+        except Exception as error:  # noqa: BLE001 - as above
             judged = refused(Path(self._options.source), error).error
-        if isinstance(judged, DriveLintError):
-            self._doubt_of(judged)
+            return lambda: _Pass(None, judged, 0.0)
+        return judge
+
+    def _conclude(self, each: _Pass) -> None:
+        """Say what is new. A window that cannot be read or judged is told, and the watch goes on."""
+        if isinstance(each.judged, DriveLintError):
+            self._doubt_of(each.judged)
             return
         self._doubt = None
         since_ns = self._judged_until_ns
-        self._take(judged)
-        self.watched.busy_s.append(time.perf_counter() - begun_s)
-        if self._server is not None:
-            self._server.publish_scene(trace)
-            self._server.publish_margins(judged.margins_since(since_ns))
+        self._take(each.judged)
+        self.watched.busy_s.append(each.took_s)
+        if each.trace is not None:
+            self._egos = egos_of(each.trace)
+        if self._server is not None and each.trace is not None:
+            self._server.publish_scene(each.trace)
+            self._server.publish_margins(each.judged.margins_since(since_ns))
 
     def _doubt_of(self, error: DriveLintError) -> None:
         """Say why the log cannot be judged as far as it is known; once, whatever numbers are in it."""

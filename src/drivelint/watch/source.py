@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from drivelint.formats import read_trace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from drivelint.drive.trace import IngestOptions, Trace
@@ -39,6 +40,11 @@ class Source(Protocol):
         """Whether the source waits until it is asked for more, as a simulation that is stepped from here does."""
         ...
 
+    @property
+    def is_due(self) -> bool:
+        """Whether such a source has given all steps until the next window is to be judged; never of one that goes on by itself."""
+        ...
+
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
         """Return the frames that came since, in the order of the recording; none after so many seconds; None: it has ended.
 
@@ -50,10 +56,18 @@ class Source(Protocol):
         """Return what has to be told of the source since the last call, such as frames that were lost on the way."""
         ...
 
-    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
-        """Return a log of these frames alone, read as the recording is read; `folder` may be written to.
+    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
+        """Return what reads a log of these frames alone, as the recording is read, and may do so in another thread.
 
-        Errors: as those of `read_trace`, while there is too little to judge.
+        `folder` may be written to. Windows begin one after another as the drive does. Both raise what `read_trace` does, while there is
+        too little to judge.
+        """
+        ...
+
+    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+        """Return a log of the newest frames alone, read as the recording is read; what holds of earlier ones may be missing.
+
+        Errors: as above.
         """
         ...
 
@@ -69,15 +83,25 @@ class Source(Protocol):
 class WrittenWindows(ABC):
     """The part of a source that writes windows as small logs of its format."""
 
+    is_due = False
     window_name: str
     """Name of the file of a window, which tells the format."""
 
     @abstractmethod
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
-        """Write a log of these frames alone, as one that `read_trace` reads as it reads the recording."""
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
+        """Write a log of these frames alone, as one that `read_trace` reads as it reads the recording.
 
-    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
-        """Return a log of these frames alone, read as the recording is read. Errors: as those of `read_trace`."""
+        `latest`: what holds of earlier frames may be left out.
+        """
+
+    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
+        """See `Source`."""
         path = folder / self.window_name
         self.write_window(frames, path)
+        return partial(read_trace, path, options)
+
+    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+        """See `Source`."""
+        path = folder / f"latest-{self.window_name}"
+        self.write_window(frames, path, latest=True)
         return read_trace(path, options)

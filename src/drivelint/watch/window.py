@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from itertools import chain
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
@@ -87,3 +88,14 @@ class Window:
     def frames(self) -> list[Frame]:
         """The frames in the order in which they came."""
         return [placed.frame for placed in self._frames]
+
+    def since(self, t_ns: int) -> list[Frame]:
+        """Return the newest frames in the order in which they came, those that wait too: all after the last one that is older."""
+        found: list[Frame] = []
+        for placed in chain(reversed(self._waiting), reversed(self._frames)):
+            if placed.frame.t_ns < t_ns:
+                break
+            found.append(placed.frame)
+            if placed.is_cut:
+                break
+        return found[::-1]

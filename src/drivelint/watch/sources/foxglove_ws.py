@@ -71,11 +71,11 @@ class FoxgloveWebSocket(WrittenWindows):
         """Return what the server said of itself, and which of its channels are not read, once."""
         return [*self._client.notes(), *self._reader.notes()]
 
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
         """See `Source`. Errors: `TraceError` before the first message."""
         if self._writer is None:
             raise TraceError(f"{self._uri}: no message came")
-        self._reader.write_window(frames, path)
+        self._reader.write_window(frames, path, latest=latest)
 
     def halt(self) -> None:
         """See `Source`. Who sends the messages cannot be ended from here."""

@@ -14,6 +14,7 @@ from drivelint.formats.mcap.writer import Sink
 from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources.growing_file import GrowingFile
 from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
+from drivelint.watch.sources.mcap_scene import SceneMemory
 from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, Numbered
 from drivelint.watch.sources.osi_static import StaticContent
 
@@ -100,17 +101,19 @@ class McapFile(WrittenWindows):
         found, self._stream.notes = self._stream.notes, []
         return found
 
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
         """See `Source`."""
         records = [cast("tuple[int, Message | DamagedChunk]", frame.data) for frame in frames]
         begin = records[0][0] if records else 0
-        while self._pending and self._pending[0].number < begin:
+        while not latest and self._pending and self._pending[0].number < begin:
             self._remember_next()
         begun: set[int] = set()
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
-            held = [each for memory in self._memories.values() for each in memory.held()]
+            # entities that were replaced since the last window began must not come back
+            kept = [each for each in self._memories.values() if not (latest and isinstance(each, SceneMemory))]
+            held = [each for memory in kept for each in memory.held()]
             for numbered in sorted(held, key=lambda each: each.number):
                 if numbered.number < begin:
                     writer.add(numbered.message)

@@ -82,7 +82,7 @@ class OsiSource(WrittenWindows):
         """See `Source`."""
         return self._receiver.notes()
 
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - of all sources
         """See `Source`."""
         with path.open("wb") as file:
             for k, frame in enumerate(frames):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from drivelint.formats import read_trace
 from drivelint.watch.source import Frame
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from drivelint.drive.trace import IngestOptions, Trace
@@ -27,7 +28,7 @@ class Replay:
 
     def __init__(self, path: Path, options: IngestOptions, *, speed: float, every_ns: int) -> None:
         self.recording = path
-        self.in_step = speed == 0
+        self.in_step = self.is_due = speed == 0
         self._speed = speed
         self._every_ns = every_ns
         self._trace = read_trace(path, options)
@@ -63,10 +64,14 @@ class Replay:
         """Return nothing: a finished log loses nothing on the way."""
         return ()
 
-    def read_window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:  # noqa: ARG002 - of all sources
-        """Return these steps of the log."""
+    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:  # noqa: ARG002 - of all sources
+        """See `Source`."""
         times = [frame.t_ns for frame in frames]
-        return cut_trace(self._trace, min(times), max(times))
+        return partial(cut_trace, self._trace, min(times), max(times))
+
+    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+        """See `Source`."""
+        return self.window(frames, folder, options)()
 
     def halt(self) -> None:
         """Give no more steps."""

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 LEAST_PRECISION: Final = 4
 """Decimals that are recorded, unless the configuration asks for more."""
 DEFAULT_SPAN_S: Final = 0.5
+PART_S: Final = 0.5
+"""So much is simulated at a time at most, that a contact halts it soon."""
 _BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
 _END: Final = b"</fcd-export>\n"
 _LIGHTS_BEGIN: Final = b"<tlsStates>\n"
@@ -74,14 +76,15 @@ class SumoSimulation(WrittenWindows):
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
         # a window ends where a span does: the first one begins with the log's first step, the others after the last of the one before
         self._n_left = self._n_steps + 1
+        self._n_part = max(1, round(PART_S / self._sumo.step_s))
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Simulate the next span, a frame for each step; only a part of it where that takes longer than `timeout_s`."""
+        """Simulate the next part of the span, a frame for each step: `PART_S` of it, less where that takes longer than `timeout_s`."""
         if self._is_over:
             return None
         until = time.monotonic() + timeout_s
         frames: list[Frame] = []
-        while self._n_left and not (frames and time.monotonic() > until):
+        while self._n_left and len(frames) < self._n_part and not (frames and time.monotonic() > until):
             if self._sumo.is_over():
                 self._is_over = True
                 break
@@ -92,6 +95,7 @@ class SumoSimulation(WrittenWindows):
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
             self._n_left -= 1
+        self.is_due = not self._n_left
         self._n_left = self._n_left or self._n_steps
         return frames or None
 
@@ -100,7 +104,7 @@ class SumoSimulation(WrittenWindows):
         found, self._notes = self._notes, []
         return found
 
-    def write_window(self, frames: Sequence[Frame], path: Path) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - of all sources
         """Write these steps as floating car data, and the types and lights beside it."""
         steps = [frame.data for frame in frames if isinstance(frame.data, Step)]
         path.write_bytes(b"".join([_BEGIN, *(step.xml for step in steps), _END]))

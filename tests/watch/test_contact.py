@@ -1,0 +1,165 @@
+"""Looks at the newest frames for contacts, held against shapely; and what becomes of an alarm that they say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from shapely import affinity
+from shapely.geometry import box
+
+from drivelint import catalogue
+from drivelint.engine.interruption import Interruption
+from drivelint.sql import store
+from drivelint.watch.alarms import AlarmLog
+from drivelint.watch.contact import RULE, ContactLook
+from drivelint.watch.judge import JudgedWindow
+from drivelint.watch.options import WatchOptions
+from drivelint.watch.run import Watch
+from drivelint.watch.sources.replay import Replay
+from drivelint.watch.window import S
+from tests.scenes import Actor, drive, moving, road, standing, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import duckdb
+
+    from drivelint.drive.trace import Trace
+
+KNOWN = catalogue.load_rules(())
+WAY = road()
+T = times(10.0)
+SCENES = Path(__file__).parents[2] / "fixtures" / "scenes"
+
+
+@pytest.fixture(scope="module")
+def con() -> Iterator[duckdb.DuckDBPyConnection]:
+    with store.workspace(None) as con:
+        yield con
+
+
+@pytest.fixture
+def look(con: duckdb.DuckDBPyConnection) -> ContactLook:
+    return ContactLook(con, KNOWN[RULE])
+
+
+def ego(lateral: float = 0.0) -> Actor:
+    return moving("ego", WAY, T, 50 + 10 * T, WAY.own + lateral)
+
+
+def trace(*actors: Actor) -> Trace:
+    return drive(actors, None).trace
+
+
+def with_column(log: Trace, table: str, column: str, values: list[Any]) -> Trace:
+    rows = log.tables[table]
+    made = rows.set_column(rows.column_names.index(column), column, pa.array(values, rows.schema.field(column).type))
+    return replace(log, tables={**log.tables, table: made})
+
+
+def overlaps(a: Actor, b: Actor) -> set[int]:
+    """The steps at which two boxes overlap, by shapely."""
+
+    def placed(each: Actor, k: int) -> Any:
+        assert each.length
+        assert each.width
+        lying = box(-each.length / 2, -each.width / 2, each.length / 2, each.width / 2)
+        return affinity.translate(affinity.rotate(lying, each.yaw[k], (0, 0), use_radians=True), each.x[k], each.y[k])
+
+    return {round(a.t_s[k] * S) for k in range(len(a.t_s)) if placed(a, k).intersects(placed(b, k))}
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.6, 2.2])
+@pytest.mark.parametrize("beside", [0.0, 1.7, 2.9])
+def test_contacts_are_where_the_boxes_overlap(look: ContactLook, turned: float, beside: float) -> None:
+    car = standing("car", WAY, T, 110.0, WAY.own + beside, turned=turned)
+    found = look.look(trace(ego(), car), None)
+    assert {row["t_start_ns"] for row in found} == overlaps(ego(), car)
+    assert {(row["ego_id"], row["object_id"], row["severity"]) for row in found} <= {("ego", "car", "critical")}
+    assert bool(found) == (beside < 2.9 or turned > 0)
+
+
+def test_steps_that_were_looked_at_are_not_told_again(look: ContactLook) -> None:
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    steps = [row["t_start_ns"] for row in look.look(log, None)]
+    assert [row["t_start_ns"] for row in look.look(log, steps[1])] == steps[2:]
+
+
+def test_an_actor_that_was_never_seen_apart_may_be_the_trailer(look: ContactLook) -> None:
+    trailer = moving("trailer", WAY, T, 50 + 10 * T - 4.5, WAY.own)
+    assert overlaps(ego(), trailer) == {round(t * S) for t in T}
+    assert look.look(trace(ego(), trailer), None) == []
+
+
+def test_a_contact_that_lasts_is_told_by_the_looks_after_it(con: duckdb.DuckDBPyConnection, look: ContactLook) -> None:
+    pushed = moving("car", WAY, T, np.maximum(90.0, 50 + 10 * T + 4.0), WAY.own)
+    log = trace(ego(), pushed)
+    assert look.look(part_of(log, 0.0, 3.0), None) == []
+    late = part_of(log, 8.0, 9.0)
+    assert [row["t_start_ns"] for row in look.look(late, round(8.9 * S))] == [9 * S]
+    assert ContactLook(con, KNOWN[RULE]).look(late, None) == []  # it has not seen the two apart
+
+
+def part_of(log: Trace, from_s: float, to_s: float) -> Trace:
+    rows = log.tables["actor_state"]
+    t_ns = rows["t_ns"].to_numpy()
+    kept = rows.filter((t_ns >= round(from_s * S)) & (t_ns <= round(to_s * S)))
+    return replace(log, tables={**log.tables, "actor_state": kept})
+
+
+def test_on_another_level_there_is_no_contact(look: ContactLook) -> None:
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    ids = log.tables["actor_state"]["actor_id"].to_pylist()
+    for height, touches in ((6.0, False), (0.5, True)):
+        there = with_column(log, "actor_state", "z_m", [height if each == "car" else 0.0 for each in ids])
+        assert bool(look.look(there, None)) == touches
+
+
+@pytest.mark.parametrize(("table", "column"), [("actor_state", "yaw_rad"), ("actor", "width_m")])
+def test_without_a_box_there_is_no_contact(look: ContactLook, table: str, column: str) -> None:
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    rows = log.tables[table].to_pylist()
+    unknown = with_column(log, table, column, [None if row["actor_id"] == "car" else row[column] for row in rows])
+    assert look.look(unknown, None) == []
+
+
+def window(t_end_s: float, findings: list[dict[str, Any]]) -> JudgedWindow:
+    kinds = store.arrow_schemas()
+    rows = pa.Table.from_pylist(findings, schema=kinds["finding"])
+    return JudgedWindow(0, round(t_end_s * S), rows, kinds["verdict"].empty_table(), pa.table({}))
+
+
+def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook) -> None:
+    rows = look.look(trace(ego(), standing("car", WAY, T, 110.0, WAY.own)), None)
+    log = AlarmLog({RULE: 2 * S}, ())
+    (alarm,) = log.look(rows, 10 * S)
+    assert (alarm.is_early, alarm.row["t_start_ns"], alarm.t_end_ns) == (
+        True,
+        rows[0]["t_start_ns"],
+        rows[-1]["t_end_ns"],
+    )
+    assert log.look(rows, 10 * S) == []
+    before = log.take(window(rows[0]["t_start_ns"] / S - 0.1, []), None, None)
+    assert (before.new, before.withdrawn) == ([], [])
+    seen = log.take(window(10.0, [{"rule_id": RULE, **rows[0]}]), None, None)
+    assert (seen.new, seen.withdrawn, len(log.alarms)) == ([], [], 1)
+    assert log.take(window(10.1, []), None, None).withdrawn == [alarm]
+
+
+def test_a_contact_is_said_before_its_window_is_judged() -> None:
+    """A log of 11.6 s, judged every 9 s and at its end: the contact at 9.7 s is in the second window."""
+    asked = WatchOptions(
+        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(RULE,), every_s=9.0
+    )
+    said: list[dict[str, Any]] = []
+    source = Replay(Path(asked.source), asked.ingest_options(), speed=0, every_ns=9 * S)
+    with Watch(asked, source, said.append, Interruption()) as watch:
+        watch.watch()
+    (alarm,) = (each for each in said if each["type"] == "alarm")
+    assert (alarm["is_early"], alarm["t_s"]) == (True, 9.7)
+    assert [each for each in said if each["type"] == "withdrawn"] == []
