@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
 READ_S: Final = 0.05
 """So long a source is waited for at a time."""
+FIRST_NS: Final = S
+"""The first window is judged so soon: it tells who the ego is, and what is wrong with the log or the map."""
 LOOK_PAUSE_S: Final = 0.05
 """So long there is no look at new frames after the last one: it would take as much as the windows do."""
 AFTER_CHILD_S: Final = 1.0
@@ -126,6 +128,7 @@ class Watch:
         self._egos: set[str] = set()
         """Those of the window that was judged last."""
         self._looked_until_ns: int | None = None
+        self._has_begun = False
         self._unseen: list[Frame] = []
         self._look_at_s = 0.0
         known = catalogue.load_rules(options.rules_dirs)
@@ -189,6 +192,7 @@ class Watch:
     def _judge_what_waits(self, *, is_over: bool) -> None:
         """Judge the windows that are due, one after another: while a source goes on by itself, in the background."""
         in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
+        due_ns = every_ns if self._has_begun else min(every_ns, FIRST_NS)
         # what came while a window was judged is judged at once, but no step without its past
         most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
         while not self._is_stopped:
@@ -198,9 +202,10 @@ class Watch:
                 running, self._running = self._running, None
                 self._conclude(running.result())
                 continue
-            is_due = self._source.is_due or is_over or self._window.behind_ns >= every_ns
+            is_due = self._source.is_due or is_over or self._window.behind_ns >= due_ns
             if not (is_due and self._window.advance(most_ns)):
                 return
+            self._has_begun = True
             self._running = self._worker.submit(self._window_to_judge())
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.drive.trace import IngestOptions, Trace
+
+
+FIRST_NS: Final = 1_000_000_000
+"""The first steps are given for a window of their own, which tells early who the ego is."""
 
 
 class Replay:
@@ -49,7 +53,8 @@ class Replay:
     def _due(self, timeout_s: float) -> int:
         """Return the number of steps that have come, after a wait of at most so long."""
         if self.in_step:
-            return int(np.searchsorted(self._times, self._times[self._at] + self._every_ns, side="left"))
+            span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_NS)
+            return int(np.searchsorted(self._times, self._times[self._at] + span_ns, side="left"))
         now = time.monotonic()
         if self._begun_s is None:
             self._begun_s = now
