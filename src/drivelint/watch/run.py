@@ -51,6 +51,8 @@ FIRST_NS: Final = S
 """The first window is judged so soon: it tells who the ego is, and what is wrong with the log or the map."""
 LOOK_PAUSE_S: Final = 0.05
 """So long there is no look at new frames after the last one: it would take as much as the windows do."""
+GIVES_WAY: Final = 3
+"""Priority of what judges windows (nice): half of what the looks get, so that another program does not stop it."""
 AFTER_CHILD_S: Final = 1.0
 """After the program that writes the log has ended, the source is read until nothing new came for so long."""
 
@@ -87,7 +89,7 @@ class _Pass(NamedTuple):
 def _give_way() -> None:
     """Let the looks at new frames have the machine before this thread and those that it starts, where threads have priorities."""
     if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 10)
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), GIVES_WAY)
 
 
 def egos_of(trace: Trace) -> set[str]:
