@@ -231,6 +231,7 @@ def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.Monke
     check(replace(options(Path(), TRACES), rules_dirs=(), rules=("ukhc.r162.safe-distance-ahead",)), watcher)
     assert watcher.told == [
         "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "reading 3/3", "judging 2 drives", 2,
+        "judging copies of 2 drives",
     ]  # fmt: skip
 
 

@@ -140,6 +140,7 @@ def check(
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
                     _judge(session, batch, refused, progress, notes)
+            _judge_copies(session, progress)
         finally:
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
@@ -220,6 +221,13 @@ class _Notes:
             if note not in self._said:
                 self.add(f"{name}: {note}")
         self._said.update(said)
+
+
+def _judge_copies(session: JudgingSession, progress: Progress) -> None:
+    """Judge the copies that wait; of an interrupted run too."""
+    if session.n_waiting:
+        progress.doing(f"judging copies of {plural(session.n_waiting, 'drive')}")
+        session.judge_copies()
 
 
 def _judge(

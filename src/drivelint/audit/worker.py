@@ -145,6 +145,7 @@ class Judge:
         refusals: list[RefusedLog] = []
         if drives:
             judge_apart(self._session, drives, refusals)
+            self._session.judge_copies()
         failed = {each.path: each for each in refusals}
         told = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}
         judged = collect.drives(self._con)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import contextmanager
 from threading import Lock
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.sql import store
 
@@ -12,6 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import duckdb
+
+
+COPIES_S: Final = 20.0
+"""So long after an interruption copies of what was judged are begun to be judged."""
 
 
 class InterruptedRunError(Exception):
@@ -29,13 +34,20 @@ class Interruption:
         self._lock = Lock()
         self._con: duckdb.DuckDBPyConnection | None = None
         self.requested = False
+        self._requested_s = 0.0
 
     def request(self) -> None:
         """Interrupt the run; to be called again while it goes on, as an interrupt between two statements is lost."""
         with self._lock:
+            if not self.requested:
+                self._requested_s = time.monotonic()
             self.requested = True
             if self._con is not None:
                 store.interrupt(self._con)
+
+    def ends_judging_of_copies(self) -> bool:
+        """Whether no copies are begun any more: those of whole batches still are for a while, so that the result has their answers."""
+        return self.requested and time.monotonic() > self._requested_s + COPIES_S
 
     @contextmanager
     def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint.engine.batch import BATCH_STATES, are_large
 from drivelint.engine.copies import copies
@@ -168,13 +169,30 @@ class Robustness:
         self._limits = limits
         self._limits.memory = memory.most_growth
         self._is_stopped = is_stopped
+        self._waiting: dict[str, Drive] = {}
 
-    def judge(self, drives: Sequence[Drive]) -> None:
-        """Write `n_copies` and `n_stays` of the findings of these drives, whose own tables are not needed any more.
+    def add(self, drives: Sequence[Drive]) -> None:
+        """Keep the drives with findings until there are enough of them: a pass over few copies costs nearly what one over many does."""
+        ids = [drive.trace.drive_id for drive in drives]
+        found = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
+        with_findings = set(pc.unique(found["drive_id"]).to_pylist())
+        self._waiting |= {name: drive for name, drive in zip(ids, drives, strict=True) if name in with_findings}
+        if sum(drive.n_states for drive in self._waiting.values()) > BATCH_STATES:
+            self.judge()
+
+    @property
+    def n_waiting(self) -> int:
+        """How many drives wait."""
+        return len(self._waiting)
+
+    def judge(self) -> None:
+        """Write `n_copies` and `n_stays` of the findings of the drives that wait, whose own tables are not needed any more.
 
         A finding that is not settled when the run is stopped stays without an answer.
         """
-        by_id = {drive.trace.drive_id: drive for drive in drives}
+        by_id, self._waiting = self._waiting, {}
+        if not by_id:
+            return
         rows = self._con.execute(statement("robustness/findings"), {"drives": list(by_id)}).to_arrow_table().to_pylist()
         questions = [Question(row, self._rules[row["rule_id"]]) for row in rows]
         most_states = BATCH_STATES

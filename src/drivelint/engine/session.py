@@ -47,7 +47,7 @@ class JudgingSession:
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
-    `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
+    `errors`: those of the copies that tell how robust findings are; None: no copies are judged. `judge_copies` ends their judging.
     `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
     """
 
@@ -88,7 +88,7 @@ class JudgingSession:
                 load=self._load,
                 forget=self._forget_copies,
                 limits=self._limits_of_copies,
-                is_stopped=lambda: self._interruption.requested,
+                is_stopped=self._interruption.ends_judging_of_copies,
             )
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
@@ -145,10 +145,20 @@ class JudgingSession:
             if self._margins:
                 self._margins.add(self._con, self._memory)
             if self._robustness:
-                self._robustness.judge(drives)
+                self._robustness.add(drives)
             undo.pop_all()
         self._seen.update(ids)
         store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
+
+    @property
+    def n_waiting(self) -> int:
+        """The number of drives whose copies still wait to be judged."""
+        return self._robustness.n_waiting if self._robustness else 0
+
+    def judge_copies(self) -> None:
+        """Judge the copies that still wait: those of several batches are judged together. After an interruption too, for a while."""
+        if self._robustness:
+            self._robustness.judge()
 
     def _judge(self, drives: Sequence[Drive]) -> bool:
         """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""

@@ -71,6 +71,7 @@ class Judge:
             memory = Memory(con, self.memory)
             session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory, errors=errors)
             session.judge([drive])
+            session.judge_copies()
             session.close()
             verdicts, findings = (memory.run_job(job).to_pylist() for job in (collect.verdicts, collect.findings))
         return Judged(verdicts, findings, steps[-1])
