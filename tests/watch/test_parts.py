@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,16 +12,20 @@ import pyarrow as pa
 import pytest
 
 from drivelint import catalogue
+from drivelint.engine.judging_options import JudgingOptions
 from drivelint.errors import UsageError
+from drivelint.run import CheckOptions
 from drivelint.watch import triggers
 from drivelint.watch.halting import Child
 from drivelint.watch.judge import JudgedWindow
+from drivelint.watch.options import WatchOptions
 from drivelint.watch.shrinking import ShrinkingMargins
 from drivelint.watch.window import S
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+OTHER_THAN_BY_DEFAULT: dict[type, Any] = {str: "x", float: 7.5, int: 7, tuple: ("x",), type(None): "x"}
 KNOWN = catalogue.load_rules(())
 RULE = "ukhc.r126.two-second"
 PYTHON = sys.executable
@@ -148,3 +153,16 @@ def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
         near([-1.0, -2.0]),
     ):
         assert ShrinkingMargins().take(window, KNOWN, 0) == []
+
+
+def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:
+    """Whatever option both have and somebody adds: `check` gets what `watch` got."""
+    shared: dict[str, Any] = {
+        each.name: not each.default if isinstance(each.default, bool) else OTHER_THAN_BY_DEFAULT[type(each.default)]
+        for each in fields(JudgingOptions)
+    }
+    checked = CheckOptions.judging(("log",), WatchOptions(source="log", **shared), Path("out"))
+    assert {name: getattr(checked, name) for name in shared} == shared
+    assert (checked.traces, checked.out) == (("log",), Path("out"))
+    both = {each.name for each in fields(WatchOptions)} & {each.name for each in fields(CheckOptions)}
+    assert both - shared.keys() == {"out"}  # the folder of the check is another

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from drivelint.cli import completion, options, values
+from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import Texts, argument, option
@@ -91,38 +91,20 @@ def watch(
         Path | None,
         option("--out", "DIR", "Folder for the recording and, at the end, for the result files, as those of check."),
     ] = None,
-    overwrite: Annotated[
-        bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
-    ] = False,
-    rules: Annotated[
-        Texts,
-        option(
-            "--rules",
-            "SEL",
-            "Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.",
-            autocompletion=completion.rule_ids,
-        ),
-    ] = None,
-    ignore: Annotated[
-        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
-    ] = None,
-    profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
-    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    overwrite: options.Overwrite = False,
+    rules: options.RulesAsInCheck = None,
+    ignore: options.Ignore = None,
+    profile: options.ProfileAsInCheck = None,
+    param: options.Param = None,
     rules_dir: options.RulesDirs = None,
-    fail_on: Annotated[
-        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
-    ] = "critical",
-    strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
+    fail_on: options.FailOnOption = "critical",
+    strict: options.Strict = False,
     robustness: Annotated[
         bool,
-        option(
-            "--robustness/--no-robustness",
-            None,
-            "At the end, count how robust critical and major findings are, as check does.",
-        ),
+        options.robustness("At the end, count how robust critical and major findings are, as check does."),
     ] = True,
     memory: options.MemorySize = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Judge a drive while it is recorded: alarms at once, verdicts at its end.
 

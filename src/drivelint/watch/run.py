@@ -6,10 +6,10 @@ import re
 import shutil
 import time
 from contextlib import ExitStack
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 from drivelint import catalogue, run
 from drivelint.engine.barrier import refused
@@ -264,18 +264,15 @@ def check_recording(
     interruption: Interruption,
 ) -> Result:
     """Check what was recorded as any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
-    names = {each.name for each in fields(run.CheckOptions)}
-    same: dict[str, Any] = {each.name: getattr(options, each.name) for each in fields(options) if each.name in names}
-    same["out"] = work
     if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
         raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
     try:
-        result = run.check(run.CheckOptions(traces=(str(recording),), **same), progress, interruption)
+        result = run.check(run.CheckOptions.judging((str(recording),), options, work), progress, interruption)
     except ChangedLogError:
         # another program goes on with it: what is there now is checked
         copy = folder / recording.name
         shutil.copy(recording, copy)
-        result = run.check(run.CheckOptions(traces=(str(copy),), **same), progress, interruption)
+        result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
     halted = watch.watched.halted
     if halted is None or watch.watched.halted_ns is None:
         return result
