@@ -211,6 +211,13 @@ def test_mistakes(asked: dict[str, Any], said: str) -> None:
         Watch(wanted, source, print, Interruption())
 
 
+@pytest.mark.parametrize("name", ["ws://127.0.0.1:1", "{}/ws-new.mcap"])
+def test_a_program_may_bring_the_source_into_being(name: str, tmp_path: Path) -> None:
+    wanted = WatchOptions(source=name.format(tmp_path), command=("true",))
+    with open_source(wanted, Silent()) as source:
+        assert source.read(0.0) == []
+
+
 def test_a_mistake_is_one_line() -> None:
     status, out, err = drivelint("watch", LOG, "--replay", "0", *options("no-such-rule"))
     assert (status, len(err.splitlines())) == (2, 1)

@@ -65,14 +65,9 @@ def _refuse_with_command(options: WatchOptions) -> None:
     """Refuse what a program that is started with the watch cannot be the source of. Errors: `UsageError`."""
     if not options.command:
         return
-    if (
-        options.source == "-"
-        or ("://" not in options.source and Path(options.source).exists())
-        or options.source.startswith("ws")
-    ):
-        why = (
-            "is there already: the program behind -- must write a new file: remove it, or name another"
-            if options.source != "-" and "://" not in options.source
-            else "is there before the program behind -- is started: start that by itself"
+    if options.source == "-":
+        raise UsageError("-: is there before the program behind -- is started: start that by itself")
+    if "://" not in options.source and Path(options.source).exists():
+        raise UsageError(
+            f"{options.source}: is there already: the program behind -- must write a new file: remove it, or name another"
         )
-        raise UsageError(f"{options.source}: {why}")
