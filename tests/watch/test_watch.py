@@ -226,6 +226,18 @@ def test_a_mistake_is_one_line() -> None:
     assert end["why"] in err
 
 
+def test_a_map_that_cannot_be_read_is_known_before_anything_is_started(tmp_path: Path) -> None:
+    road, marker = tmp_path / "road.xodr", tmp_path / "marker"
+    road.write_text("<OpenDRIVE><road", encoding="utf-8")
+    script = f"open({str(marker)!r}, 'w')"
+    words = ("--rules", "ukhc.no-collision", "--map", road, "--idle", "0.1", "--", sys.executable, "-c", script)
+    status, out, err = drivelint("watch", tmp_path / "new.mcap", *words)
+    (end,) = (json.loads(line) for line in out.splitlines())
+    assert (status, end["type"], end["exit_code"]) == (4, "end", 4), err
+    assert "is not well-formed XML" in end["why"]
+    assert not marker.exists()
+
+
 class Broken:
     """A source that has a recording, gives windows that no reader can read, and then breaks."""
 

@@ -121,6 +121,7 @@ def watch(
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages
+    from drivelint.watch.judge import WindowJudge
     from drivelint.watch.options import WatchOptions
     from drivelint.watch.run import Watch, check_recording, conclude
     from drivelint.watch.server import open_server
@@ -168,9 +169,10 @@ def watch(
         def job() -> int:
             with (
                 TemporaryDirectory(prefix="drivelint-") as folder,
+                WindowJudge(settings) as judge,  # whose rules and map must be known before anything is started
                 open_server(serve) as server,
                 open_source(settings, progress) as opened,
-                Watch(settings, opened, emit, interruption, server) as watch,
+                Watch(settings, opened, emit, interruption, server, judge=judge) as watch,
             ):
                 progress.stage("watching")
                 watched = watch.watch()

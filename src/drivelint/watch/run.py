@@ -67,7 +67,10 @@ class Watched:
 
 
 class Watch:
-    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on."""
+    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on.
+
+    `judge`: one that was made before the source was opened; None: one is made here. It is closed with the watch.
+    """
 
     def __init__(
         self,
@@ -76,6 +79,8 @@ class Watch:
         emit: Callable[[Message], None],
         interruption: Interruption,
         server: LiveServer | None = None,
+        *,
+        judge: WindowJudge | None = None,
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
             raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
@@ -89,7 +94,7 @@ class Watch:
         self._interruption = interruption
         self._server = server
         self._stack = ExitStack()
-        self._judge = self._stack.enter_context(WindowJudge(options))
+        self._judge = self._stack.enter_context(judge or WindowJudge(options))
         known = catalogue.load_rules(options.rules_dirs)
         self._triggers = triggers.parse(options.on, known, self._judge.rules)
         self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-")))
