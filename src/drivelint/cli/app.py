@@ -15,7 +15,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from drivelint import __version__
+from drivelint import __version__, temporary
 from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values, watching
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
@@ -342,6 +342,7 @@ def main() -> NoReturn:
         _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
         streams.say("drivelint: error: interrupted")
+        temporary.remove_all()
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
 

@@ -8,7 +8,6 @@ import time
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final, Self
 
 from drivelint import catalogue, run
@@ -17,6 +16,7 @@ from drivelint.errors import ChangedLogError, DriveLintError, TraceError, UsageE
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.model import exit_status
+from drivelint.temporary import temporary_folder
 from drivelint.watch import messages, triggers
 from drivelint.watch.advice import Advice
 from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
@@ -97,7 +97,7 @@ class Watch:
         self._judge = self._stack.enter_context(judge or WindowJudge(options))
         known = catalogue.load_rules(options.rules_dirs)
         self._triggers = triggers.parse(options.on, known, self._judge.rules)
-        self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-")))
+        self._folder = self._stack.enter_context(temporary_folder())
         self._ingest = options.ingest_options()
         self._window = Window(round(options.window_s * S))
         self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.temporary import keep, temporary_folder
 from drivelint.watch import sources
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S
@@ -30,24 +29,21 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
 
     Errors: `UsageError` for a name that means none, those of the source.
     """
-    folder: Path | None
-    folder = home = Path(mkdtemp(prefix="drivelint-")) if options.out is None else options.out / RECORDED
-    source = None
-    try:
-        source = _opened(options, home)
-        yield source
-    except BaseException:
-        if source is not None:
-            source.close()
-        if options.out is None and any(home.iterdir()):
-            progress.note(f"what was recorded is kept: {home}")
-            folder = None
-        raise
-    finally:
-        if source is not None:
-            source.close()
-        if options.out is None and folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+    with nullcontext(options.out / RECORDED) if options.out is not None else temporary_folder() as home:
+        source = None
+        try:
+            source = _opened(options, home)
+            yield source
+        except BaseException:
+            if source is not None:
+                source.close()
+            if options.out is None and any(home.iterdir()):
+                progress.note(f"what was recorded is kept: {home}")
+                keep(home)
+            raise
+        finally:
+            if source is not None:
+                source.close()
 
 
 def _opened(options: WatchOptions, folder: Path) -> Source:
