@@ -205,7 +205,7 @@ def _watch_and_check(
     with (
         temporary_folder() as folder,
         WindowJudge(settings) as judge,  # whose rules and map must be known before anything is started
-        open_server(settings.serve) as server,
+        open_server(settings.serve, judge.rules) as server,
         open_source(settings, progress) as opened,
         Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,
     ):
