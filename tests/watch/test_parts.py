@@ -29,6 +29,7 @@ OTHER_THAN_BY_DEFAULT: dict[type, Any] = {str: "x", float: 7.5, int: 7, tuple: (
 KNOWN = catalogue.load_rules(())
 RULE = "ukhc.r126.two-second"
 PYTHON = sys.executable
+LIMITS = "it starts at most once in 1 s, and 4 run at a time"
 
 
 def wait_for(file: Path) -> None:
@@ -91,6 +92,17 @@ def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
         assert trigger.pull([{"rule_id": RULE}]) is None
     assert trigger.pull([{"rule_id": "another"}]) is None
     assert (trigger.n_run, trigger.n_left_out) == (1, 4)
+    trigger.close()
+
+
+def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
+    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
+    told = [trigger.pull([{"rule_id": RULE}] * 2) for _ in range(3)]
+    trigger._last_s -= triggers.LEAST_S
+    told += [trigger.pull([{"rule_id": RULE}]), trigger.left_out()]
+    assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
+    trigger.pull([{"rule_id": RULE}])
+    assert trigger.left_out() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
     trigger.close()
 
 

@@ -266,8 +266,11 @@ class Broken:
 
 def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the_check(tmp_path: Path) -> None:
     told: list[dict[str, Any]] = []
-    asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False)
+    on = ("ukhc.no-collision=true",)
+    asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False, on=on)
     with Watch(asked, Broken(), told.append, Interruption()) as watch:
+        for _ in range(2):
+            watch._triggers[0].pull([{"rule_id": "ukhc.no-collision"}])
         watched = watch.watch()
         checked: dict[str, Any] = {"folder": tmp_path, "progress": Silent(), "interruption": Interruption()}
         result = check_recording(asked, LOG, None, watch, **checked)
@@ -275,5 +278,6 @@ def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the
     texts = [each["text"] for each in told]
     assert any("what a reader never expected" in text for text in texts)
     assert "the other side is gone" in texts
-    assert len(texts) == 2
+    assert any(text.startswith("--on: true was not started for 1 alarm") for text in texts)
+    assert len(texts) == 3
     assert result.findings.num_rows == 1

@@ -126,6 +126,8 @@ class Watch:
         child = Child(self._options.command) if self._options.command else None
         try:
             self._loop(child)
+            for text in filter(None, [each.left_out() for each in self._triggers]):
+                self._emit(messages.note(text))
             if child is not None and self.watched.halted is None and not self._interruption.requested:
                 code = child.leave()
                 if code:
