@@ -6,15 +6,17 @@ import json
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from drivelint import run
 from drivelint.engine.interruption import Interruption
-from drivelint.errors import TraceError, UsageError
+from drivelint.errors import ExitCode, TraceError, UsageError
 from drivelint.report.progress import Silent
 from drivelint.result.files import parquet_bytes
+from drivelint.result.model import exit_status
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch, check_recording
 from drivelint.watch.source import Frame
@@ -281,3 +283,7 @@ def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the
     assert any(text.startswith("--on: true was not started for 1 alarm") for text in texts)
     assert len(texts) == 3
     assert result.findings.num_rows == 1
+    why = "the recording ended early: the other side is gone"
+    assert why in result.notes
+    assert exit_status(result).code == ExitCode.FAILED
+    assert exit_status(replace(result, fail_on="never")) == (ExitCode.NOT_JUDGED, why)

@@ -280,6 +280,9 @@ def check_recording(
         copy = folder / recording.name
         shutil.copy(recording, copy)
         result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
+    if watch.watched.broken is not None:
+        why = f"the recording ended early: {watch.watched.broken}"
+        result = replace(result, ended_early=why, notes=(*result.notes, why))
     halted = watch.watched.halted
     if halted is None or watch.watched.halted_ns is None:
         return result
