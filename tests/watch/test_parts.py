@@ -17,6 +17,7 @@ from drivelint.errors import UsageError
 from drivelint.run import CheckOptions
 from drivelint.watch import triggers
 from drivelint.watch.halting import Child
+from drivelint.watch.interruption import WatchInterruption
 from drivelint.watch.judge import JudgedWindow
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.shrinking import ShrinkingMargins
@@ -178,3 +179,13 @@ def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:
     assert (checked.traces, checked.out) == (("log",), Path("out"))
     both = {each.name for each in fields(WatchOptions)} & {each.name for each in fields(CheckOptions)}
     assert both - shared.keys() == {"out"}  # the folder of the check is another
+
+
+def test_what_goes_on_when_it_is_first_asked_for_is_interrupted_alone() -> None:
+    watched, checked = WatchInterruption(), WatchInterruption()
+    watched.request()
+    for each in (watched, checked):
+        each.begin_check()
+        each.request()
+    assert (watched.of_watch.requested, watched.of_check.requested) == (True, False)  # what was recorded is checked
+    assert (checked.of_watch.requested, checked.of_check.requested) == (False, True)
