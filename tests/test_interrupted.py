@@ -210,6 +210,59 @@ def test_ctrl_c_before_anything_is_judged_says_so_and_changes_nothing(
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
+@pytest.fixture
+def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the folder in which the commands of a test make their temporary ones."""
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    monkeypatch.setenv("TMPDIR", str(folder))
+    return folder
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
+def test_ctrl_c_ends_the_check_at_the_end_of_a_watch(pack: Path, tmp_path: Path, scratch: Path) -> None:
+    out = tmp_path / "out"
+    args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
+    args += ["--rules-dir", str(pack), "--rules", "mine", "--replay", "0", "--every", "20"]
+    with run("", "watch", TRACES[1], *args) as process:
+        try:
+            assert process.stderr is not None
+            # the rule comes to an end on windows, which have another name than the drive
+            told = next(line for line in process.stderr if "judged, each in" in line)
+            time.sleep(1)
+            process.send_signal(signal.SIGINT)
+            said, err = process.communicate(timeout=25)  # the rule alone would take 30 s
+        finally:
+            process.kill()
+    assert process.returncode == 130, told + err
+    end = json.loads(said.splitlines()[-1])
+    assert end == {"type": "end", "exit_code": 130, "why": "interrupted before the recording was judged"}
+    assert f"drivelint: nothing was judged yet; {out} holds no result" in err.splitlines()
+    assert not list(scratch.iterdir())
+
+
+@pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
+def test_a_second_ctrl_c_leaves_no_temporary_folder(tmp_path: Path, scratch: Path) -> None:
+    stuck = "import time\nfrom drivelint.watch.run import Watch\nWatch.watch = lambda self: time.sleep(600)"
+    with run(stuck, "watch", str(tmp_path / "log.mcap"), "--rules", "ukhc.no-collision") as process:
+        try:
+            until = time.monotonic() + 60
+            while len(list(scratch.iterdir())) < 4 and time.monotonic() < until:
+                time.sleep(0.1)
+            before = [path.name for path in scratch.iterdir()]
+            process.send_signal(signal.SIGINT)
+            assert process.stderr is not None
+            told = next(line for line in process.stderr if "interrupted" in line)
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=30)
+        finally:
+            process.kill()
+    assert "Ctrl-C again leaves at once" in told
+    assert process.returncode == 130, err
+    assert len(before) == 4
+    assert not list(scratch.iterdir())
+
+
 class Watcher(Silent):
     """Notes what a person who waits is told."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -12,18 +12,18 @@ import pyarrow as pa
 
 from drivelint import catalogue
 from drivelint.annotate import Annotator
-from drivelint.drive.trace import DriveInput
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
 from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
+from drivelint.engine.judging_options import JudgingOptions
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
-from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S, RuleLimits
+from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.phrases import plural
 from drivelint.result import collect, evidence
@@ -42,29 +42,20 @@ _MISSED: Final = "the run was interrupted before this drive was judged"
 
 
 @dataclass(frozen=True)
-class CheckOptions(DriveInput):
+class CheckOptions(JudgingOptions):
     """The options of `check`, under the names that they have there."""
 
     traces: tuple[str, ...]
     out: Path | None = None
-    rules: tuple[str, ...] = ()
-    ignore: tuple[str, ...] = ()
-    profiles: tuple[str, ...] = ()
-    params: tuple[str, ...] = ()
-    rules_dirs: tuple[Path, ...] = ()
-    fail_on: str = "critical"
-    strict: bool = False
-    require: tuple[str, ...] = ()
     margins: bool = False
     keep_db: bool = False
-    annotate: bool = True
     evidence: bool = False
     """Gather what reports show without `out`, too."""
-    robustness: bool = True
-    memory: int | None = DEFAULT_MEMORY
-    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
-    rule_timeout: float = DEFAULT_TIMEOUT_S
-    """Seconds that a rule may take on a batch of drives."""
+
+    @classmethod
+    def judging(cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None) -> CheckOptions:
+        """Return the options of a check of these logs that judges as `options` say, whatever else they have."""
+        return cls(traces, out, **{each.name: getattr(options, each.name) for each in fields(JudgingOptions)})
 
 
 def check(

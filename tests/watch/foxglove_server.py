@@ -27,11 +27,11 @@ def until(condition: Callable[[], bool]) -> None:
 class Player:
     """Announces the channels of a log, and sends its messages when it is told to."""
 
-    def __init__(self, log: Path) -> None:
+    def __init__(self, log: Path, port: int) -> None:
         import foxglove
 
         self._context = context = foxglove.Context()  # without it its channels are gone
-        self._server = foxglove.start_server(port=0, context=context, message_backlog_size=100_000)
+        self._server = foxglove.start_server(port=port, context=context, message_backlog_size=100_000)
         self.uri = f"ws://127.0.0.1:{self._server.port}"
         with log.open("rb") as file:
             reader = make_reader(file)
@@ -59,9 +59,9 @@ class Player:
 
 
 @contextmanager
-def player(log: Path) -> Iterator[Player]:
-    """Give a server that plays a log."""
-    made = Player(log)
+def player(log: Path, port: int = 0) -> Iterator[Player]:
+    """Give a server that plays a log; port 0: any that is free."""
+    made = Player(log, port)
     try:
         yield made
     finally:

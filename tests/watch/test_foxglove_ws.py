@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
+import socket
+import ssl
 import sys
 import threading
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 import pytest
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
-from drivelint.watch.sources import foxglove_ws
+from drivelint.watch.sources import foxglove_ws, open_source
 from tests.formats.foxglove.foxglove_log import entity, scene, transform, write
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.watch.source import Frame
+    from drivelint.watch.source import Frame, Source
 
 pytest.importorskip("foxglove")
 pytest.importorskip("websockets")
 
+from websockets.typing import Subprotocol
+
+from drivelint.watch.sources.foxglove_client import SUBPROTOCOLS
 from tests.watch.foxglove_server import player, until
 
 COLLISION = ROOT / "fixtures" / "scenes" / "collision.mcap"
@@ -49,7 +58,7 @@ def received(source: foxglove_ws.FoxgloveWebSocket, least: int) -> list[Frame]:
     return frames
 
 
-def ended(source: foxglove_ws.FoxgloveWebSocket) -> bool:
+def ended(source: Source) -> bool:
     until(lambda: source.read(0.05) is None)
     return True
 
@@ -133,11 +142,44 @@ def test_a_recording_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
         source._client.close()
 
 
+def test_a_server_that_is_not_up_yet_is_waited_for(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    uri = f"ws://127.0.0.1:{port}"
+    source = foxglove_ws.open(uri, tmp_path, idle_s=10.0)
+    found: list[str] = []
+
+    def told() -> bool:
+        assert source.read(0.05) == []
+        found.extend(source.notes())
+        return bool(found)
+
+    until(told)
+    with player(COLLISION, port) as server:
+        playing = threading.Thread(target=server.play)
+        playing.start()
+        received(source, server.n_messages)
+        playing.join()
+    assert ended(source)
+    assert [*found, *source.notes()] == [f"{uri}: no server answers yet: it is waited for"]
+    source.close()
+
+
 def test_no_server_is_one_line(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"ws://127\.0\.0\.1:1: no Foxglove WebSocket server answers"):
-        foxglove_ws.open("ws://127.0.0.1:1", tmp_path)
+    for scheme in ("ws", "wss"):
+        source = open_source(f"{scheme}://127.0.0.1:1", tmp_path, idle_s=0.2)
+        with pytest.raises(TraceError, match=rf"{scheme}://127\.0\.0\.1:1: no Foxglove WebSocket server answers"):
+            ended(source)
+        source.close()
+        assert not source.recording.exists()
     with pytest.raises(UsageError, match="give ws://HOST:PORT"):
         foxglove_ws.open("http://127.0.0.1:1", tmp_path)
+
+
+def test_a_host_that_nobody_knows_is_not_waited_for(tmp_path: Path) -> None:
+    source = foxglove_ws.open("ws://nobody.invalid:1", tmp_path)
+    with pytest.raises(TraceError, match="no Foxglove WebSocket server answers"):
+        ended(source)
 
 
 def test_another_websocket_server_is_refused(tmp_path: Path) -> None:
@@ -149,9 +191,50 @@ def test_another_websocket_server_is_refused(tmp_path: Path) -> None:
     with serve(silent, "127.0.0.1", 0) as other:
         thread = threading.Thread(target=other.serve_forever)
         thread.start()
-        uri = f"ws://127.0.0.1:{other.socket.getsockname()[1]}"
+        source = foxglove_ws.open(f"ws://127.0.0.1:{other.socket.getsockname()[1]}", tmp_path)
         with pytest.raises(TraceError, match=r"no Foxglove WebSocket server|speaks none of"):
-            foxglove_ws.open(uri, tmp_path)
+            ended(source)
+        other.shutdown()
+        thread.join()
+
+
+def certificate(folder: Path) -> Path:
+    """Write a key and a certificate of this machine, which nobody else signed."""
+    key = ec.generate_private_key(ec.SECP256R1())
+    name = x509.Name([x509.NameAttribute(x509.NameOID.COMMON_NAME, "localhost")])
+    now = datetime.now(UTC)
+    signed = (
+        x509.CertificateBuilder(name, name, key.public_key(), 1, now - timedelta(days=1), now + timedelta(days=1))
+        .add_extension(x509.SubjectAlternativeName([x509.DNSName("localhost")]), critical=False)
+        .sign(key, hashes.SHA256())
+    )
+    plain = serialization.NoEncryption()
+    content = key.private_bytes(serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, plain)
+    file = folder / "localhost.pem"
+    file.write_bytes(content + signed.public_bytes(serialization.Encoding.PEM))
+    return file
+
+
+def test_a_server_behind_tls(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from websockets.sync.server import ServerConnection, serve
+
+    def greet(connection: ServerConnection) -> None:
+        connection.send('{"op": "status", "level": 1, "message": "hello"}')
+
+    file = certificate(tmp_path)
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(file)
+    with serve(greet, "localhost", 0, ssl=context, subprotocols=[Subprotocol(SUBPROTOCOLS[0])]) as other:
+        thread = threading.Thread(target=other.serve_forever)
+        thread.start()
+        uri = f"wss://localhost:{other.socket.getsockname()[1]}"
+        stranger = open_source(uri, tmp_path, idle_s=None)
+        with pytest.raises(TraceError, match=r"no Foxglove WebSocket server answers: .*certificate"):
+            ended(stranger)
+        monkeypatch.setenv("SSL_CERT_FILE", str(file))
+        known = open_source(uri, tmp_path, idle_s=None)
+        assert ended(known)
+        assert known.notes() == [f"{uri} says: hello"]
         other.shutdown()
         thread.join()
 

@@ -14,7 +14,7 @@ from drivelint.drive.cut import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
-from drivelint.watch.server import ALARMS, LiveServer, alarm_schema
+from drivelint.watch.server import ALARMS, LiveServer, alarm_schema, open_server
 from tests.shared_data import ROOT
 
 pytest.importorskip("foxglove")
@@ -120,6 +120,19 @@ def test_alarms_and_margins(server: LiveServer, monkeypatch: pytest.MonkeyPatch)
         2_000_000_000,
     )
     assert json.loads(margin.content) == {k: v for k, v in MARGIN.items() if v is not None}
+
+
+def test_the_margins_of_a_rule_can_be_chosen_before_it_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    with open_server("127.0.0.1:0", [RULE, "ukhc.no-collision"]) as server:
+        assert server is not None
+        client = AnyClient(server, 5, monkeypatch)
+        topics = {each.topic for each in client._by_subscription.values()}
+        server.publish_margins([MARGIN])
+        (margin,) = client.messages(1)
+        client.close()
+    expected = {f"/drivelint/{measures.margin_topic(rule)}" for rule in (RULE, "ukhc.no-collision")}
+    assert expected < topics
+    assert margin.channel.topic == f"/drivelint/{measures.margin_topic(RULE)}"
 
 
 def test_messages_are_of_their_schemas() -> None:

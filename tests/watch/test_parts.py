@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +12,25 @@ import pyarrow as pa
 import pytest
 
 from drivelint import catalogue
+from drivelint.engine.judging_options import JudgingOptions
 from drivelint.errors import UsageError
+from drivelint.run import CheckOptions
 from drivelint.watch import triggers
 from drivelint.watch.halting import Child
+from drivelint.watch.interruption import WatchInterruption
 from drivelint.watch.judge import JudgedWindow
+from drivelint.watch.options import WatchOptions
 from drivelint.watch.shrinking import ShrinkingMargins
 from drivelint.watch.window import S
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+OTHER_THAN_BY_DEFAULT: dict[type, Any] = {str: "x", float: 7.5, int: 7, tuple: ("x",), type(None): "x"}
 KNOWN = catalogue.load_rules(())
 RULE = "ukhc.r126.two-second"
 PYTHON = sys.executable
+LIMITS = "it starts at most once in 1 s, and 4 run at a time"
 
 
 def wait_for(file: Path) -> None:
@@ -89,6 +96,17 @@ def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
     trigger.close()
 
 
+def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
+    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
+    told = [trigger.pull([{"rule_id": RULE}] * 2) for _ in range(3)]
+    trigger._last_s -= triggers.LEAST_S
+    told += [trigger.pull([{"rule_id": RULE}]), trigger.left_out()]
+    assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
+    trigger.pull([{"rule_id": RULE}])
+    assert trigger.left_out() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
+    trigger.close()
+
+
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
     assert trigger.pull([{"rule_id": RULE}]) is None
@@ -148,3 +166,26 @@ def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
         near([-1.0, -2.0]),
     ):
         assert ShrinkingMargins().take(window, KNOWN, 0) == []
+
+
+def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:
+    """Whatever option both have and somebody adds: `check` gets what `watch` got."""
+    shared: dict[str, Any] = {
+        each.name: not each.default if isinstance(each.default, bool) else OTHER_THAN_BY_DEFAULT[type(each.default)]
+        for each in fields(JudgingOptions)
+    }
+    checked = CheckOptions.judging(("log",), WatchOptions(source="log", **shared), Path("out"))
+    assert {name: getattr(checked, name) for name in shared} == shared
+    assert (checked.traces, checked.out) == (("log",), Path("out"))
+    both = {each.name for each in fields(WatchOptions)} & {each.name for each in fields(CheckOptions)}
+    assert both - shared.keys() == {"out"}  # the folder of the check is another
+
+
+def test_what_goes_on_when_it_is_first_asked_for_is_interrupted_alone() -> None:
+    watched, checked = WatchInterruption(), WatchInterruption()
+    watched.request()
+    for each in (watched, checked):
+        each.begin_check()
+        each.request()
+    assert (watched.of_watch.requested, watched.of_check.requested) == (True, False)  # what was recorded is checked
+    assert (checked.of_watch.requested, checked.of_check.requested) == (False, True)

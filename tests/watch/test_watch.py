@@ -6,15 +6,19 @@ import json
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from drivelint import run
 from drivelint.engine.interruption import Interruption
-from drivelint.errors import TraceError, UsageError
+from drivelint.errors import ExitCode, TraceError, UsageError
+from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.files import parquet_bytes
+from drivelint.result.load import load_result
+from drivelint.result.model import exit_status
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch, check_recording
 from drivelint.watch.source import Frame
@@ -128,7 +132,7 @@ def test_it_halts_within_a_step_and_says_so(tmp_path: Path) -> None:
     assert len(of_type(messages, "alarm")) == 1
     told = f"halted at {halt['t_s']:.2f} s by an alarm of ukhc.no-collision at 9.70 s"
     assert (messages[-1]["exit_code"], messages[-1]["why"]) == (1, told)
-    assert told in (out / "summary.json").read_text(encoding="utf-8")
+    assert exit_status(load_result(out)) == (ExitCode.FAILED, told)
 
 
 @pytest.mark.slow
@@ -211,12 +215,31 @@ def test_mistakes(asked: dict[str, Any], said: str) -> None:
         Watch(wanted, source, print, Interruption())
 
 
+@pytest.mark.parametrize("name", ["ws://127.0.0.1:1", "{}/ws-new.mcap"])
+def test_a_program_may_bring_the_source_into_being(name: str, tmp_path: Path) -> None:
+    wanted = WatchOptions(source=name.format(tmp_path), command=("true",))
+    with open_source(wanted, Silent()) as source:
+        assert source.read(0.0) == []
+
+
 def test_a_mistake_is_one_line() -> None:
     status, out, err = drivelint("watch", LOG, "--replay", "0", *options("no-such-rule"))
     assert (status, len(err.splitlines())) == (2, 1)
     (end,) = (json.loads(line) for line in out.splitlines())
     assert (end["type"], end["exit_code"]) == ("end", 2)
     assert end["why"] in err
+
+
+def test_a_map_that_cannot_be_read_is_known_before_anything_is_started(tmp_path: Path) -> None:
+    road, marker = tmp_path / "road.xodr", tmp_path / "marker"
+    road.write_text("<OpenDRIVE><road", encoding="utf-8")
+    script = f"open({str(marker)!r}, 'w')"
+    words = ("--rules", "ukhc.no-collision", "--map", road, "--idle", "0.1", "--", sys.executable, "-c", script)
+    status, out, err = drivelint("watch", tmp_path / "new.mcap", *words)
+    (end,) = (json.loads(line) for line in out.splitlines())
+    assert (status, end["type"], end["exit_code"]) == (4, "end", 4), err
+    assert "is not well-formed XML" in end["why"]
+    assert not marker.exists()
 
 
 class Broken:
@@ -249,8 +272,11 @@ class Broken:
 
 def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the_check(tmp_path: Path) -> None:
     told: list[dict[str, Any]] = []
-    asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False)
+    on = ("ukhc.no-collision=true",)
+    asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False, on=on)
     with Watch(asked, Broken(), told.append, Interruption()) as watch:
+        for _ in range(2):
+            watch._triggers[0].pull([{"rule_id": "ukhc.no-collision"}])
         watched = watch.watch()
         checked: dict[str, Any] = {"folder": tmp_path, "progress": Silent(), "interruption": Interruption()}
         result = check_recording(asked, LOG, None, watch, **checked)
@@ -258,5 +284,13 @@ def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the
     texts = [each["text"] for each in told]
     assert any("what a reader never expected" in text for text in texts)
     assert "the other side is gone" in texts
-    assert len(texts) == 2
+    assert any(text.startswith("--on: true was not started for 1 alarm") for text in texts)
+    assert len(texts) == 3
     assert result.findings.num_rows == 1
+    why = "the recording ended early: the other side is gone"
+    assert why in result.notes
+    assert exit_status(result).code == ExitCode.FAILED
+    result = replace(result, fail_on="never")
+    assert exit_status(result) == (ExitCode.NOT_JUDGED, why)
+    write(result, tmp_path / "out")
+    assert exit_status(load_result(tmp_path / "out")) == (ExitCode.NOT_JUDGED, why)

@@ -117,7 +117,7 @@ def _subject(row: dict[str, Any]) -> str:
 
 
 def _json(row: dict[str, Any], log_time: int) -> Message:
-    # what is not known is left out: viewers refuse a schema that allows null
+    # viewers refuse a schema that allows null, so a message has no field whose value is unknown
     known = {key: value for key, value in row.items() if finite(value) is not None}
     return Message(log_time, msgspec.json.encode(known))
 

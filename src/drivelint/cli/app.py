@@ -15,7 +15,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from drivelint import __version__
+from drivelint import __version__, temporary
 from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values, watching
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
@@ -68,35 +68,21 @@ def check(
     out: Annotated[
         Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
     ] = None,
-    overwrite: Annotated[
-        bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
-    ] = False,
+    overwrite: options.Overwrite = False,
     rules: Annotated[
-        Texts,
-        option(
-            "--rules",
-            "SEL",
-            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.",
-            autocompletion=completion.rule_ids,
-        ),
+        Texts, options.rules("Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
     ] = None,
-    ignore: Annotated[
-        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
-    ] = None,
+    ignore: options.Ignore = None,
     profile: Annotated[
         Texts,
-        option(
-            "--profile",
-            "NAME",
-            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed.",
+        options.profile(
+            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
         ),
     ] = None,
-    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    param: options.Param = None,
     rules_dir: options.RulesDirs = None,
-    fail_on: Annotated[
-        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
-    ] = "critical",
-    strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
+    fail_on: options.FailOnOption = "critical",
+    strict: options.Strict = False,
     require: Annotated[
         Texts,
         option(
@@ -115,10 +101,8 @@ def check(
     ] = True,
     robustness: Annotated[
         bool,
-        option(
-            "--robustness/--no-robustness",
-            None,
-            "Count in how many copies of the drive with recording errors a critical or major finding stays.",
+        options.robustness(
+            "Count in how many copies of the drive with recording errors a critical or major finding stays."
         ),
     ] = True,
     confidence: Annotated[
@@ -149,7 +133,7 @@ def check(
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Judge recorded drives against the rules.
 
@@ -358,6 +342,7 @@ def main() -> NoReturn:
         _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
         streams.say("drivelint: error: interrupted")
+        temporary.remove_all()
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
 

@@ -10,7 +10,7 @@ import typer
 from drivelint.cli import options, packs, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
-from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.options import argument, option
 from drivelint.errors import DriveLintError
 from drivelint.phrases import inert, inert_line, plural
 
@@ -32,24 +32,18 @@ def audit(
     ],
     drive: options.DriveInputValues,
     out: Annotated[str, option("--out", "DEST", "Folder for the results, which the same command goes on with.")],
-    rules: Annotated[
-        Texts, option("--rules", "SEL", "Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")
-    ] = None,
-    ignore: Annotated[Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.")] = None,
-    profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
-    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    rules: options.RulesAsInCheck = None,
+    ignore: options.Ignore = None,
+    profile: options.ProfileAsInCheck = None,
+    param: options.Param = None,
     rules_dir: options.RulesDirs = None,
     robustness: Annotated[
         bool,
-        option(
-            "--robustness/--no-robustness",
-            None,
-            "Judge copies with recording errors to tell how sure each finding is, as check does: half as long again. Default: not.",
+        options.robustness(
+            "Judge copies with recording errors to tell how sure each finding is, as check does: half as long again. Default: not."
         ),
     ] = False,
-    fail_on: Annotated[
-        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
-    ] = "critical",
+    fail_on: options.FailOnOption = "critical",
     strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
     workers: Annotated[
         int | None, option("--workers", "N", "Processes that judge. Default: one per core.", min=1)
@@ -95,7 +89,7 @@ def audit(
     delta: Delta = None,
     evidence: options.Evidence = None,
     sign: options.Sign = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Judge many drives, as many at a time as there are cores.
 

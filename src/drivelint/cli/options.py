@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
-from drivelint.cli import values
+from drivelint.cli import completion, values
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,6 +35,21 @@ def argument(metavar: str, words: str, **more: Any) -> Any:
 def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
     """Return an option of a command with its help."""
     return typer.Option(flag, metavar=metavar, help=words, **more)
+
+
+def rules(words: str) -> Any:
+    """Return the option that names the rules to judge by."""
+    return option("--rules", "SEL", words, autocompletion=completion.rule_ids)
+
+
+def profile(words: str) -> Any:
+    """Return the option that names the profiles to judge by."""
+    return option("--profile", "NAME", words)
+
+
+def robustness(words: str) -> Any:
+    """Return the option on copies of a drive with recording errors."""
+    return option("--robustness/--no-robustness", None, words)
 
 
 Baseline = Annotated[
@@ -67,6 +82,18 @@ Sign = Annotated[
         "Sign the pack with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
     ),
 ]
+Overwrite = Annotated[
+    bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
+]
+Ignore = Annotated[
+    Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
+]
+Param = Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")]
+RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")]
+ProfileAsInCheck = Annotated[Texts, profile("As in check. Repeatable.")]
+Strict = Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")]
+FailOnOption = Annotated[FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
 FormatOption = Annotated[Format, option("--format", None, "What is printed on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None, option("--rules-dir", "DIR", "Folder with rule packs of your own. Repeatable.")

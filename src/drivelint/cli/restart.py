@@ -12,6 +12,8 @@ import shutil
 import sys
 from typing import TYPE_CHECKING, Final, NoReturn
 
+from drivelint import temporary
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -48,11 +50,10 @@ class Restart:
 
     def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """Replace this process by one that does not try this rule."""
-        from drivelint.sql import store
-
         self._progress.note(f"rule {rule_id} {_SAID[excess]} and cannot be stopped: starting again without it")
-        for folder in (*store.spill_folders, *([self._work] if self._work else [])):
-            shutil.rmtree(folder, ignore_errors=True)
+        temporary.remove_all()
+        if self._work is not None:
+            shutil.rmtree(self._work, ignore_errors=True)
         known = {**self._known, task: {**self.known(task), rule_id: excess}}
         self._progress.leave()
         sys.stderr.flush()

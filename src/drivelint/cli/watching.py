@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from drivelint.cli import completion, options, values
+from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
-from drivelint.cli.console import run_interruptible
+from drivelint.cli.console import run_interruptible, say_nothing_kept
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import inert_json
+from drivelint.temporary import temporary_folder
 
 if TYPE_CHECKING:
+    from drivelint.report.progress import Progress
+    from drivelint.watch.interruption import WatchInterruption
     from drivelint.watch.messages import Message
+    from drivelint.watch.options import WatchOptions
 
 Severity = Literal["critical", "major", "minor"]
 
@@ -91,38 +94,20 @@ def watch(
         Path | None,
         option("--out", "DIR", "Folder for the recording and, at the end, for the result files, as those of check."),
     ] = None,
-    overwrite: Annotated[
-        bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
-    ] = False,
-    rules: Annotated[
-        Texts,
-        option(
-            "--rules",
-            "SEL",
-            "Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.",
-            autocompletion=completion.rule_ids,
-        ),
-    ] = None,
-    ignore: Annotated[
-        Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
-    ] = None,
-    profile: Annotated[Texts, option("--profile", "NAME", "As in check. Repeatable.")] = None,
-    param: Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")] = None,
+    overwrite: options.Overwrite = False,
+    rules: options.RulesAsInCheck = None,
+    ignore: options.Ignore = None,
+    profile: options.ProfileAsInCheck = None,
+    param: options.Param = None,
     rules_dir: options.RulesDirs = None,
-    fail_on: Annotated[
-        options.FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")
-    ] = "critical",
-    strict: Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")] = False,
+    fail_on: options.FailOnOption = "critical",
+    strict: options.Strict = False,
     robustness: Annotated[
         bool,
-        option(
-            "--robustness/--no-robustness",
-            None,
-            "At the end, count how robust critical and major findings are, as check does.",
-        ),
+        options.robustness("At the end, count how robust critical and major findings are, as check does."),
     ] = True,
     memory: options.MemorySize = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Judge a drive while it is recorded: alarms at once, verdicts at its end.
 
@@ -134,15 +119,12 @@ def watch(
     Exit codes: as check, of the whole recording; 1 also where an alarm halted. Ctrl-C ends the recording, which is then checked;
     once more leaves at once.
     """
-    from drivelint.engine.interruption import Interruption
+    from drivelint.engine.interruption import NothingJudgedError
     from drivelint.errors import DriveLintError, ExitCode
-    from drivelint.report.outputs import working_folder, write
-    from drivelint.result.model import exit_status
+    from drivelint.report.outputs import working_folder
     from drivelint.watch import messages
+    from drivelint.watch.interruption import WatchInterruption
     from drivelint.watch.options import WatchOptions
-    from drivelint.watch.run import Watch, check_recording, conclude
-    from drivelint.watch.server import open_server
-    from drivelint.watch.sources.choice import open_source
 
     settings = WatchOptions(
         source=source,
@@ -168,55 +150,84 @@ def watch(
         on=tuple(on or ()),
         serve=serve,
     )
-
-    has_left = False
-
-    def emit(message: Message) -> None:
-        """Print a message. Whoever reads may leave: the watch goes on, for its result and what it halts."""
-        nonlocal has_left
-        try:
-            if not has_left:
-                typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
-        except ReaderLeftError:
-            has_left = True
-
-    interruption = Interruption()
+    emit, interruption = _Printer(), WatchInterruption()
     with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
-
-        def job() -> int:
-            with (
-                TemporaryDirectory(prefix="drivelint-") as folder,
-                open_server(serve) as server,
-                open_source(settings, progress) as opened,
-                Watch(settings, opened, emit, interruption, server) as watch,
-            ):
-                progress.stage("watching")
-                watched = watch.watch()
-                opened.close()
-                for text in opened.notes():
-                    emit(messages.note(text))
-                progress.note(watched.told())
-                result = check_recording(
-                    settings,
-                    opened.recording,
-                    work,
-                    watch,
-                    folder=Path(folder),
-                    progress=progress,
-                    interruption=Interruption(),
-                )
-                told = conclude(result, watch, emit)
-                if out is not None:
-                    write(result, out, work, overwrite=overwrite)
-                progress.note(told)
-                broken = watched.broken is not None and exit_status(result).code == ExitCode.OK
-                return int(ExitCode.NOT_JUDGED if broken else exit_status(result).code)
-
         try:
-            code = run_interruptible(job, interruption.request)
+            code = run_interruptible(
+                lambda: _watch_and_check(settings, work, emit, interruption, progress, overwrite=overwrite),
+                interruption.request,
+            )
+        except NothingJudgedError:
+            emit(messages.end({}, int(ExitCode.INTERRUPTED), "interrupted before the recording was judged"))
+            say_nothing_kept(out, judged_none=True)
+            raise
         except DriveLintError as error:
             emit(messages.end({}, int(error.exit_code), str(error)))
             raise
-    if has_left:
+    if emit.has_left:
         raise ReaderLeftError
     raise typer.Exit(code)
+
+
+class _Printer:
+    """Prints messages. Whoever reads may leave: the watch goes on, for its result and what it halts."""
+
+    has_left = False
+
+    def __call__(self, message: Message) -> None:
+        """Print a message as a line of JSON."""
+        try:
+            if not self.has_left:
+                typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
+        except ReaderLeftError:
+            self.has_left = True
+
+
+def _watch_and_check(
+    settings: WatchOptions,
+    work: Path | None,
+    emit: _Printer,
+    interruption: WatchInterruption,
+    progress: Progress,
+    *,
+    overwrite: bool,
+) -> int:
+    """Watch a source, then check what was recorded. Return the exit code. `work`: where the files of the result grow."""
+    from drivelint.report.outputs import write
+    from drivelint.result.model import exit_status
+    from drivelint.watch import messages
+    from drivelint.watch.judge import WindowJudge
+    from drivelint.watch.run import Watch, check_recording, conclude
+    from drivelint.watch.server import open_server
+    from drivelint.watch.sources.choice import open_source
+
+    with (
+        temporary_folder() as folder,
+        WindowJudge(settings) as judge,  # whose rules and map must be known before anything is started
+        open_server(settings.serve, judge.rules) as server,
+        open_source(settings, progress) as opened,
+        Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,
+    ):
+        progress.stage("watching")
+        watched = watch.watch()
+        opened.close()
+        for text in opened.notes():
+            emit(messages.note(text))
+        progress.note(watched.told())
+        interruption.begin_check()
+        result = check_recording(
+            settings,
+            opened.recording,
+            work,
+            watch,
+            folder=folder,
+            progress=progress,
+            interruption=interruption.of_check,
+        )
+        if interruption.of_check.requested and not result.interrupted:
+            emit(messages.note("interrupted: in how many copies the findings stay was not counted to the end"))
+        told = conclude(result, watch, emit)
+        if settings.out is not None:
+            write(result, settings.out, work, overwrite=overwrite)
+        progress.note(told)
+        return int(exit_status(result).code)

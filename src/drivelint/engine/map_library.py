@@ -54,6 +54,11 @@ class MapLibrary:
         self._loaded: dict[tuple[str, tuple[float, float], str | None], MapTables] = {}
         self._unread: dict[Path, str] = {}
 
+    def load_given(self) -> None:
+        """Read the map of `--map` before there is a drive, to know that it can be read. Errors: `MapError`, `UsageError`."""
+        if self._given is not None:
+            self._load(self._given, None, None)
+
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
         """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
 
@@ -183,8 +188,9 @@ class MapLibrary:
             f"{maps.folder}: {what} the place of {trace.path.name}{besides}: name its map in {maps.folder / MANIFEST}"
         )
 
-    def _load(self, source: MapSource, trace: Trace, voted_handedness: str | None) -> MapTables:
-        offset = self._options.map_offset or trace.map_offset or (0.0, 0.0)
+    def _load(self, source: MapSource, trace: Trace | None, voted_handedness: str | None) -> MapTables:
+        """Return a map in the place that the user or the drive says; `trace` None: the user alone."""
+        offset = self._options.map_offset or (trace and trace.map_offset) or (0.0, 0.0)
         key = (source.sha256, offset, voted_handedness)
         if key not in self._loaded:
             self._loaded[key] = load_map(

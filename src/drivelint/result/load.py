@@ -39,6 +39,8 @@ def load_result(folder: Path) -> Result:
             strict=summary["strict"],
             required=tuple(summary.get("required", ())),  # older results say neither
             interrupted=summary.get("interrupted", False),
+            halted=summary.get("halted"),
+            ended_early=summary.get("ended_early"),
             notes=tuple(summary.get("notes", ())),
             gate=gate,
             folder=folder,

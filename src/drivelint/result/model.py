@@ -45,7 +45,8 @@ class Result:
     `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
     `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
-    `halted`: where and by what alarm a watch halted the drive; None: none did.
+    `halted`: where and by what alarm a watch halted the drive; None: none did. `ended_early`: why what was watched broke off; None: it
+    did not.
     Errors: `DriveLintError` when a table lacks a column or has one too many.
     """
 
@@ -70,6 +71,7 @@ class Result:
     folder: Path | None = None
     notes: tuple[str, ...] = ()
     halted: str | None = None
+    ended_early: str | None = None
 
     def __post_init__(self) -> None:
         for name, table in TABLE_OF_FILE.items():
@@ -107,6 +109,21 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     stopped, let_through = _stopped(result), _let_through(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
+    yield from _not_judged(result)
+    if result.lossy:
+        yield ExitStatus(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+    if result.fail_on == "never":
+        yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
+    if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
+        yield ExitStatus(
+            ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
+        )
+    new = "new " if result.gate is not None and result.gate.baseline is not None else ""
+    yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+
+
+def _not_judged(result: Result) -> Iterator[ExitStatus]:
+    """Yield what was not judged that should have been."""
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
@@ -119,16 +136,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(ExitCode.NOT_JUDGED, _gone_sentence(result, gone))
     if (unknown := gating_unknowns(result)).num_rows:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
-    if result.lossy:
-        yield ExitStatus(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
-    if result.fail_on == "never":
-        yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
-    if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
-        yield ExitStatus(
-            ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
-        )
-    new = "new " if result.gate is not None and result.gate.baseline is not None else ""
-    yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+    if result.ended_early is not None:
+        yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
 
 
 def partial_sentence(drives: pa.Table) -> str:

@@ -7,7 +7,6 @@ import re
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
@@ -15,6 +14,7 @@ import duckdb
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
 from drivelint.sql.statements import texts
+from drivelint.temporary import temporary_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -70,10 +70,6 @@ def connect(
     return con
 
 
-spill_folders: Final[set[Path]] = set()
-"""The temporary folders of the open workspaces: whoever ends the process without closing them removes these."""
-
-
 @contextmanager
 def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
@@ -82,17 +78,12 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
     Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
     """
     limit = None if memory is None else f"{memory}B"
-    with (
-        TemporaryDirectory(prefix="drivelint-") as spill,
-        connect(threads=threads, memory_limit=limit, spill=Path(spill)) as con,
-    ):
-        spill_folders.add(Path(spill))
+    with temporary_folder() as spill, connect(threads=threads, memory_limit=limit, spill=spill) as con:
         try:
             yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
         finally:
-            spill_folders.discard(Path(spill))
             con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
 
 

@@ -78,6 +78,7 @@ class WindowJudge:
     """A database with rules and a map, which judges window after window. Between them only the map stays in it.
 
     `rules`: by their ids. Memory does not grow with the number of windows.
+    Errors: `UsageError`, `RuleError`, `MapError` for what was asked, before there is a window.
     """
 
     def __init__(self, options: WatchOptions) -> None:
@@ -98,6 +99,7 @@ class WindowJudge:
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
         self._library = MapLibrary(options)
+        self._library.load_given()
         # courses are written for those who look at the tables before they are cleared
         observers = [_look] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")

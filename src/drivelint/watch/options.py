@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path  # noqa: TC003 - a dataclass names it
 
-from drivelint.drive.trace import DriveInput
-from drivelint.engine.memory import DEFAULT_MEMORY
-from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
+from drivelint.engine.judging_options import JudgingOptions
 
 DEFAULT_WINDOW_S = 30.0
 DEFAULT_EVERY_S = 1.0
@@ -15,25 +13,13 @@ DEFAULT_IDLE_S = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class WatchOptions(DriveInput):
-    """The options of `watch`, under the names that they have there; those of `check` mean the same."""
+class WatchOptions(JudgingOptions):
+    """The options of `watch`, under the names that they have there."""
 
     source: str
     command: tuple[str, ...] = ()
     """Arguments of a program to start, which writes what is watched; empty: it is started by somebody else."""
     out: Path | None = None
-    rules: tuple[str, ...] = ()
-    ignore: tuple[str, ...] = ()
-    profiles: tuple[str, ...] = ()
-    params: tuple[str, ...] = ()
-    rules_dirs: tuple[Path, ...] = ()
-    fail_on: str = "critical"
-    strict: bool = False
-    require: tuple[str, ...] = ()
-    annotate: bool = True
-    robustness: bool = True
-    memory: int | None = DEFAULT_MEMORY
-    rule_timeout: float = DEFAULT_TIMEOUT_S
     window_s: float = DEFAULT_WINDOW_S
     """Seconds of log time that are judged at a time."""
     every_s: float = DEFAULT_EVERY_S

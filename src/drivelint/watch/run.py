@@ -10,10 +10,9 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 from drivelint import catalogue, run
 from drivelint.engine.barrier import refused
@@ -21,6 +20,7 @@ from drivelint.errors import ChangedLogError, DriveLintError, TraceError, UsageE
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.model import exit_status
+from drivelint.temporary import temporary_folder
 from drivelint.watch import contact, messages, triggers
 from drivelint.watch.advice import Advice
 from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
@@ -99,7 +99,10 @@ def egos_of(trace: Trace) -> set[str]:
 
 
 class Watch:
-    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on."""
+    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on.
+
+    `judge`: one that was made before the source was opened; None: one is made here. It is closed with the watch.
+    """
 
     def __init__(
         self,
@@ -108,6 +111,8 @@ class Watch:
         emit: Callable[[Message], None],
         interruption: Interruption,
         server: LiveServer | None = None,
+        *,
+        judge: WindowJudge | None = None,
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
             raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
@@ -121,7 +126,7 @@ class Watch:
         self._interruption = interruption
         self._server = server
         self._stack = ExitStack()
-        self._judge = self._stack.enter_context(WindowJudge(options))
+        self._judge = self._stack.enter_context(judge or WindowJudge(options))
         self._worker = self._stack.enter_context(
             ThreadPoolExecutor(1, initializer=None if source.in_step else _give_way)
         )
@@ -135,7 +140,7 @@ class Watch:
         self._look_at_s = 0.0
         known = catalogue.load_rules(options.rules_dirs)
         self._triggers = triggers.parse(options.on, known, self._judge.rules)
-        self._folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-")))
+        self._folder = self._stack.enter_context(temporary_folder())
         self._ingest = options.ingest_options()
         self._window = Window(round(options.window_s * S))
         self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)
@@ -164,6 +169,8 @@ class Watch:
         child = Child(self._options.command) if self._options.command else None
         try:
             self._loop(child)
+            for text in filter(None, [each.left_out() for each in self._triggers]):
+                self._emit(messages.note(text))
             if child is not None and self.watched.halted is None and not self._interruption.requested:
                 code = child.leave()
                 if code:
@@ -361,18 +368,18 @@ def check_recording(
     interruption: Interruption,
 ) -> Result:
     """Check what was recorded as any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
-    names = {each.name for each in fields(run.CheckOptions)}
-    same: dict[str, Any] = {each.name: getattr(options, each.name) for each in fields(options) if each.name in names}
-    same["out"] = work
     if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
         raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
     try:
-        result = run.check(run.CheckOptions(traces=(str(recording),), **same), progress, interruption)
+        result = run.check(run.CheckOptions.judging((str(recording),), options, work), progress, interruption)
     except ChangedLogError:
         # another program goes on with it: what is there now is checked
         copy = folder / recording.name
         shutil.copy(recording, copy)
-        result = run.check(run.CheckOptions(traces=(str(copy),), **same), progress, interruption)
+        result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
+    if watch.watched.broken is not None:
+        why = f"the recording ended early: {watch.watched.broken}"
+        result = replace(result, ended_early=why, notes=(*result.notes, why))
     halted = watch.watched.halted
     if halted is None or watch.watched.halted_ns is None:
         return result

@@ -45,15 +45,15 @@ _ALARM: Final = {
 
 
 @contextmanager
-def open_server(address: str | None) -> Iterator[LiveServer | None]:
-    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. Errors: `UsageError`."""
+def open_server(address: str | None, rule_ids: Iterable[str]) -> Iterator[LiveServer | None]:
+    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. `rule_ids`: those that are judged. Errors: `UsageError`."""
     if address is None:
         yield None
         return
     host, _, port = address.rpartition(":")
     if not host or not port.isdecimal():
         raise UsageError(f"--serve {address}: give a host and a port, such as 127.0.0.1:8765")
-    server = LiveServer(host, int(port))
+    server = LiveServer(host, int(port), rule_ids)
     try:
         yield server
     finally:
@@ -61,12 +61,12 @@ def open_server(address: str | None) -> Iterator[LiveServer | None]:
 
 
 class LiveServer:
-    """Serves viewers at `ws://host:port`. Port 0: any that is free.
+    """Serves viewers at `ws://host:port`. Port 0: any that is free. `rule_ids`: the rules that may have margins.
 
     Errors: `UsageError` where the extra is missing, or where nothing can be served there.
     """
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, rule_ids: Iterable[str] = ()) -> None:
         try:
             import foxglove
         except ImportError as error:
@@ -87,6 +87,8 @@ class LiveServer:
         self._scene = self._channel(f"{PREFIX}/scene", "protobuf", scene)
         self._transform = self._channel(f"{PREFIX}/tf", "protobuf", transform)
         self._alarms = self._channel(ALARMS, "json", alarm_schema())
+        for rule_id in rule_ids:
+            self._margins(rule_id)
 
     @property
     def port(self) -> int:
@@ -115,15 +117,18 @@ class LiveServer:
     def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Publish judged steps, each on the topic of its rule; `rows` have the columns of `margins.parquet`."""
         for row in rows:
-            topic = f"{PREFIX}/{measures.margin_topic(row['rule_id'])}"
-            channel = self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
-            self._log(channel, {name: value for name, value in row.items() if name != "drive_id"}, row["t_ns"])
+            told = {name: value for name, value in row.items() if name != "drive_id"}
+            self._log(self._margins(row["rule_id"]), told, row["t_ns"])
 
     def close(self) -> None:
         """Send viewers away. May be called twice."""
         if not self._is_closed:
             self._is_closed = True
             self._server.stop()
+
+    def _margins(self, rule_id: str) -> foxglove.Channel:
+        topic = f"{PREFIX}/{measures.margin_topic(rule_id)}"
+        return self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
 
     def _channel(self, topic: str, encoding: str, schema: Schema) -> foxglove.Channel:
         own = self._foxglove.Schema(name=schema.name, encoding=schema.encoding, data=schema.data)
@@ -132,7 +137,7 @@ class LiveServer:
         return made
 
     def _log(self, channel: foxglove.Channel, message: Mapping[str, Any], t_ns: int) -> None:
-        # viewers refuse a schema that allows null, so a message leaves unknown values out
+        # viewers refuse a schema that allows null, so a message has no field whose value is unknown
         known = {name: value for name, value in message.items() if finite(value) is not None}
         channel.log(msgspec.json.encode(known), log_time=self._times(t_ns).at(t_ns))
 

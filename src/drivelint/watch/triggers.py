@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint import catalogue
 from drivelint.errors import UsageError
+from drivelint.phrases import plural
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 LEAST_S: Final = 1.0
-"""Seconds between two runs of one command; alarms between them are not passed on."""
+"""Seconds between two starts of one command; alarms between them are not passed on."""
 MOST_RUNNING: Final = 4
 """Runs of one command at a time."""
 
@@ -33,11 +34,16 @@ class Trigger:
     command: Sequence[str]
     n_run: int = 0
     n_left_out: int = 0
+    """Alarms for which it was not started."""
+    _n_told: int = 0
     _last_s: float = -LEAST_S
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     def pull(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
-        """Run the command once for the alarms of its rules, unless it ran just now. Return what went wrong."""
+        """Start the command once for the alarms of its rules, unless it was started just now.
+
+        Return what has to be told: what went wrong, or how many alarms were left out before.
+        """
         mine = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
         if not mine:
             return None
@@ -57,7 +63,15 @@ class Trigger:
             process.stdin.close()
         self._running.append(process)
         self.n_run += 1
-        return None
+        return self.left_out()
+
+    def left_out(self) -> str | None:
+        """Return in words how many alarms were left out since that was told; None: none was."""
+        n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
+        if not n:
+            return None
+        limits = f"at most once in {LEAST_S:g} s, and {MOST_RUNNING} run at a time"
+        return f"--on: {self.command[0]} was not started for {plural(n, 'alarm')}: it starts {limits}"
 
     def close(self) -> None:
         """Wait a little for those that still run, then leave them alone."""

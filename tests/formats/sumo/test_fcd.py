@@ -196,6 +196,19 @@ def test_a_file_that_breaks_off_is_refused(tmp_path: Path, cut: int) -> None:
         read(put(tmp_path / "a.xml", xml().rstrip()[:-cut]), ego="a.0")
 
 
+@pytest.mark.parametrize("alike", [True, False])
+def test_a_file_that_lacks_its_end_tag_alone_is_read_and_said_to_be_cut(tmp_path: Path, *, alike: bool) -> None:
+    """The writer was killed between two steps. `alike`: all its vehicles have the same attributes, so that it is read by lines."""
+    text = xml() if alike else xml().replace('id="b.0" x="50.0"', 'x="50.0" id="b.0"', 1)
+    cut = read(put(tmp_path / "cut.xml", text.rstrip().removesuffix("</fcd-export>")), ego="a.0")
+    whole = read(put(tmp_path / "a.xml", text), ego="a.0")
+    mine, wanted = (trace.tables["actor_state"].drop_columns("drive_id") for trace in (cut, whole))
+    assert mine.equals(wanted)
+    lost = quality(cut)["lost_time"]
+    assert "ends without </fcd-export>" in lost["message"]
+    assert (lost["severity"], lost["t_first_ns"]) == ("error", max(row["t_ns"] for row in states(cut)))
+
+
 def test_a_log_without_vehicles(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match="no vehicle"):
         read(put(tmp_path / "a.xml", "<fcd-export><timestep time='0'/></fcd-export>"), ego="a")

@@ -78,3 +78,6 @@ def test_what_is_damaged_is_said(tmp_path: Path) -> None:
     cut = logged(tmp_path / "b", a_tls=states(("0.00", "J", "r"))[:-20])
     assert not signals(cut)
     assert "not well-formed" in quality(cut)["lights_unread"]["message"]
+    endless = logged(tmp_path / "c", a_tls=states(("0.00", "J", "r")).rstrip().removesuffix("</tlsStates>"))
+    assert signals(endless) == {("J_0", 0.0): "red"}
+    assert any("ends without </tlsStates>" in note for note in endless.notes)

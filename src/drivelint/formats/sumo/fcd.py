@@ -17,16 +17,16 @@ import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
 from drivelint.drive.lost_time import times_of_lost_rows
-from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, QualityFinding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import safe_xml
+from drivelint.formats.sumo.end_tag import with_end_tag
 from drivelint.formats.sumo.lights import add_light_states
 from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask
-    from drivelint.drive.trace import LostTime
     from drivelint.formats.probe import Probe
 
 
@@ -61,6 +61,8 @@ _DEFAULTS = {
 }  # fmt: skip
 _LONGEST_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
+_END: Final = "</fcd-export>"
+_WHOLE_STEP: Final = r"</timestep>|<timestep\s[^<>]*/>"
 _STEP = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
 
 
@@ -90,7 +92,8 @@ def read(probe: Probe) -> Recording:
     Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
     """
     path = probe.path
-    table = _typed(path, _rows(path))
+    rows, lacks_end = _rows(path)
+    table = _typed(path, rows)
     nameless = pc.equal(table["id"], "").to_numpy()
     # a step at which nobody is there is a row with its time alone
     filled = np.any([np.isfinite(_floats(table, name)) for name in ("x", "y", "angle", "speed")], axis=0)
@@ -105,6 +108,9 @@ def read(probe: Probe) -> Recording:
     types, notes = _types(path, probe.options.mapping)
     recording = _recording(table, types)
     recording.notes += notes
+    if lacks_end:
+        last_ns = int(recording.states.t_ns.max())
+        recording.lost.append(LostTime(last_ns, None, f"{path.name} ends without {_END}: its writer did not finish it"))
     add_light_states(recording, path, _is_log)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
@@ -123,18 +129,18 @@ def _is_log(file: Path) -> bool:
         return is_fcd(file, opened.read(HEAD_BYTES))
 
 
-def _rows(path: Path) -> pa.Table:
-    """Return the log as a table with the columns of SUMO's CSV, those that it has."""
+def _rows(path: Path) -> tuple[pa.Table, bool]:
+    """Return the log as a table with the columns of SUMO's CSV, those that it has, and whether the file lacks its end."""
     with path.open("rb") as file:
         start = file.read(16)
     if start.startswith(b"PAR1"):
-        return parquet.table(path)
+        return parquet.table(path), False
     if _is_csv(start):
-        return _csv(path)
-    content = path.read_bytes()
+        return _csv(path), False
+    content, lacks_end = with_end_tag(path.read_bytes(), "fcd-export", _WHOLE_STEP)
     # where all vehicles look like the first, line by line, else by the parser
     lines = _lines(content)
-    return _parsed(path, content) if lines is None else lines
+    return _parsed(path, content) if lines is None else lines, lacks_end
 
 
 def _is_csv(head: bytes) -> bool:

@@ -17,6 +17,7 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
+from drivelint.formats.sumo.end_tag import with_end_tag
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -71,12 +72,15 @@ def _has_states(file: Path) -> bool:
 
 def _read(file: Path, recording: Recording) -> None:
     try:
-        root = safe_xml.parse(file.read_bytes(), f"light states of {file.name} are not read: it", TraceError)
+        content, lacks_end = with_end_tag(file.read_bytes(), "tlsStates", r"<tlsState\s[^<>]*/>")
+        root = safe_xml.parse(content, f"light states of {file.name} are not read: it", TraceError)
     except TraceError as error:
         recording.findings.append(QualityFinding("lights_unread", "warning", str(error)))
         return
     recording.signals, times_s, unread = _rows(root.iter("tlsState"))
     recording.notes.append(f"the states of traffic lights are those of {file.name} beside it")
+    if lacks_end:
+        recording.notes.append(f"{file.name} ends without </tlsStates>: its writer did not finish it")
     if unread.any():
         what = f"light states of {file.name} without a time, light or state"
         n = int(unread.sum())

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import deque
 from contextlib import closing
 from threading import Condition, Thread
-from typing import TYPE_CHECKING, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sized
+    from collections.abc import Callable, Generator
 
-T = TypeVar("T", bound="Sized")
+T = TypeVar("T")
 
 MOST_WAITING_BYTES: Final = 256 << 20
-"""Where more waits to be taken, no more is read. A pipe or TCP makes the writer wait then."""
+"""Where more waits to be taken, no more is read. Then the writer waits, or drops what is oldest."""
 TICK_S: Final = 0.1
 """So often whoever waits for a socket looks whether it shall stop."""
 
@@ -21,11 +21,18 @@ TICK_S: Final = 0.1
 class BackgroundReader(Generic[T]):
     """Goes through a generator in a thread, and keeps what came until it is taken.
 
-    The generator yields something empty at least every `TICK_S`, so that it can be stopped.
+    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` tells how many bytes an item has.
     """
 
-    def __init__(self, items: Generator[T, None, None], *, most_bytes: int = MOST_WAITING_BYTES) -> None:
+    def __init__(
+        self,
+        items: Generator[T, None, None],
+        *,
+        size: Callable[[Any], int] = len,
+        most_bytes: int = MOST_WAITING_BYTES,
+    ) -> None:
         self._items = items
+        self._size = size
         self._most = most_bytes
         self._changed = Condition()
         self._waiting: deque[T] = deque()
@@ -40,15 +47,16 @@ class BackgroundReader(Generic[T]):
         """Return what came since; nothing after so many seconds; None: it has ended. Errors: those of the generator."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
-            found = list(self._waiting)
-            self._waiting.clear()
-            self._bytes = 0
-            self._changed.notify_all()
-            if found or not self._ended:
+            if found := self._taken():
                 return found
-            if self._error is not None:
+            if self._ended and self._error is not None:
                 raise self._error
-            return None
+            return None if self._ended else []
+
+    def rest(self) -> list[T]:
+        """Return what waits, whatever ended the thread."""
+        with self._changed:
+            return self._taken()
 
     def stop(self) -> None:
         """End the thread. What waits is still there to be taken. May be called twice."""
@@ -56,6 +64,13 @@ class BackgroundReader(Generic[T]):
             self._stopped = True
             self._changed.notify_all()
         self._thread.join(timeout=10 * TICK_S)
+
+    def _taken(self) -> list[T]:
+        found = list(self._waiting)
+        self._waiting.clear()
+        self._bytes = 0
+        self._changed.notify_all()
+        return found
 
     def _run(self) -> None:
         try:
@@ -75,7 +90,7 @@ class BackgroundReader(Generic[T]):
         with self._changed:
             if item:
                 self._waiting.append(item)
-                self._bytes += len(item)
+                self._bytes += self._size(item)
                 self._changed.notify_all()
             self._changed.wait_for(lambda: self._bytes < self._most or self._stopped)
             return not self._stopped

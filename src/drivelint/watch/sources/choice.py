@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.temporary import keep, temporary_folder
 from drivelint.watch import sources
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S
@@ -30,24 +29,21 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
 
     Errors: `UsageError` for a name that means none, those of the source.
     """
-    folder: Path | None
-    folder = home = Path(mkdtemp(prefix="drivelint-")) if options.out is None else options.out / RECORDED
-    source = None
-    try:
-        source = _opened(options, home)
-        yield source
-    except BaseException:
-        if source is not None:
-            source.close()
-        if options.out is None and any(home.iterdir()):
-            progress.note(f"what was recorded is kept: {home}")
-            folder = None
-        raise
-    finally:
-        if source is not None:
-            source.close()
-        if options.out is None and folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+    with nullcontext(options.out / RECORDED) if options.out is not None else temporary_folder() as home:
+        source = None
+        try:
+            source = _opened(options, home)
+            yield source
+        except BaseException:
+            if source is not None:
+                source.close()
+            if options.out is None and any(home.iterdir()):
+                progress.note(f"what was recorded is kept: {home}")
+                keep(home)
+            raise
+        finally:
+            if source is not None:
+                source.close()
 
 
 def _opened(options: WatchOptions, folder: Path) -> Source:
@@ -65,14 +61,9 @@ def _refuse_with_command(options: WatchOptions) -> None:
     """Refuse what a program that is started with the watch cannot be the source of. Errors: `UsageError`."""
     if not options.command:
         return
-    if (
-        options.source == "-"
-        or ("://" not in options.source and Path(options.source).exists())
-        or options.source.startswith("ws")
-    ):
-        why = (
-            "is there already: the program behind -- must write a new file: remove it, or name another"
-            if options.source != "-" and "://" not in options.source
-            else "is there before the program behind -- is started: start that by itself"
+    if options.source == "-":
+        raise UsageError("-: is there before the program behind -- is started: start that by itself")
+    if "://" not in options.source and Path(options.source).exists():
+        raise UsageError(
+            f"{options.source}: is there already: the program behind -- must write a new file: remove it, or name another"
         )
-        raise UsageError(f"{options.source}: {why}")

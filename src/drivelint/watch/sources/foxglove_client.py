@@ -8,9 +8,10 @@ from __future__ import annotations
 import base64
 import binascii
 import json
+import socket
+import ssl
 import struct
-import threading
-from collections import deque
+import time
 from contextlib import ExitStack, suppress
 from typing import TYPE_CHECKING, Any, Final
 
@@ -18,16 +19,18 @@ from mcap.records import Schema
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.phrases import listed, one_line
+from drivelint.watch.sources.background import TICK_S, BackgroundReader
 from drivelint.watch.sources.mcap_memory import is_watched
 from drivelint.watch.sources.recordings import LiveChannel, LiveMessage
+from drivelint.watch.sources.transports import RETRY_S, Patience
 
 if TYPE_CHECKING:
+    from collections.abc import Generator, Sequence
+
     from websockets.sync.client import ClientConnection
 
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 CONNECT_S: Final = 10.0
-MOST_WAITING_BYTES: Final = 256 << 20
-"""Where more waits to be taken, no more is read: then the server waits, or drops what is oldest."""
 _SCHEMA_ENCODINGS: Final = {"protobuf": "protobuf", "json": "jsonschema", "cdr": "ros2msg", "ros1": "ros1msg"}
 """Encoding of messages -> that of their schema, where the server does not say it."""
 _IN_BASE64: Final = frozenset({"protobuf", "flatbuffer"})
@@ -39,81 +42,116 @@ _WARNING: Final = 1
 class FoxgloveClient:
     """Reads in a thread of its own, so that the server need not wait while a window is judged.
 
-    Errors: `UsageError` for an address that is none or where the extra is missing, `TraceError` where no such server answers.
+    A server that is not there yet is waited for; `idle_s`: so long, and so long for each next message; None: for ever.
+    Errors: `UsageError` for an address that is none or where the extra is missing.
     """
 
-    def __init__(self, uri: str) -> None:
+    def __init__(self, uri: str, *, idle_s: float | None = None) -> None:
+        _refuse_what_is_no_address(uri)
         self._uri = uri
-        self._connection = ExitStack()
-        self._ws = _connected(uri, self._connection)
-        self._changed = threading.Condition()
-        self._waiting: deque[LiveMessage] = deque()
-        self._bytes = 0
-        self._notes: deque[str] = deque()
-        self._ended = self._stopped = False
+        self._idle_s = idle_s
+        self._notes: list[str] = []
         self._by_subscription: dict[int, LiveChannel] = {}
         self._by_channel: dict[int, int] = {}
         self._unread: set[str] = set()
-        self._thread = threading.Thread(target=self._run, name="drivelint-foxglove", daemon=True)
-        self._thread.start()
+        self._reader = BackgroundReader(self._received(), size=_size)
 
     def take(self, timeout_s: float) -> list[LiveMessage] | None:
-        """Return what came since; nothing after so many seconds; None: the server has gone."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
-            found = list(self._waiting)
-            self._waiting.clear()
-            self._bytes = 0
-            self._changed.notify_all()
-            return found if found or not self._ended else None
+        """Return what came since; nothing after so many seconds; None: the server has gone, or nothing came for too long.
+
+        Errors: `TraceError` where no such server answers.
+        """
+        found = self._reader.take(timeout_s)
+        return None if found is None else [message for messages in found for message in messages]
 
     def notes(self) -> list[str]:
-        """Return what the server said of itself, and which of its channels are not read, once."""
-        with self._changed:
-            found = list(self._notes)
-            self._notes.clear()
-            return found
+        """Return what the server said of itself, which of its channels are not read, and that it is waited for, once."""
+        found = list(self._notes)
+        del self._notes[: len(found)]  # the thread may have added more
+        return found
 
-    def close(self) -> None:
-        """Leave the server. What waits can still be taken. May be called twice."""
-        with self._changed:
-            self._stopped = True
-            self._changed.notify_all()
-        self._connection.close()
-        self._thread.join()
+    def close(self) -> list[LiveMessage]:
+        """Leave the server. Return what came and nobody took. May be called twice."""
+        self._reader.stop()
+        return [message for messages in self._reader.rest() for message in messages]
 
-    def _run(self) -> None:
+    def _received(self) -> Generator[list[LiveMessage], None, None]:
+        """Connect, waiting for the server if it is not there yet, and yield what it sends until it leaves."""
         from websockets.exceptions import WebSocketException
 
-        try:
-            with suppress(WebSocketException, OSError):
-                while True:
-                    self._take(self._ws.recv())
-        finally:
-            with self._changed:
-                self._ended = True
-                self._changed.notify_all()
+        with ExitStack() as stack:
+            ws = yield from self._connected(stack)
+            patience = Patience(self._idle_s)
+            stack.enter_context(suppress(WebSocketException, OSError))
+            while not patience.is_over:
+                try:
+                    found = self._understood(ws, ws.recv(timeout=TICK_S))
+                except TimeoutError:
+                    found = []
+                yield found
+                if found:
+                    patience.came()
 
-    def _take(self, data: str | bytes) -> None:
+    def _connected(self, stack: ExitStack) -> Generator[list[LiveMessage], None, ClientConnection]:
+        """Return a connection, which `stack` closes, and yield nothing until there is one. Errors: `TraceError`."""
+        from websockets.exceptions import WebSocketException
+        from websockets.sync.client import connect
+        from websockets.typing import Subprotocol
+
+        offered = [Subprotocol(each) for each in SUBPROTOCOLS]
+        patience, is_told = Patience(self._idle_s), False
+        while True:
+            try:
+                ws = stack.enter_context(
+                    connect(
+                        self._uri,
+                        subprotocols=offered,
+                        compression=None,
+                        max_size=None,
+                        open_timeout=CONNECT_S,
+                        proxy=None,
+                    )
+                )
+            except (OSError, WebSocketException) as error:  # a timeout is an OSError
+                is_in_vain = isinstance(error, (WebSocketException, ssl.SSLError, socket.gaierror))
+                if is_in_vain or patience.is_over:
+                    why = one_line(str(error)) or "timed out"
+                    raise TraceError(f"{self._uri}: no Foxglove WebSocket server answers: {why}") from error
+                if not is_told:
+                    self._notes.append(f"{self._uri}: no server answers yet: it is waited for")
+                    is_told = True
+                yield []
+                time.sleep(RETRY_S)
+                continue
+            if ws.subprotocol not in SUBPROTOCOLS:
+                raise TraceError(f"{self._uri}: this WebSocket server speaks none of {' and '.join(SUBPROTOCOLS)}")
+            return ws
+
+    def _understood(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
+        """Do what the server's own words ask for; return a message of one of its channels, if it is one."""
         if isinstance(data, bytes):
-            if len(data) >= _MESSAGE.size and data[0] == _MESSAGE_DATA:
-                _, subscription, log_ns = _MESSAGE.unpack_from(data)
-                self._message(subscription, log_ns, data[_MESSAGE.size :])
-            return
+            if len(data) < _MESSAGE.size or data[0] != _MESSAGE_DATA:
+                return []
+            _, subscription, log_ns = _MESSAGE.unpack_from(data)
+            channel = self._by_subscription.get(subscription)
+            return [] if channel is None else [LiveMessage(channel, log_ns, data[_MESSAGE.size :])]
         try:
             said = json.loads(data)
             kind = said["op"]
             if kind == "advertise":
-                self._advertised(said["channels"])
+                self._advertised(ws, said["channels"])
             elif kind == "unadvertise":
                 for channel in said["channelIds"]:
                     self._by_channel.pop(channel, None)
             elif kind == "status" and said["level"] >= _WARNING:
-                self._note(f"{self._uri} says: {one_line(str(said['message']))}")
+                self._notes.append(f"{self._uri} says: {one_line(str(said['message']))}")
         except (ValueError, KeyError, TypeError, binascii.Error) as error:
-            self._note(f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is passed over")
+            self._notes.append(
+                f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is passed over"
+            )
+        return []
 
-    def _advertised(self, channels: list[dict[str, Any]]) -> None:
+    def _advertised(self, ws: ClientConnection, channels: list[dict[str, Any]]) -> None:
         """Subscribe to the channels that are read. The id of a subscription is never used again."""
         new = []
         for each in channels:
@@ -127,23 +165,13 @@ class FoxgloveClient:
             self._by_channel[each["id"]] = number
             new.append({"id": number, "channelId": each["id"]})
         if new:
-            self._ws.send(json.dumps({"op": "subscribe", "subscriptions": new}))
+            ws.send(json.dumps({"op": "subscribe", "subscriptions": new}))
         elif not self._by_subscription and channels:
-            self._note(f"{self._uri}: nothing on {listed(sorted(self._unread))} is read")
+            self._notes.append(f"{self._uri}: nothing on {listed(sorted(self._unread))} is read")
 
-    def _message(self, subscription: int, log_ns: int, content: bytes) -> None:
-        channel = self._by_subscription.get(subscription)
-        if channel is None:
-            return
-        with self._changed:
-            self._waiting.append(LiveMessage(channel, log_ns, content))
-            self._bytes += len(content)
-            self._changed.notify_all()
-            self._changed.wait_for(lambda: self._bytes < MOST_WAITING_BYTES or self._stopped)
 
-    def _note(self, text: str) -> None:
-        with self._changed:
-            self._notes.append(text)
+def _size(messages: Sequence[LiveMessage]) -> int:
+    return sum(len(each.content) for each in messages)
 
 
 def _advertised(said: dict[str, Any]) -> LiveChannel:
@@ -154,26 +182,15 @@ def _advertised(said: dict[str, Any]) -> LiveChannel:
     return LiveChannel(said["topic"], encoding, Schema(id=0, name=said["schemaName"], encoding=of_schema, data=data))
 
 
-def _connected(uri: str, stack: ExitStack) -> ClientConnection:
-    """Return a connection, which `stack` closes."""
+def _refuse_what_is_no_address(uri: str) -> None:
+    """Errors: `UsageError`, also where the extra is missing."""
     try:
-        from websockets.exceptions import InvalidURI, WebSocketException
-        from websockets.sync.client import connect
-        from websockets.typing import Subprotocol
+        from websockets.exceptions import InvalidURI
+        from websockets.sync.client import connect  # noqa: F401 - whether it is there
+        from websockets.uri import parse_uri
     except ImportError as error:
         raise UsageError(f"{uri}: {error.name} is not installed: pip install 'drivelint[live]'") from error
-    offered = [Subprotocol(each) for each in SUBPROTOCOLS]
     try:
-        ws = stack.enter_context(
-            connect(uri, subprotocols=offered, compression=None, max_size=None, open_timeout=CONNECT_S, proxy=None)
-        )
+        parse_uri(uri)
     except InvalidURI as error:
         raise UsageError(f"{uri}: no address of a WebSocket: give ws://HOST:PORT") from error
-    except (OSError, WebSocketException) as error:  # a timeout is an OSError
-        raise TraceError(
-            f"{uri}: no Foxglove WebSocket server answers: {one_line(str(error)) or 'timed out'}"
-        ) from error
-    if ws.subprotocol not in SUBPROTOCOLS:
-        stack.close()
-        raise TraceError(f"{uri}: this WebSocket server speaks none of {' and '.join(SUBPROTOCOLS)}")
-    return ws

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
 
 
 def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWebSocket:  # noqa: A001
-    """Connect to `ws://HOST:PORT` or `wss://...`; its recording goes into `folder`.
+    """Watch `ws://HOST:PORT` or `wss://...`; its recording goes into `folder`.
 
-    Errors: `UsageError` for an address that is none or where the extra is missing, `TraceError` where no such server answers.
+    Errors: `UsageError` for an address that is none or where the extra is missing.
     """
     return FoxgloveWebSocket(name, folder, idle_s=idle_s)
 
@@ -32,7 +31,8 @@ def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWeb
 class FoxgloveWebSocket(WrittenWindows):
     """A source of the messages that our MCAP readers read. Ends with the server, or where nothing came for `idle_s`.
 
-    Frames and windows are those of the recording: an MCAP file that grows.
+    Frames and windows are those of the recording: an MCAP file that grows. `read` waits for a server that is not there yet.
+    Errors of `read`: `TraceError` where none answers.
     """
 
     window_name = "window.mcap"
@@ -40,26 +40,21 @@ class FoxgloveWebSocket(WrittenWindows):
 
     def __init__(self, uri: str, folder: Path, *, idle_s: float | None) -> None:
         self._uri = uri
-        self._idle_s = idle_s
-        self._client = FoxgloveClient(uri)
+        self._client = FoxgloveClient(uri, idle_s=idle_s)
         base = re.sub(r"[^\w.-]+", "-", uri.partition("://")[2]).strip("-.") or "live"
         names = (base if n == 1 else f"{base}_{n}" for n in count(1))
         self.recording = next(each for name in names if not (each := folder / f"{name}.mcap").exists())
         self._writer: McapRecording | None = None
         self._reader = McapFile(self.recording, idle_s=None)
-        self._came_s = time.monotonic()
         self._closed = False
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
         """See `Source`."""
         found = self._client.take(timeout_s)
-        now_s = time.monotonic()
-        if found:
-            self._came_s = now_s
-            self._write(found)
-            return self._reader.read(0.0)
-        is_idle = self._idle_s is not None and now_s - self._came_s >= self._idle_s
-        return None if found is None or is_idle else []
+        if not found:
+            return None if found is None else []
+        self._write(found)
+        return self._reader.read(0.0)
 
     def _write(self, messages: Sequence[LiveMessage]) -> None:
         with writing(self.recording):
@@ -68,7 +63,7 @@ class FoxgloveWebSocket(WrittenWindows):
             self._writer.add(messages)
 
     def notes(self) -> Sequence[str]:
-        """Return what the server said of itself, and which of its channels are not read, once."""
+        """Return what the server said of itself, which of its channels are not read, and that it is waited for, once."""
         return [*self._client.notes(), *self._reader.notes()]
 
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
@@ -82,11 +77,11 @@ class FoxgloveWebSocket(WrittenWindows):
 
     def close(self) -> None:
         """Leave the server and finish the recording, with what came and nobody asked for."""
-        self._client.close()
+        rest = self._client.close()
         if self._closed:
             return
         self._closed = True
-        if rest := self._client.take(0.0):
+        if rest:
             self._write(rest)
         self._reader.close()
         if self._writer is not None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
 BLOCK: Final = 1 << 18
-_RETRY_S: Final = 0.5
+RETRY_S: Final = 0.5
 """So often it is tried again to connect to a writer that is not there yet."""
 
 
@@ -82,12 +82,12 @@ def connected(host: str, port: int, idle_s: float | None, notes: list[str]) -> G
     patience = Patience(idle_s)
     while not patience.is_over:
         try:
-            connection = socket.create_connection((host, port), timeout=_RETRY_S)
+            connection = socket.create_connection((host, port), timeout=RETRY_S)
         except socket.gaierror as error:
             raise TraceError(f"{where}: the host is not known: {error.strerror or error}") from error
         except OSError:
             yield b""
-            time.sleep(_RETRY_S)
+            time.sleep(RETRY_S)
         else:
             yield from from_socket(connection, idle_s, notes)
             return

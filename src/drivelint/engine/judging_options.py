@@ -1,0 +1,30 @@
+"""The options on how drives are judged, which `check` and `watch` share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path  # noqa: TC003 - a dataclass names it
+
+from drivelint.drive.trace import DriveInput
+from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgingOptions(DriveInput):
+    """By which rules and profiles drives are judged, what their findings mean for the exit code, and what it may cost."""
+
+    rules: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    profiles: tuple[str, ...] = ()
+    params: tuple[str, ...] = ()
+    rules_dirs: tuple[Path, ...] = ()
+    fail_on: str = "critical"
+    strict: bool = False
+    require: tuple[str, ...] = ()
+    annotate: bool = True
+    robustness: bool = True
+    memory: int | None = DEFAULT_MEMORY
+    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    rule_timeout: float = DEFAULT_TIMEOUT_S
+    """Seconds that a rule may take on a batch of drives."""

@@ -1,0 +1,18 @@
+"""Files of SUMO's that lack the end tag of their root: their writer was killed between two steps."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+_TAIL_BYTES: Final = 4096
+
+
+def with_end_tag(content: bytes, root: str, last: str) -> tuple[bytes, bool]:
+    """Return a file with the end tag of its root element, and whether it was missing.
+
+    `last`: a pattern of what whole steps end with. A file that ends within a step is returned as it is: it is not well-formed.
+    """
+    if re.search(rf"(?:{last})\s*\Z".encode(), content[-_TAIL_BYTES:]) is None:
+        return content, False
+    return content.rstrip() + f"\n</{root}>\n".encode(), True
