@@ -2,8 +2,9 @@
 -- the distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
 -- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
 -- An ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known.
--- If the log ends before the ego is back, it may have sped up yet: the highest speed that it had or that the limit allows stands for the
--- mean speed. Without a limit in the map, that of the fastest roads counts. After a collision it cannot speed up.
+-- If the log ends before the ego is back, it may have sped up yet: the greatest mean speed that it could still have had until it was back
+-- stands for the mean speed. It is no faster than it was or than the limit allows; without a limit in the map, that of the fastest roads
+-- counts. After a collision it cannot speed up.
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
@@ -38,10 +39,10 @@ collision AS (
     UNION
     SELECT drive_id, ego_id, t_ns FROM pair WHERE clearance_m <= 0 AND NOT clearance_is_bound
 ),
-speed_within_reach AS (
+highest_speed AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence,
-        greatest(max(e.speed_mps), CASE WHEN count(c.t_ns) = 0 THEN max(coalesce(e.limit_mps, fastest_mps())) END) AS v_reach_mps
+        greatest(max(e.speed_mps), CASE WHEN count(c.t_ns) = 0 THEN max(coalesce(e.limit_mps, fastest_mps())) END) AS v_most_mps
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     LEFT JOIN collision c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.t_ns = e.t_ns
@@ -52,8 +53,8 @@ speed_within_reach AS (
 -- at t0 counts. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
 driven_distance AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_reach_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
-        CASE WHEN o.status = 'completed' THEN (f.travel_m - e.travel_m) / nullif((o.t_end_ns - o.t0_ns) / 1e9, 0) END AS v_mean_mps,
+        o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_most_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
+        (o.t_end_ns - o.t0_ns) / 1e9 AS gone_s, f.travel_m - e.travel_m AS gone_m, f.speed_mps AS v_end_mps, CASE WHEN o.status = 'completed' THEN gone_m / nullif(gone_s, 0) END AS v_mean_mps,
         coalesce(c.closed_m, 0.0) + greatest(0.0, b.front_s_m - a.front_s_m) + v.v_ov_mps * greatest(0, h.t_ns - h.t_seen_ns) / 1e9 + stopping_distance_m(v.v_ov_mps) AS driven_m
     FROM overtake o
     JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
@@ -63,7 +64,7 @@ driven_distance AS (
     LEFT JOIN ego_corridor b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.t_ns = h.t_ns
     LEFT JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
     LEFT JOIN ego_state f ON f.drive_id = o.drive_id AND f.ego_id = o.ego_id AND f.t_ns = o.t_end_ns
-    LEFT JOIN speed_within_reach m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
+    LEFT JOIN highest_speed m ON m.drive_id = o.drive_id AND m.ego_id = o.ego_id AND m.occurrence = o.occurrence
 ),
 formula_input AS (
     SELECT
@@ -71,7 +72,7 @@ formula_input AS (
             CASE WHEN p.profile = 'observed' THEN coalesce(d.v_mean_mps, o.v_av_mps) ELSE o.v_av_mps END AS v_av_mps,
             d.ov_id AS ov_id, d.da_m AS da_m, d.v_ov_mps AS v_ov_mps
         ),
-        o.ov_id AS nearest_id, d.out_s, d.stands, p.profile, coalesce(d.v_mean_mps, d.v_reach_mps) AS v_later_mps,
+        o.ov_id AS nearest_id, d.out_s, d.stands, p.profile, d.v_mean_mps, d.v_most_mps, d.gone_s, d.gone_m, d.v_end_mps,
         CASE WHEN p.profile = 'observed' THEN d.driven_m END AS driven_m,
         CASE WHEN p.profile <> 'observed' THEN p.pull_out_angle_rad WHEN o.status = 'completed' THEN o.pull_out_angle_rad END AS beta_rad,
         CASE p.profile WHEN 'observed' THEN o.cut_in_angle_rad ELSE p.cut_in_angle_rad END AS theta_rad,
@@ -80,6 +81,17 @@ formula_input AS (
     FROM overtake o
     JOIN driven_distance d USING (drive_id, ego_id, occurrence)
     CROSS JOIN profile p
+),
+-- The faster the ego overtakes, the sooner it is back, and the less it can have sped up until then: of 64 speeds up to the highest, the
+-- greatest one that it can have had in the mean.
+later_speed AS (
+    SELECT
+        *,
+        CASE WHEN v_most_mps IS NULL THEN v_mean_mps ELSE list_max(list_filter(
+            [v_av_mps + (v_most_mps - v_av_mps) * k / 64 for k in range(1, 65)],
+            lambda v: v > v_vbp_mps AND v <= coalesce(most_mean_mps(overtaking_time_s(lane_width_m, beta_rad, theta_rad, headroom_m, clearance_m, l_av_m, span_m, v, v_vbp_mps), gone_s, gone_m, v_end_mps, v_most_mps), v_most_mps)
+        )) END AS v_later_mps
+    FROM formula_input
 ),
 planned_distance AS (
     SELECT
@@ -90,7 +102,7 @@ planned_distance AS (
         CASE WHEN beta_rad > 0 AND theta_rad > 0 AND v_later_mps > v_av_mps AND v_later_mps > v_vbp_mps THEN
             safe_distance_ahead_m(lane_width_m, beta_rad, theta_rad, headroom_m, clearance_m, l_av_m, span_m, v_later_mps, v_vbp_mps, v_ov_mps)
         END AS sped_up_m
-    FROM formula_input
+    FROM later_speed
 ),
 required_distance AS (
     -- The driven distance counts only if it is at least DA: then it shows that DA was too small. If DA is larger, the overtake had enough,

@@ -17,13 +17,19 @@ CREATE OR REPLACE MACRO passing_time_s(w, beta, headroom, clearance, l_av, l_vbp
     CASE WHEN v_av > v_vbp THEN
         (headroom + l_vbp + clearance + l_av + (v_vbp - v_av * cos(beta)) * pull_out_time_s(w, beta, v_av)) / (v_av - v_vbp)
     END;
+CREATE OR REPLACE MACRO overtaking_time_s(w, beta, theta, headroom, clearance, l_av, l_vbp, v_av, v_vbp) AS
+    pull_out_time_s(w, beta, v_av) + passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp) + pull_out_time_s(w, theta, v_av);
 CREATE OR REPLACE MACRO safe_distance_ahead_m(w, beta, theta, headroom, clearance, l_av, l_vbp, v_av, v_vbp, v_ov) AS
     w / tan(beta) + w / tan(theta) + stopping_distance_m(v_ov)
     + v_av * passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp)
-    + v_ov * (
-        pull_out_time_s(w, beta, v_av) + passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp)
-        + pull_out_time_s(w, theta, v_av)
-    );
+    + v_ov * overtaking_time_s(w, beta, theta, headroom, clearance, l_av, l_vbp, v_av, v_vbp);
+
+-- The way of a vehicle in t_s that has the speed v and speeds up to v_most by at most 3.5 m/s2 (a brisk start), and the greatest mean speed
+-- that it can have over total_s if it drove gone_m in the first gone_s of it and has the speed v then.
+CREATE OR REPLACE MACRO speeding_up_m(t_s, v_mps, v_most_mps) AS
+    v_mps * t_s + 3.5 * least(t_s, greatest(v_most_mps - v_mps, 0) / 3.5) * (t_s - least(t_s, greatest(v_most_mps - v_mps, 0) / 3.5) / 2);
+CREATE OR REPLACE MACRO most_mean_mps(total_s, gone_s, gone_m, v_mps, v_most_mps) AS
+    (gone_m + speeding_up_m(greatest(total_s - gone_s, 0), v_mps, v_most_mps)) / greatest(total_s, gone_s);
 
 -- Performance zone of an overtake by the time in which the spare distance closes.
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS

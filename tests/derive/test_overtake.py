@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from typing import Any
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry import box
 
+from drivelint.engine.batch import Drive
 from drivelint.reasons.reason_text import sentence
 from tests import scenes
 from tests.derive.overtake_scene import crash, scene
@@ -438,20 +440,48 @@ def test_an_ego_that_speeds_up_to_overtake_is_not_held_to_its_speed_at_the_start
     assert ("its mean speed" in found["nominal"]["reason"]) == (verdict[0] == "unknown")
 
 
+@pytest.mark.parametrize("until_s", [20.0, 13.0], ids=["it has sped up", "it has not yet sped up"])
 @pytest.mark.parametrize(("far", "verdict"), [(700.0, "unknown"), (120.0, "fail")])
-def test_nor_is_one_that_is_still_out_when_the_log_ends(far: float, verdict: str) -> None:
-    found = _judged_speeding_up("lht", far, until_s=20.0)
+def test_nor_is_one_that_is_still_out_when_the_log_ends(far: float, verdict: str, until_s: float) -> None:
+    found = _judged_speeding_up("lht", far, until_s)
     assert found["nominal"]["verdict"] == verdict
-    assert ("may still reach (26.8 m/s)" in found["nominal"]["reason"]) == (verdict == "unknown")
+    assert ("until it was back" in found["nominal"]["reason"]) == (verdict == "unknown")
 
 
-@pytest.mark.parametrize(("far", "verdict"), [(700.0, "unknown"), (120.0, "fail")])
-def test_nor_is_one_that_has_not_yet_sped_up_when_the_log_ends(far: float, verdict: str) -> None:
-    """Two seconds after it pulled out it drives at 9.5 m/s as before; the limit is 60 mph."""
-    assert _judged_speeding_up("lht", far, until_s=13.0)["nominal"]["verdict"] == verdict
+@pytest.mark.parametrize("until_s", [12.0, 14.0, 17.0])
+def test_how_fast_it_could_still_have_been_is_that_of_full_acceleration_up_to_the_limit(until_s: float) -> None:
+    """Held against an ego that speeds up step by step, for every mean speed in steps of 0.01 m/s."""
+    con = derived(_speeding_up("lht", 700.0, until_s), tables=["overtake_sda"])
+    (o,) = rows(con, "FROM overtake")
+    (nominal,) = rows(con, "FROM profile WHERE profile = 'nominal'")
+    (row,) = rows(con, "FROM overtake_sda WHERE profile = 'nominal'")
+    ego = rows(con, f"SELECT t_ns, speed_mps, travel_m FROM ego_state WHERE t_ns >= {o['t0_ns']} ORDER BY t_ns")
+    dt = 0.001
+    v = np.minimum(ego[-1]["speed_mps"] + 3.5 * dt * np.arange(200_000), 60 * MPH)
+    way = ego[-1]["travel_m"] - ego[0]["travel_m"] + np.concatenate([[0.0], np.cumsum(v[:-1] * dt)])
+    gone_s = (ego[-1]["t_ns"] - ego[0]["t_ns"]) / 1e9
+    k = nominal["pull_out_headroom_m"] + o["l_vbp_m"] + nominal["cut_in_clearance_m"] + o["l_av_m"]
+    angles = nominal["pull_out_angle_rad"], nominal["cut_in_angle_rad"]
+
+    def is_within_reach(mean: float) -> bool:
+        pull, cut = (LANE / (mean * math.sin(angle)) for angle in angles)
+        passing = (k + (o["v_vbp_mps"] - mean * math.cos(angles[0])) * pull) / (mean - o["v_vbp_mps"])
+        needed = max(pull + passing + cut, gone_s)
+        return bool(mean * needed <= way[round((needed - gone_s) / dt)])
+
+    most = max(v for v in np.arange(o["v_av_mps"] + 0.01, 60 * MPH, 0.01) if is_within_reach(v))
+    told = json.loads(row["reason"])["args"]
+    assert most - (60 * MPH - o["v_av_mps"]) / 64 - 0.02 <= told["v_later_mps"] <= most + 0.02
+    expected = safe_distance(LANE, *angles, k, told["v_later_mps"], o["v_vbp_mps"], o["v_ov_mps"])
+    assert told["later_sda_m"] == pytest.approx(expected, rel=1e-6)
 
 
 def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]:
+    return {row["profile"]: row for row in scenes.judged([_speeding_up(hand, far, until_s)], rules=[SDA])}
+
+
+def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
+    """It pulls out at 10 s with 9.5 m/s, and speeds up by 2 m/s2 from 14 s on."""
     way, t = road(((3000.0, 0.0),), hand), times(40.0)
     v = np.clip(9.5 + 2.0 * (t - 14), 9.5, 25.0)
     s = 50 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
@@ -461,7 +491,7 @@ def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]
     ego = moving("ego", way, t[seen], s[seen], swing(way, s, out, back)[seen])
     vbp = moving("vbp", way, t[seen], (out + 20 + 9 * (t - 10))[seen], way.own)
     ov = moving("ov", way, t[seen], (out + far + 25 * (10 - t))[seen], way.other)
-    return {row["profile"]: row for row in scenes.judged([drive([ego, vbp, ov], way.environment)], rules=[SDA])}
+    return drive([ego, vbp, ov], way.environment)
 
 
 @pytest.mark.sample(1)

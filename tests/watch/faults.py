@@ -106,7 +106,7 @@ FAULTS = (
             Car("lorry", 0, "ab", "lorry", 'departSpeed="max" departPos="70"'),
             Car("ego", 0, "ab", "driver", 'departSpeed="15" departPos="30"'),
             Car("oncoming", 0, "ba", more='departSpeed="max" departPos="3600"'),
-        ), 20,
+        ), 20, at_once=False,  # a driver who speeds up may have enough room
         sound=f'{EXACT} maxSpeed="16" lcOpposite="0"',
     ),
 )  # fmt: skip
