@@ -113,7 +113,7 @@ class LiveServer:
         self._log(self._alarms, message, message["t_start_ns"])
 
     def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Publish judged steps, each on the topic of its rule; `rows` have the columns of `margins.parquet`."""
+        """Publish judged steps, each on the topic of its rule; `rows` have columns of `margins.parquet`."""
         for row in rows:
             topic = f"{PREFIX}/{measures.margin_topic(row['rule_id'])}"
             channel = self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
