@@ -576,3 +576,14 @@ def test_what_type_checkers_see_is_there() -> None:
     assert set(names) <= set(dir(drivelint))
     assert set(drivelint._OF_API) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
     assert all(getattr(drivelint, name).__module__.startswith("drivelint.") for name in names)
+
+
+def test_an_error_in_ipython_is_a_line_and_then_its_traceback() -> None:
+    """By the method that IPython calls; `test_notebook.py` has a kernel."""
+    with pytest.raises(drivelint.DriveLintError) as raised:
+        drivelint.check("now\x1bhere.mcap")
+    (line,) = raised.value._render_traceback_()
+    assert line == r"TraceError: now\x1bhere.mcap: no such file or folder: check the path (%tb shows the traceback)"
+    whole = raised.value._render_traceback_()
+    assert whole[0].startswith("Traceback")
+    assert any("test_check.py" in each for each in whole)
