@@ -243,10 +243,7 @@ def demo(
     """
     from drivelint import demo
 
-    if folder is not None and out is not None and folder != out:
-        raise UsageError(f"{folder} and --out {out}: give one folder")
-    place = folder or out or Path("demo")
-    written = demo.write(place)
+    written = demo.write(place := values.one_folder(folder, out, Path("demo")))
     typer.echo(f"{place}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
     typer.echo(demo.check_command(place, sys.argv[0]))
 

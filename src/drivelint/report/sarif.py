@@ -60,7 +60,7 @@ class _Run:
         self._gating = frozenset(gating_findings(result)["finding_id"].to_pylist())
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
-        self._paths = request.logs_as_named(result)
+        self._paths = _logs_as_named(result)
 
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
@@ -179,6 +179,15 @@ class _Run:
                 yield _notice("data-quality", level, text, self._location(drive))
         for text in descriptions.waiver_warnings(result.gate) if result.gate else ():
             yield _notice("waiver", "warning", text)
+
+
+def _logs_as_named(result: Result) -> Mapping[str, str]:
+    """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
+    if result.asked is not None:
+        return result.asked.named
+    if result.folder is None or not (result.folder / request.RUN_FILE).is_file():
+        return {}
+    return request.load(result.folder).named
 
 
 def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:

@@ -9,15 +9,12 @@ import json
 import os
 from dataclasses import dataclass, field, fields
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import msgspec
 
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
-
-if TYPE_CHECKING:
-    from drivelint.result.model import Result
 
 RUN_FILE: Final = "run.json"
 _PATHS: Final = ("map", "map_dir")
@@ -78,15 +75,6 @@ def load(folder: Path) -> RunRequest:
         ) from error
     except (OSError, ValueError, KeyError, TypeError, AttributeError, msgspec.ValidationError) as error:
         raise UsageError(f"{file}: not what drivelint writes: check the drives again") from error
-
-
-def logs_as_named(result: Result) -> dict[str, str]:
-    """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
-    if result.asked is not None:
-        return result.asked.named
-    if result.folder is None or not (result.folder / RUN_FILE).is_file():
-        return {}
-    return load(result.folder).named
 
 
 def _named(path: str) -> str:
