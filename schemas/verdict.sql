@@ -71,6 +71,7 @@ CREATE TABLE finding (
     n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
     t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
     t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way
+    t_end_s DOUBLE NOT NULL,          -- t_end_ns in the same way
     closing_mps DOUBLE                -- how fast ego and object come nearer: their relative velocity along the line between their box centres. Of a rule tagged contact: at the last step before the first failing one at which the velocities of both are known, at most 1 s before it. Of another rule: at the worst step, or, where they touch at it, at the last step before they did. Negative: they draw apart; NULL: no object, no such step, or the place or velocity of one is not known
 );
 
@@ -86,5 +87,8 @@ CREATE TABLE margin (
     observed DOUBLE,                  -- value at that step
     required DOUBLE,                  -- what it was held against
     margin DOUBLE,                    -- signed, positive = kept; NULL for sense = holds
-    holds BOOLEAN                     -- kept at this step; NULL: unknown
+    holds BOOLEAN,                    -- kept at this step; NULL: unknown
+    unit VARCHAR,                     -- of observed, required and margin
+    t_s DOUBLE NOT NULL,              -- t_ns in seconds since the drive's first time stamp, as reasons tell times
+    finding_id VARCHAR                -- the finding of which it is a failing step; NULL: it is of none
 );

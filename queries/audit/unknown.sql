@@ -1,6 +1,6 @@
 -- Why verdicts of rules that gate are unknown, most first.
 SELECT reason_code, count(*) AS n, count(DISTINCT rule_id) AS n_rules, count(DISTINCT key) AS n_drives
-FROM verdicts
+FROM counted_verdicts
 SEMI JOIN (FROM rules WHERE status = 'stable') USING (rule_id)
 WHERE verdict = 'unknown'
 GROUP BY ALL

@@ -38,7 +38,8 @@ SELECT sha256(to_json([v.sha256, v.ego_id, rule_id, profile, v.object_id,
     v.drive_id, v.ego_id, rule_id, rule_version, kind, profile, severity, v.object_id, v.occurrence, ref_id,
     v.t_start_ns, v.t_end_ns, v.t_worst_ns, sentence AS reason, cause_code, cause_args, reason_measures, observed, required, margin, unit,
     p.x_m, p.y_m, p.lanelet_id,
-    (v.t_start_ns - start_ns) / 1e9 AS t_start_s, (v.t_worst_ns - start_ns) / 1e9 AS t_worst_s, c.closing_mps
+    (v.t_start_ns - start_ns) / 1e9 AS t_start_s, (v.t_worst_ns - start_ns) / 1e9 AS t_worst_s,
+    (v.t_end_ns - start_ns) / 1e9 AS t_end_s, c.closing_mps
 FROM _numbered v
 LEFT JOIN ego_state p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_worst_ns
 LEFT JOIN _closing c ON c.drive_id = v.drive_id AND c.ego_id = v.ego_id AND c.object_id = v.object_id

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROAD_FILE: Final = "road.xodr"
-PROFILES: Final = ("relaxed", "nominal", "aggressive")
 _SOURCES: Final = {ROAD_FILE: "overtake-road.xodr"} | {
     name: name for scene in ("safe", "near-miss", "collision") for name in (f"{scene}.mcap", f"{scene}-25mph.mcap")
 }
@@ -54,12 +53,11 @@ def _is_ours(path: Path) -> None:
     except OSError:
         ours = False
     if not ours:
-        raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder with --out")
+        raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder")
 
 
 def check_command(out: Path, called: str = "drivelint") -> str:
     """Return the command that checks what was written, to be copied into a shell; `called` is how drivelint was started."""
     there = shlex.quote(str(out))
-    profiles = " ".join(f"--profile {name}" for name in PROFILES)
     program = shlex.quote(called) if PurePath(called).name == "drivelint" and not which("drivelint") else "drivelint"
-    return f"{program} check {there}/*.mcap --map {there}/{ROAD_FILE} {profiles} --out {there}/results"
+    return f"{program} check {there}/*.mcap --map {there}/{ROAD_FILE} --out {there}/results"

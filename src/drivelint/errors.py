@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from enum import IntEnum
 from typing import Final
 
@@ -26,11 +27,21 @@ class DriveLintError(Exception):
     """A mistake or a fault that has one clear line for the user; never shown with a traceback."""
 
     exit_code: ExitCode = ExitCode.USAGE
+    _is_told = False
 
     def __str__(self) -> str:
         """Return the line; where a damaged file put a long text into it, without its middle."""
         text = super().__str__()
         return text if len(text) <= LONGEST_LINE else f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
+
+    def _render_traceback_(self) -> list[str]:
+        """Return what IPython shows of the error: its line, and when it is asked again (`%tb`), the traceback."""
+        if self._is_told:
+            return traceback.format_exception(self)
+        self._is_told = True
+        # a word of a log may hold characters that steer a terminal
+        line = "".join(each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in str(self))
+        return [f"{type(self).__name__}: {line} (%tb shows the traceback)"]
 
     @property
     def is_of_the_run(self) -> bool:

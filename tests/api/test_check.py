@@ -140,6 +140,34 @@ def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Pat
     assert files(opened.write(tmp_path / "b")) == theirs, "into its own folder"
 
 
+def test_a_margin_says_its_time_its_unit_and_its_finding(drives: Path) -> None:
+    log = drives / "collision.mcap"
+    rules = ["ukhc.no-collision", "ukhc.r126.*", "ukhc.r103.signal-means-go", "ukhc.r162.safe-distance-ahead"]
+    found = drivelint.check(log, map=drives / "road.xodr", rules=rules, margins=True, robustness=False)
+    assert found.margins is not None
+    steps, findings = found.margins.rows(), {row["finding_id"]: row for row in found.findings}
+    (start_ns,) = (row["t_start_ns"] for row in found.drives)
+    units = {row["rule_id"]: row["unit"] for row in found.rules}
+    same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
+    for step in steps:
+        assert step["t_s"] == pytest.approx((step["t_ns"] - start_ns) / 1e9, abs=1e-9)
+        assert step["unit"] == units[step["rule_id"]]
+        if step["finding_id"] is not None:
+            finding = findings[step["finding_id"]]
+            assert step["holds"] is False
+            assert [step[key] for key in same] == [finding[key] for key in same]
+            assert finding["t_start_s"] <= step["t_s"] <= finding["t_end_s"]
+    for finding in findings.values():
+        mine = {step["t_ns"]: step for step in steps if step["finding_id"] == finding["finding_id"]}
+        assert {min(mine), max(mine)} == {finding["t_start_ns"], finding["t_end_ns"]}
+        worst = mine[finding["t_worst_ns"]]
+        assert (worst["object_id"], worst["margin"]) == (finding["object_id"], finding["margin"])
+    # a window in which one step suffices may have others that fail
+    without = {step["rule_id"] for step in steps if step["holds"] is False and step["finding_id"] is None}
+    assert without == {"ukhc.r103.signal-means-go"}
+    assert found.margins.describe().rows()[-1]["meaning"].startswith("the finding of which it is a failing step")
+
+
 def test_the_tables_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
     folder = checked.write(tmp_path / "out")
     opened = drivelint.open(str(folder))
@@ -548,3 +576,14 @@ def test_what_type_checkers_see_is_there() -> None:
     assert set(names) <= set(dir(drivelint))
     assert set(drivelint._OF_API) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
     assert all(getattr(drivelint, name).__module__.startswith("drivelint.") for name in names)
+
+
+def test_an_error_in_ipython_is_a_line_and_then_its_traceback() -> None:
+    """By the method that IPython calls; `test_notebook.py` has a kernel."""
+    with pytest.raises(drivelint.DriveLintError) as raised:
+        drivelint.check("now\x1bhere.mcap")
+    (line,) = raised.value._render_traceback_()
+    assert line == r"TraceError: now\x1bhere.mcap: no such file or folder: check the path (%tb shows the traceback)"
+    whole = raised.value._render_traceback_()
+    assert whole[0].startswith("Traceback")
+    assert any("test_check.py" in each for each in whole)

@@ -21,11 +21,12 @@ pytest.importorskip("ipykernel", reason="ipykernel is not installed (pip install
 PROGRAMS = {block.argument: block.body for block in blocks(FOLDER / "python.md") if block.language == "python"}
 
 
-def run(folder: Path, *cells: str) -> list[list[dict[str, Any]]]:
-    """Run the cells in a new notebook; return the outputs of each."""
+def run(folder: Path, *cells: str, allow_errors: bool = False) -> list[list[dict[str, Any]]]:
+    """Run the cells in a new notebook; return the outputs of each. With `allow_errors`, a cell may raise an error."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
     path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
-    client = nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(folder)}})
+    where = {"metadata": {"path": str(folder)}}
+    client = nbclient.NotebookClient(notebook, timeout=120, resources=where, allow_errors=allow_errors)
     client.execute(env={**os.environ, "PYTHONPATH": path})
     return [cell.outputs for cell in notebook.cells]
 
@@ -79,3 +80,14 @@ def test_an_error_stops_a_cell_and_not_the_kernel(folder: Path) -> None:
     first, second = run(folder, f"import drivelint\n{caught}", "print('still there')")
     assert streams(first) == {"stdout": "nowhere.mcap: no such file or folder: check the path\n"}
     assert streams(second) == {"stdout": "still there\n"}
+
+
+def test_an_error_is_a_line_and_its_traceback_is_there(folder: Path) -> None:
+    shown, again = run(folder, "import drivelint\ndrivelint.check('nowhere.mcap')", "%tb", allow_errors=True)
+    (error,) = (each for each in shown if each["output_type"] == "error")
+    line = "nowhere.mcap: no such file or folder: check the path"
+    assert error["traceback"] == [f"{error['ename']}: {line} (%tb shows the traceback)"]
+    (error,) = (each for each in again if each["output_type"] == "error")
+    assert error["traceback"][0].startswith("Traceback (most recent call last)")
+    assert "drivelint.check('nowhere.mcap')" in "".join(error["traceback"])
+    assert error["traceback"][-1].endswith(f"{line}\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -15,12 +15,11 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.summary import summed
 from drivelint.audit.text import summary_text
 from drivelint.errors import ExitCode
+from drivelint.fleet_report.content import content
+from drivelint.fleet_report.opened import opened
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @pytest.fixture
@@ -135,9 +134,28 @@ def test_a_tag_with_the_name_of_a_condition_is_said_to_be_none(
     assert any("column weather is a tag only" in note for note in notes) is (tag == "weather")
 
 
-def test_copies_are_told(tmp_path: Path) -> None:
-    few = fleet.write(tmp_path / "fleet", 3)
+def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 12)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
-    logs[1].write_bytes(logs[0].read_bytes())
+    first = next(log for log in logs if log.name in few.planted)
+    copies = [log for log in logs if log.name not in few.planted][:2]
+    for copy in copies:
+        copy.write_bytes(first.read_bytes())
     counted = judged(few, tmp_path / "out")
-    assert "3 judged, 1 with the content of another one, counted again" in summary_text(counted, "out", ExitCode.OK)
+    lines = summary_text(counted, "out", ExitCode.FAILED).splitlines()
+    assert lines[0].startswith("10 drives of ")
+    assert lines[1] == "10 judged"
+    assert lines[2] == "2 more logs have the content of another one: each content counts once"
+    told_copies = [line.strip().split(": a copy of ") for line in lines if ": a copy of " in line]
+    assert len(told_copies) == 2
+    assert {Path(name).name for pair in told_copies for name in pair} == {log.name for log in (first, *copies)}
+    for copy in copies:
+        copy.unlink()
+    alone = judged(few, tmp_path / "alone", sources=str(tmp_path / "fleet" / "logs"))
+    for name in ("km", "hours", "findings", "contacts", "unknown", "broken", "unknown_for"):
+        assert getattr(counted, name) == getattr(alone, name), name
+    assert counted.findings == {"critical": len(few.planted)}
+    with opened(str(tmp_path / "out")) as (con, out, _):
+        page = content(con, out, None, ())
+    assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
+    assert (page.totals["drives"], page.totals["copies"]) == (10, 2)

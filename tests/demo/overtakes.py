@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple
 
-from drivelint.demo import PROFILES
 from drivelint.engine.profiles import Profile, load_profiles
 from tests.demo.actors import Actor, car
 from tests.demo.line import straight
 from tests.demo.road import LANE_WIDTH_M, MPH, Road
 from tests.demo.scene import Scene, lane_departure, place_oncoming
 
+PROFILES: Final = ("relaxed", "nominal", "aggressive")
+"""The profiles of the paper's Table 1."""
 PAPER_SPEED_MPS: Final = 5.22
 PAPER_DISTANCES_AHEAD_M: Final = {"safe": 76.43, "near-miss": 58.33, "collision": 35.63}
 """Distance ahead in the paper's logs when the ego leaves its lane."""

@@ -6,15 +6,19 @@ import os
 import shlex
 import subprocess
 import sys
+from contextlib import chdir
+from functools import partial
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+from typer.testing import CliRunner
 
+from drivelint import cli
 from drivelint import demo as demo_files
 from drivelint.engine.profiles import load_profiles
 from drivelint.errors import UsageError
-from tests.demo.overtakes import PAPER_SPEED_MPS, distance_ahead_m, safe_distance_ahead_m
+from tests.demo.overtakes import PAPER_SPEED_MPS, PROFILES, distance_ahead_m, safe_distance_ahead_m
 from tests.demo.road import MPH
 from tests.demo.table_1 import TABLE_1
 
@@ -25,14 +29,31 @@ def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, env=dict(os.environ))
 
 
-@pytest.mark.slow
-def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Path) -> None:
-    shown = run([*PROGRAM, "demo", "--out", "a new folder"], tmp_path)
+def printed_command(folder: Path) -> list[str]:
+    """Return the words after `drivelint` of the command that the demo prints."""
+    shown = run([*PROGRAM, "demo", "a new folder"], folder)
     assert shown.returncode == 0, shown.stderr
     (line,) = shown.stdout.splitlines()
     program, *words = shlex.split(line)
     assert program == "drivelint"
-    checked = run([*PROGRAM, *words], tmp_path)
+    return words
+
+
+@pytest.mark.slow
+def test_the_printed_command_shows_the_safe_drive_as_safe(tmp_path: Path) -> None:
+    words = printed_command(tmp_path)
+    checked = run([*PROGRAM, *words, "--no-annotate"], tmp_path)
+    assert checked.returncode == 1, checked.stderr
+    findings = pq.read_table(tmp_path / words[-1] / "findings.parquet").to_pylist()
+    severities = {(row["drive_id"].rpartition("-")[0], row["severity"]) for row in findings}
+    assert not severities & {("safe", "critical"), ("safe", "major")}
+    assert severities >= {("near-miss", "critical"), ("collision", "critical")}
+
+
+@pytest.mark.slow
+def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Path) -> None:
+    words = printed_command(tmp_path)
+    checked = run([*PROGRAM, *words, *(word for name in PROFILES for word in ("--profile", name))], tmp_path)
     assert checked.returncode == 1, checked.stderr
     out = Path(words[words.index("--out") + 1])
     found: dict[str, dict[str, str]] = {}
@@ -45,6 +66,21 @@ def test_the_printed_command_gives_the_nine_verdicts_at_both_speeds(tmp_path: Pa
             assert row["observed"] == pytest.approx(distance_ahead_m(name.removesuffix("-25mph"), v), abs=0.01)
             assert row["required"] == pytest.approx(safe_distance_ahead_m(profiles[row["profile"]], v), abs=0.01)
     assert found == TABLE_1 | {f"{name}-25mph": verdicts for name, verdicts in TABLE_1.items()}
+
+
+def test_the_folder_is_an_argument_or_an_option(tmp_path: Path) -> None:
+    invoke = partial(CliRunner().invoke, cli.app)
+    for words in (["demo", "one"], ["demo", "--out", "one"], ["demo", "one", "--out", "one"], ["demo"]):
+        (folder := tmp_path / str(len(list(tmp_path.iterdir())))).mkdir()
+        with chdir(folder):
+            done = invoke(words)
+        assert done.exit_code == 0, words
+        (written,) = folder.iterdir()
+        assert written.name == ("one" if "one" in words else "demo")
+        assert done.stdout.rstrip().endswith(f"--out {written.name}/results")
+    refused = invoke(["demo", "one", "--out", "two"])
+    assert isinstance(refused.exception, UsageError)
+    assert str(refused.exception) == "one and --out two: give one folder"
 
 
 def test_an_earlier_demo_is_written_over(tmp_path: Path) -> None:

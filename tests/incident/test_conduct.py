@@ -10,7 +10,8 @@ import pytest
 from drivelint.catalogue import load_rules
 from drivelint.catalogue.header import EXCUSES
 from drivelint.incident.breaches import ADVICE, without_advice
-from drivelint.incident.conduct import conduct, fit
+from drivelint.incident.conduct import conduct
+from drivelint.incident.fitting import Reason, first_fitting, fit, shared_reasons
 from drivelint.reasons.reason_text import shared_texts
 
 S = 1_000_000_000
@@ -105,6 +106,51 @@ def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
     assert found["reasons"].shown == [
         "\u201cHeadlights at night\u201d: The log does not say when the headlights are on"
     ]
+
+
+REASONS = [
+    Reason(f"Why number {n:02}", tuple(f"\u201cTitle {n:02}.{k} of a rule\u201d" for k in range(20 - n)))
+    for n in range(20)
+]
+
+
+def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
+    """Twenty reasons whose titles are too long for the page are told, the longest by the number of their rules."""
+    party: dict[str, Any] = {"reasons": list(REASONS)}
+    fit([party], 0, 0)
+    shown, more, is_short = party["reasons"]
+    assert (len(shown), more, is_short) == (20, 0, True)
+    assert shown[0] == "Why number 00 (20 rules)"
+    assert shown[-1] == REASONS[-1].full
+    assert sum(map(len, shown)) < 3300 < sum(len(reason.full) for reason in REASONS)
+
+
+def test_reasons_come_before_what_the_other_lists_would_take() -> None:
+    party: dict[str, Any] = {"kept": ["a measure of a rule that was kept"] * 200, "reasons": list(REASONS)}
+    fit([party], 0, 0)
+    assert party["reasons"].more == 0
+    assert party["kept"].more > 100
+
+
+def test_reasons_that_do_not_fit_are_counted() -> None:
+    party: dict[str, Any] = {"reasons": list(REASONS)}
+    fit([party], 0, 3300)
+    assert len(party["reasons"].shown) + party["reasons"].more == 20
+    assert party["reasons"].more > 0
+
+
+def test_what_is_undecided_of_both_for_the_same_reason_is_told_once() -> None:
+    first: dict[str, Any] = {"reasons": REASONS[:3]}
+    second: dict[str, Any] = {"reasons": [*REASONS[1:4], REASONS[0]._replace(titles=("another",))]}
+    assert shared_reasons([first, second]) == {"reasons": REASONS[1:3]}
+    assert first["reasons"] == REASONS[:1]
+    assert second["reasons"] == [REASONS[3], REASONS[0]._replace(titles=("another",))]
+    assert shared_reasons([{"reasons": REASONS}, {"not_judged": "a pedestrian"}]) == {"reasons": []}
+
+
+def test_texts_that_do_not_fit_are_counted() -> None:
+    assert first_fitting(["a" * 10] * 5, 30) == (["a" * 10] * 2, 3, False)
+    assert first_fitting([], 30) == ([], 0, False)
 
 
 def test_advice_begins_with_a_known_word() -> None:

@@ -213,7 +213,7 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
     required = [line["name"] for line in chart["lines"] if line["kind"] == "limit"]
     assert "required: \u201cSafe distance ahead before overtaking\u201d (planned as nominal)" in required
     assert "Contact" not in told["what"]
-    assert told["contacts"]  # the same two touch later in that drive
+    assert told["contacts"].shown  # the same two touch later in that drive
 
 
 @pytest.mark.parametrize(("stays", "said"), [(None, "not examined"), (53, "<b>possible</b>"), (99, "<b>sure</b>")])

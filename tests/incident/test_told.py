@@ -7,9 +7,12 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import pyarrow as pa
+import pyarrow.compute as pc
 import pytest
 
 from drivelint.incident import render
+from drivelint.incident.judge import Judged
 from drivelint.incident.sheet import content
 
 if TYPE_CHECKING:
@@ -83,6 +86,45 @@ def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
     assert "not examined" in content(replace(case, others=None))["parties"][1]["lane"]
+
+
+def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case_of: CaseOf, text: str) -> None:
+    """What the log or the map lacks, it lacks for both parties, and is told once."""
+    case = case_of("no-collision@collision")
+    parts = [*collision["conduct"], collision["of_both"]]
+    assert [part["reasons"].more for part in parts] == [0, 0, 0]
+    for party, judged in zip(collision["conduct"], (case.again, case.others), strict=True):
+        assert isinstance(judged, Judged)
+        undecided = {row["rule_id"] for row in judged.verdicts if row["verdict"] in {"unknown", "error"}}
+        told = " ".join([*party["reasons"].shown, *collision["of_both"]["reasons"].shown])
+        titles = [rule["title"] for rule in case.result.rules.to_pylist() if rule["rule_id"] in undecided]
+        assert titles
+        assert all(f"\u201c{title}\u201d" in told for title in titles)
+    shared = [reason.partition(": ")[2] for reason in collision["of_both"]["reasons"].shown]
+    assert shared
+    assert all(text.count(reason) == 1 for reason in shared)
+    assert "Not decided of either, for the same reasons: " in text
+
+
+def test_warnings_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    checks = [{"check_id": "c", "severity": "warning", "message": f"warning {n}: {'word ' * 20}"} for n in range(9)]
+    drive = {**case.finding.drive, "quality": [*checks, {**checks[0], "message": "word " * 200}]}
+    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    assert re.search(r"warning 1: [word ]+; and 8 more in report.html", page)
+    drive = {**drive, "quality": drive["quality"][-1:]}
+    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    assert "word ... (in full in report.html)</p>" in page
+
+
+def test_contacts_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
+    case = case_of("safe-distance-ahead@collision")
+    rows = case.result.findings
+    touched = rows.filter(pc.is_in(rows["rule_id"], pa.array(["ukhc.contact-signature"])))
+    more = replace(case, result=replace(case.result, findings=pa.concat_tables([rows, touched, touched])))
+    n = len(content(case)["contacts"].shown)
+    assert content(more)["contacts"].more == n + 2 * touched.num_rows - 2 > 0
+    assert f"And {n + 2 * touched.num_rows - 2} more contact" in render(more).decode()
 
 
 def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from drivelint import demo
 from drivelint.pack import VerifyRequest, verify
+from tests.demo.overtakes import PROFILES
 from tests.explain.checked import check
 from tests.pack.packed import make_pack, numbers_without_drivelint
 from tests.shared_data import shared
@@ -45,7 +46,7 @@ def test_of_the_demo(tmp_path: Path) -> None:
         mapping=None,
         rules=("all",),
         params=(),
-        profiles=(*demo.PROFILES, "observed"),
+        profiles=(*PROFILES, "observed"),
         robustness=False,
     )
     check_every_finding(make_pack(tmp_path / "result", tmp_path / "pack"), at_least=80)

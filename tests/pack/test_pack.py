@@ -213,11 +213,17 @@ def test_commands(
 def test_incident_sheets_that_stay_out_are_named(
     packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told = {"findings": [], "left_out": ["annotated/d.mcap", "incidents/abc.html"]}
+    told = {
+        "findings": [],
+        "incidents": ["data/incidents/d.html"],
+        "left_out": ["annotated/d.mcap", "incidents/abc.html"],
+    }
     monkeypatch.setattr("drivelint.pack.write_pack", lambda _request: told)
     assert run_cli(monkeypatch, "pack", packed.result, "--out", tmp_path / "pack") == 0
-    (_, line) = capsys.readouterr().out.splitlines()
-    assert line.endswith("not in it, so sign and keep them beside it: incidents/abc.html")
+    (first, line) = capsys.readouterr().out.splitlines()
+    assert first.endswith("; 1 incident sheet")
+    assert line.startswith("  not in it (sheets of no finding")
+    assert line.endswith(": incidents/abc.html")
 
 
 @pytest.mark.slow

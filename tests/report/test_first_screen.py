@@ -61,6 +61,10 @@ def section(text: str, name: str) -> str:
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
             "map: road.xodr fits 1 of 1 drive, but not 1 of 2 egos | log: complete | not judged: nothing",
         ),
+        (
+            result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),
+            "map: road.xodr fits 4 of 4 drives | log: complete; copies, counted again: b of a, c of a | not judged: nothing",
+        ),
     ],
 )  # fmt: skip
 def test_page_and_terminal_say_the_same_of_map_and_logs(run: Result, line: str) -> None:

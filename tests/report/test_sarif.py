@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from datetime import date
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from drivelint.gate import GateInputs, Waiver
 from drivelint.report import sarif
-from drivelint.result.model import Result
+from drivelint.result import request
+from drivelint.result.request import RunRequest
+from drivelint.run import CheckOptions
 from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
 from tests.shared_data import shared
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.result.model import Result
 
 MIXED = [
     verdict("pass", profile="aggressive"),
@@ -58,6 +66,7 @@ HOSTILE = result(
         pytest.param(result([]), id="nothing"),
         pytest.param(result(MIXED, [finding()]), id="mixed"),
         pytest.param(HOSTILE, id="hostile"),
+        pytest.param(replace(HOSTILE, asked=RunRequest(named={"d1": "C:/\udcff log #1%/2.csv"})), id="named"),
         pytest.param(gated(finding(), finding(object_id="4", finding_id="x"), base=[finding()]), id="gated"),
     ],
 )
@@ -96,6 +105,37 @@ def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
     assert said["t_utc"] is None
     assert "baselineState" not in found
     assert "suppressions" not in found
+
+
+def named(run: Result, **paths: str) -> Result:
+    return replace(run, asked=RunRequest(named=paths))
+
+
+def test_a_log_has_its_path_from_the_folder_of_the_check() -> None:
+    """As code scanning needs it to find the file; a log outside that folder has its name alone."""
+    drives = [drive(), drive("d2", file_name="a b.csv")]
+    run = log(named(result(MIXED, [finding(), finding(drive_id="d2")], drives=drives), d2="logs #1/wet:day/a b.csv"))
+    assert "%SRCROOT%" in run["originalUriBaseIds"]
+    first, second = (artifact["location"] for artifact in run["artifacts"])
+    assert first == {"uri": "d1.csv"}
+    assert second == {"uri": "logs%20%231/wet%3Aday/a%20b.csv", "uriBaseId": "%SRCROOT%"}
+    places = [found["locations"][0]["physicalLocation"]["artifactLocation"] for found in run["results"]]
+    assert places == [{**first, "index": 0}, {**second, "index": 1}]
+    assert "originalUriBaseIds" not in log(result(MIXED, [finding()]))
+
+
+def test_the_path_is_kept_with_the_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (work := tmp_path / "work").mkdir()
+    monkeypatch.chdir(work)
+    options = CheckOptions(traces=())
+    asked = RunRequest.from_options(
+        options, {"d2": "drives/../logs/b.csv", "d1": str(work / "a.csv"), "d3": "../c.csv"}
+    )
+    assert asked.named == {"d1": "a.csv", "d2": "logs/b.csv"}
+    (tmp_path / "run.json").write_bytes(request.render(asked, tmp_path))
+    monkeypatch.chdir(tmp_path)
+    run = log(replace(result([verdict("fail")], [finding()]), folder=tmp_path))
+    assert run["artifacts"][0]["location"] == {"uri": "a.csv", "uriBaseId": "%SRCROOT%"}
 
 
 def test_a_finding_has_its_time_in_utc_where_the_log_has_one() -> None:

@@ -86,7 +86,7 @@ class CheckResult(TableSet):
             return None
         import pyarrow.parquet as pq
 
-        return Table(pq.read_table(self._margins_file))
+        return Table(pq.read_table(self._margins_file), "margin")
 
     @overload
     def report(self, path: None = None, *, to: ReportFormat = "html") -> str: ...

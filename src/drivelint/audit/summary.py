@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
+from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
+MOST_COPIES: Final = 3
 
 
 @dataclass
@@ -30,7 +32,8 @@ class AuditSummary:
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
     `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
-    their end. `copies`: drives whose logs have the content of another one's. `contacts`: drives with a contact that is sure or was not
+    their end. `copies`: judged drives whose logs have the content of another one's: of a whole audit, way, time, findings, contacts and
+    unknown verdicts are those of each content once, as on the fleet page. `contacts`: drives with a contact that is sure or was not
     examined; `contacts_possible`: the others with one. In `findings`, a touch of two egos counts once; `possible`: those that are only
     possible.
     """
@@ -60,7 +63,8 @@ class AuditSummary:
     broken: list[dict[str, Any]] = field(default_factory=list)
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
-    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged."""
+    copied: list[dict[str, Any]] = field(default_factory=list)
+    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`)."""
 
     def count(self, receipt: Receipt) -> None:
         """Add a drive."""
@@ -79,7 +83,19 @@ class AuditSummary:
 
     def plus(self, other: AuditSummary) -> AuditSummary:
         """Return what both come to together, but for what is only told of a whole audit."""
-        names = ("n_drives", "judged", "lossy", "off_map", "refused", "quarantined", "km", "hours", "unknown", "errors")
+        names = (
+            "n_drives",
+            "judged",
+            "lossy",
+            "off_map",
+            "refused",
+            "quarantined",
+            "copies",
+            "km",
+            "hours",
+            "unknown",
+            "errors",
+        )
         both = {name: getattr(self, name) + getattr(other, name) for name in names}
         return replace(self, **both, failed=dict(Counter(self.failed) + Counter(other.failed)))
 
@@ -111,7 +127,8 @@ def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
-    event = statement("fleet/event", of="", least_share=str(LEAST_SHARE))
+    create_counted_views(con)
+    event = statement("fleet/event", of=COUNTED, least_share=str(LEAST_SHARE))
     broken, contacts, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
@@ -122,6 +139,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         reused=n_reused,
         **contacts.to_pylist()[0],
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
+        unknown=pc.sum(unknown_for["n"]).as_py() or 0,
         digest=tables_digest(con),
         findings={
             each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])
@@ -129,4 +147,5 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         broken=broken.slice(0, MOST_RULES).to_pylist(),
         unknown_for=unknown_for.slice(0, MOST_REASONS).to_pylist(),
         not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
+        copied=con.execute(statement("audit/copied"), {"most": MOST_COPIES}).to_arrow_table().to_pylist(),
     )

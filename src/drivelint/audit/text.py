@@ -20,17 +20,17 @@ def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
 
 
 def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
-    yield f"{plural(counted.n_drives, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
+    yield f"{plural(counted.n_drives - counted.copies, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
     states = (
-        f"{counted.judged} judged",
+        f"{counted.judged - counted.copies} judged",
         f"{counted.refused} refused" if counted.refused else "",
         f"{counted.quarantined} quarantined" if counted.quarantined else "",
         f"{counted.lossy} lossy" if counted.lossy else "",
         f"{counted.off_map} off their map" if counted.off_map else "",
-        f"{counted.copies} with the content of another one, counted again" if counted.copies else "",
         f"{counted.reused} had a result already" if counted.reused else "",
     )
     yield ", ".join(state for state in states if state)
+    yield from _copies(counted, out)
     if counted.missing_parts:
         of = (
             ""
@@ -66,6 +66,19 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
+
+
+def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
+    """Yield how many logs have the content of another one, and the first of them."""
+    if not counted.copies:
+        return
+    has = "has" if counted.copies == 1 else "have"
+    yield f"{plural(counted.copies, 'more log')} {has} the content of another one: each content counts once"
+    for row in counted.copied:
+        yield f"  {row['log']}: a copy of {row['other']}"
+    if counted.copied and (more := counted.copies - len(counted.copied)):
+        query = "SELECT log_sha256, list(log) FROM receipts GROUP BY ALL HAVING count(*) > 1"
+        yield f'  and {more} more: drivelint sql {out} "{query}"'
 
 
 def _contacts(counted: AuditSummary) -> str:

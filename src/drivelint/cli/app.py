@@ -216,16 +216,20 @@ def check(
 
 
 @app.command()
-def demo(out: Annotated[Path, option("--out", "DIR", "Folder for the logs and their road.")] = Path("demo")) -> None:
+def demo(
+    folder: Annotated[Path | None, argument("[DIR]", "Folder for the logs and their road. Default: demo.")] = None,
+    *,
+    out: Annotated[Path | None, option("--out", "DIR", "The same folder.")] = None,
+) -> None:
     """Write drives to try drivelint on.
 
     Three overtakes at two speeds, as ASAM OSI in MCAP, and their road. Prints the command that checks them.
     """
     from drivelint import demo
 
-    written = demo.write(out)
-    typer.echo(f"{out}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
-    typer.echo(demo.check_command(out, sys.argv[0]))
+    written = demo.write(place := values.one_folder(folder, out, Path("demo")))
+    typer.echo(f"{place}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
+    typer.echo(demo.check_command(place, sys.argv[0]))
 
 
 @app.command()

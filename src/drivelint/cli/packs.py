@@ -112,14 +112,17 @@ def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
     signed = "signed" if request.key else "not signed"
     left = told.get("findings_left_out")
     less = f"; {plural(left, 'finding')} of less weight left out (drivelint pack --findings all)" if left else ""
-    said = f"{signed}; {n} of {len(findings)} findings have SQL that gives their margin{less}"
+    pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
+    sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
+    said = f"{signed}; {n} of {len(findings)} findings have SQL that gives their margin{less}{sheets}"
     typer.echo(f"{inert_line(str(request.out))}: {said}", err=err)
     for finding in findings:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
             typer.echo(inert_line(why), err=err)
-    if sheets := [name for name in told["left_out"] if name.startswith("incidents/")]:
-        typer.echo(inert_line(f"  not in it, so sign and keep them beside it: {', '.join(sheets)}"), err=err)
+    if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
+        why = "sheets of no finding of the result, and PDFs without the page that is written now"
+        typer.echo(inert_line(f"  not in it ({why}): {', '.join(left_out)}"), err=err)
 
 
 def verify(

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from drivelint.drive.trace import EgoSize
 
 
@@ -38,6 +40,13 @@ def parse_memory(text: str | None) -> int | None:
     if size < LEAST_MEMORY:
         raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY // 10**6}MB")
     return size
+
+
+def one_folder(argument: Path | None, option: Path | None, default: Path) -> Path:
+    """Return the folder that an argument or `--out` names. Errors: `UsageError` where they name two."""
+    if argument is not None and option not in {None, argument}:
+        raise UsageError(f"{argument} and --out {option}: give one folder")
+    return argument or option or default
 
 
 def check_confidence(confidence: float | None, robustness: bool) -> None:

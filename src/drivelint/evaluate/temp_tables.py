@@ -49,6 +49,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
         row |= {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags}
+        row |= {"by_object": rule.combine == "each"}
         limits = applicability.bound_values(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
     return pa.Table.from_pylist(rows)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT
+from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.missing import Missing, missing
 from drivelint.fleet.rates import Rate, rates
@@ -35,11 +36,6 @@ MAX_DRIVES: Final = 50
 """Drives in a table."""
 MAX_CHANGES: Final = 50
 """Findings of each standing against a baseline."""
-_SAME: Final = {
-    "verdicts": "ego_id, rule_id, profile, object_id, occurrence, ref_id, t_start_ns, verdict",
-    "findings": "ego_id, rule_id, profile, object_id, t_start_ns, t_end_ns",
-}
-"""Table -> what makes two rows of logs of one content the same."""
 
 
 @dataclass(frozen=True)
@@ -129,9 +125,8 @@ class FleetContent:
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
     """Return what there is to say of an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
-    for table, same in _SAME.items():
-        con.execute(statement("fleet_report/counted", table=table, columns=same))
-    event = statement("fleet/event", of="counted_", least_share=share)
+    create_counted_views(con)
+    event = statement("fleet/event", of=COUNTED, least_share=share)
     (totals,) = rows(con, "drives")
     (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
     worst = rows(
@@ -155,7 +150,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         audit=audit,
         totals=totals,
         severities={row["severity"]: row for row in rows(con, "severities", event=event)},
-        verdicts=verdict_counts(con, "counted_"),
+        verdicts=verdict_counts(con, COUNTED),
         rules=rules,
         rates=found,
         axis=log_axis(rate.per_100km for rate in found if rate.findings),

@@ -74,14 +74,15 @@ def render(case: Case) -> bytes:
     return text.encode("utf-8", "replace")
 
 
-def open_case(request: IncidentRequest) -> Case:
+def open_case(request: IncidentRequest, asked: RunRequest | None = None) -> Case:
     """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
 
+    `asked`: the run with the paths at which its files are now; None: they are where `run.json` says.
     Errors: `UsageError` for a finding, log or map that is not there.
     """
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
-    asked = run_request.load(request.folder)
+    asked = asked or run_request.load(request.folder)
     judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(
@@ -94,10 +95,12 @@ def open_case(request: IncidentRequest) -> Case:
         map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
-    return Case(result, asked, finding, drive, again, _other_party(request, result, finding, judge), source)
+    return Case(result, asked, finding, drive, again, _other_party(request, asked, result, finding, judge), source)
 
 
-def _other_party(request: IncidentRequest, result: Result, finding: NamedFinding, judge: Judge) -> Judged | str | None:
+def _other_party(
+    request: IncidentRequest, asked: RunRequest, result: Result, finding: NamedFinding, judge: Judge
+) -> Judged | str | None:
     """Return what is judged of the other party as ego, or why it is not."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
     if other is None:
@@ -108,7 +111,6 @@ def _other_party(request: IncidentRequest, result: Result, finding: NamedFinding
             for table in (result.verdicts, result.findings)
         ]
         return Judged(rows[0], rows[1], result.verdicts.slice(0, 0))
-    asked = run_request.load(request.folder)
     # what the options say of the ego is not said of another vehicle
     asked = replace(asked, ego_size=None)
     drive, _ = open_drive(request.folder, asked, drive_id, other, trace=_log(request, asked, finding), map_=request.map)

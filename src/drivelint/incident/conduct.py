@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT, EXCUSES
 from drivelint.incident.breaches import broken_line, kept_line, quoted, without_advice
+from drivelint.incident.fitting import Reason
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
 from drivelint.result.counts import SEVERITIES, grouped
 
@@ -15,14 +16,6 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _UNDECIDED: Final = frozenset({"unknown", "error"})
-_ROOM: Final = {"broken": 820, "kept": 300, "excused": 80, "reasons": 350}
-"""Characters that each part has on the page at least; the number of what is left out is told."""
-_WASTE: Final = {"broken": 30}
-"""Characters that the end of a text's last line leaves empty, where each text begins a line."""
-_ALL_ROOM: Final = 3300
-"""Characters of all parts of both parties: what one does not use, the others may."""
-_SECOND_ROOM: Final = 110
-"""Characters that fit where the table second by second has a row less than its most."""
 
 
 def conduct(
@@ -82,54 +75,18 @@ def conduct(
     }
 
 
-class Fitting(NamedTuple):
-    """The first of some texts, and how many more there are."""
-
-    shown: list[str]
-    more: int
-
-
-def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
-    """Cut the lists of what both parties did to what fits into two columns that share their room.
-
-    `seconds_left`: rows that the table second by second does not fill; `taken`: characters of other lines.
-    """
-    parts = [(told, name, room) for name, room in _ROOM.items() for told in parties if name in told]
-    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken
-    spare -= sum(min(_length(told[name], name), room) for told, name, room in parts)
-    for told, name, room in parts:
-        need = min(room, _length(told[name], name))
-        told[name] = _fitting(told[name], name, need + max(spare, 0))
-        spare -= max(_length(told[name].shown, name) - need, 0)
-
-
-def _length(texts: Sequence[str], part: str) -> int:
-    """Return the room that texts of a part take, in characters."""
-    return sum(len(text) + _WASTE.get(part, 2) for text in texts)
-
-
-def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
-    """Return as many of the texts as fit, at least one."""
-    shown = list(texts[:1])
-    for text in texts[1:]:
-        if _length([*shown, text], part) > room:
-            break
-        shown.append(text)
-    return Fitting(shown, len(texts) - len(shown))
-
-
 def _within(row: Row, span: tuple[int, int]) -> bool:
     start, end = row["t_start_ns"], row["t_end_ns"]
     return start is None or end is None or (start <= span[1] and end >= span[0])
 
 
-def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[str]:
-    """Return why rules are not decided, in words, the reason of most rules first."""
+def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
+    """Return why rules are not decided, the reason of most rules first."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     told = []
     for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
-        titles = [quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows})]
+        titles = tuple(quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows}))
         given = (verdict_reason(row) for row in rows)
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
-        told.append((-len(titles), why, f"{', '.join(titles)}: {why}"))
-    return [text for *_, text in sorted(told)]
+        told.append(Reason(why, titles))
+    return sorted(told, key=lambda reason: (-len(reason.titles), reason))

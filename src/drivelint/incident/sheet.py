@@ -15,7 +15,8 @@ from drivelint.convert import CLIP
 from drivelint.engine.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
-from drivelint.incident.conduct import conduct, fit
+from drivelint.incident.conduct import conduct
+from drivelint.incident.fitting import SHARED_HEAD, Fitting, first_fitting, fit, shared_reasons
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, others_drawn, overtaking, party
@@ -47,6 +48,8 @@ _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
 """Characters of the columns that warnings on the log take, or what a clip was cut from."""
+_WARNING_ROOM: Final = 300
+_MOST_CONTACTS: Final = 2
 
 
 def content(case: Case) -> dict[str, Any]:
@@ -86,13 +89,13 @@ def content(case: Case) -> dict[str, Any]:
         "against": None if at is None else against_each_other(float(motion.relative[at]), row["closing_mps"]),
         "gap": None if at is None else _metres(float(motion.gap[at])),
         "least": _least_gap(motion, finding),
-        "contacts": _told_contacts(case),
+        "contacts": Fitting((told := _told_contacts(case))[:_MOST_CONTACTS], max(len(told) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
         **_plan(case),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
-        "conduct": _conduct(case, span, MOST_ROWS - len(rows)),
+        **_conduct(case, span, MOST_ROWS - len(rows)),
         "span": {
             "of": span,
             "before": figure((finding.moment_ns - span[0]) / 1e9, 1),
@@ -104,7 +107,7 @@ def content(case: Case) -> dict[str, Any]:
         "sure": _surest(case),
         "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
-        "quality": _warnings(case),
+        "quality": _told_warnings(case),
         "again": same_finding(case.again.findings, row),
         "source": case.source,
         "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
@@ -192,11 +195,17 @@ def _told_contacts(case: Case) -> list[str]:
             told.append(
                 f"at {at}, by the rule \u201c{titles[row['rule_id']]}\u201d (finding {row['finding_id'][:8]}{sure})"
             )
-    return told[:2]
+    return told
 
 
 def _warnings(case: Case) -> list[str]:
     return [check["message"] for check in case.finding.drive["quality"] if check["severity"] != "info"]
+
+
+def _told_warnings(case: Case) -> Fitting:
+    """Return the first warnings on the log, and how many more there are; a long one is cut, and says where it stands in full."""
+    rest = " ... (in full in report.html)"
+    return first_fitting([shorten(told, _WARNING_ROOM, placeholder=rest) for told in _warnings(case)], _WARNING_ROOM)
 
 
 def _cut_from(case: Case) -> list[str]:
@@ -217,8 +226,8 @@ def _span(finding: NamedFinding) -> tuple[int, int]:
     return max(first, finding.start_ns), min(last, end_ns)
 
 
-def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> list[dict[str, Any]]:
-    """Return what each party did, by the verdicts on it as ego."""
+def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> dict[str, Any]:
+    """Return what each party did, by the verdicts on it as ego, and why rules are not decided of both."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     # the first party's findings were judged anew without copies
@@ -240,8 +249,10 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> list[dict[
             told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, touched=finding.is_contact)
         found.append(told)
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
-    fit(found, seconds_left, beside + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
-    return found
+    of_both = {**shared_reasons(found), "in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
+    lines = beside + SHARED_HEAD * bool(of_both["reasons"])
+    fit([*found, of_both], seconds_left, lines + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
+    return {"conduct": found, "of_both": of_both}
 
 
 def _surest(case: Case) -> dict[str, Any]:

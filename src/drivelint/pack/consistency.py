@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from drivelint import __version__, catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
-from drivelint.pack import again, finding_rows, finding_sql, signature
+from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
 from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
 """What reading files raises that are not as drivelint writes them. Whoever signs a pack may put anything into it."""
-_NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "findings", "left_out")
+_NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "incidents", "findings", "left_out")
 _REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 
 
@@ -85,6 +85,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
+    keys += sheets.misnamed(folder, evidence, result.findings["finding_id"].to_pylist())
     wrong = [Problem("evidence.json does not fit the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
@@ -128,6 +129,7 @@ def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
 def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
     """Return the files of the payload that nothing in `evidence.json` names: they are not evidence of anything."""
     named = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
+    named |= set(sheets.said(evidence))
     inside = evidence["inputs"] or {"traces": {}}
     places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
     places += [inside.get("map"), inside.get("map_dir")]

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.pack import again, audits, bag, consistency, signature, timestamp
+from drivelint.pack import again, audits, bag, consistency, sheets, signature, timestamp
 from drivelint.pack.bag import Problem
 from drivelint.pack.contents import RESULT, inside, library_versions
 from drivelint.pack.inputs import judged, located
@@ -123,6 +123,8 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
         if evidence["inputs"] is None and not request.traces:
             wrong, told = consistency.of_findings(request.folder, result, asked)
             notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
+            if sheets.said(evidence):
+                notes.append("its incident sheets are as the pack says: they are written again only with the logs")
             return "not judged again", wrong, notes
     except consistency.UNREADABLE as error:
         return "", [Problem("evidence.json not readable", str(error))], notes
@@ -132,6 +134,8 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
         if request.traces or request.map is not None:
             raise
         return "", [Problem("inputs do not fit the result", str(error))], notes
+    if sheets.said(evidence) and evidence["packed_with"] != library_versions():
+        notes.append("packed with other versions of libraries: its incident sheets are not written again")
     judging, wrong = _of_result(request.folder, stated, asked)
     return judging, wrong, notes
 
@@ -147,6 +151,8 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
         notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
     if evidence["not_judged"]:
         notes.append(f"not judged when it was checked, nor now: {', '.join(evidence['not_judged'])}")
+    if sheets.has_printed(evidence):
+        notes.append("an incident sheet as PDF is as the pack says: the page beside it is what is written again")
     if result.gate is not None:
         notes.append("baseline and waivers are as the pack says: they are not held against anything again")
     return notes
@@ -170,6 +176,7 @@ def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, li
     """Judge the drives again; return in words what came out, and the files that came out otherwise."""
     result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
+    other_libraries = stated.evidence["packed_with"] != library_versions()
     try:
         with TemporaryDirectory(prefix="drivelint-") as work:
             fresh = again.check_again(result, asked, Path(work) if margins else None)
@@ -182,6 +189,8 @@ def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, li
         for name, contents in again.finding_evidence(result, asked).items():
             if isinstance(contents, dict):
                 files |= {f"data/findings/{name}/{file}": content for file, content in contents.items()}
+        if not other_libraries:
+            files |= sheets.again(folder / RESULT, stated.evidence, asked)
     except DriveLintError as error:
         return "", [Problem("result not reproduced", str(error))]
     whole = result.drives.num_rows == fresh.drives.num_rows
@@ -189,7 +198,6 @@ def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, li
         f"{RESULT}/{name}.parquet": parquet_bytes(_judged_rows(result, name), table)
         for name, table in ({} if whole else TABLE_OF_FILE).items()
     }
-    other_libraries = stated.evidence["packed_with"] != library_versions()
     wrong, other_bytes = again.compared(folder, files, packed, other_libraries=other_libraries)
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()

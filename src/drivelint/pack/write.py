@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint import __version__
 from drivelint.audit.bucket import as_url
 from drivelint.errors import UsageError
-from drivelint.pack import again, audits, bag, contents, signature, timestamp
+from drivelint.pack import again, audits, bag, contents, sheets, signature, timestamp
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
 from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
 from drivelint.pack.inputs import located
@@ -33,12 +33,13 @@ PUBLIC_KEY: Final = "public-key.pem"
 
 
 class _Checked(NamedTuple):
-    """A result with its check, rules and evidence."""
+    """A result with its check, rules, evidence and incident sheets (path in the pack -> content)."""
 
     result: Result
     asked: RunRequest
     rules: list[Rule]
     found: again.Evidence
+    incidents: dict[str, bytes]
 
 
 def write_pack(request: PackRequest) -> dict[str, Any]:
@@ -108,7 +109,8 @@ def _content(request: PackRequest) -> Content:
     result = load_result(request.folder)
     asked = run_request.load(request.folder)
     asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
-    checked = _Checked(result, asked, again.rules_of(result, asked), again.finding_evidence(result, asked))
+    rules, found = again.rules_of(result, asked), again.finding_evidence(result, asked)
+    checked = _Checked(result, asked, rules, found, sheets.of_result(request.folder, result, asked))
     return Content(
         lambda work: _payload(work, request, checked),
         lambda work, told: statement(work, result, summary_of(work), told),
@@ -116,7 +118,7 @@ def _content(request: PackRequest) -> Content:
 
 
 def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, Any]:
-    result, asked, rules, found = checked
+    result, asked, rules, found, incidents = checked
     copied = [request.folder / name for name in sorted(contents.OUTPUTS) if (request.folder / name).is_file()]
     (work / RESULT).mkdir(parents=True)
     for path in copied:
@@ -128,11 +130,15 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
     for name, files in found.items():
         if isinstance(files, dict):
             write_files(files, work / "data" / "findings" / name, work)
+    for sheet, content in incidents.items():
+        (work / sheet).parent.mkdir(exist_ok=True)
+        (work / sheet).write_bytes(content)
     copy_rules(rules, work)
     named = asked.mapping is not None and Path(asked.mapping).is_file()  # else it is a shipped one, or none
     mapping = copy(Path(str(asked.mapping)), work / "data" / "mapping", work) if named else None
     inputs = _copied_inputs(work, asked) if request.with_inputs else None
-    left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in copied]
+    taken = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
+    left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in taken]
     told = {
         "evidence": contents.FORM,
         **contents.facts(work, result, asked),
@@ -140,6 +146,7 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
         "mapping": mapping,
         "rules_dirs": copy_rules_dirs(asked.rules_dirs, work),
         "inputs": inputs,
+        **({"incidents": list(incidents)} if incidents else {}),
         "findings": contents.findings(result.findings.to_pylist(), found),
         "left_out": [path.relative_to(request.folder).as_posix() for path in left],
     }

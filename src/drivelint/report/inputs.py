@@ -1,4 +1,4 @@
-"""What a run was given, in one line for every report: whether the map fits, whether the logs are whole, what was not judged."""
+"""What a run was given, in one line: whether the map fits, whether logs are whole and none is there twice, what was not judged."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: what was lost of them, what their mappings assume, and the number of warnings."""
+    """Return whether the logs are complete: what was lost of them, what their mappings assume, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"]]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == _ASSUMED})
@@ -77,7 +77,18 @@ def _log(drives: Sequence[Row]) -> InputNote:
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
         parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _NAMED)})")
-    return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned))
+    parts += (copied := _copies(drives))
+    return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
+
+
+def _copies(drives: Sequence[Row]) -> list[str]:
+    """Return which logs have the content of another one under another name, in words: their findings are counted once more."""
+    same = counts.grouped(drives, lambda drive: drive["sha256"]).values()
+    copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]
+    if not copied:
+        return []
+    told = [f"{copy} of {first}" for copy, first in sorted(copied)]
+    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _NAMED)}"]
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:

@@ -14,7 +14,7 @@ from urllib.parse import quote
 from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.report.worst_first import moment_ns, when
-from drivelint.result import counts
+from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt
 from drivelint.result.model import exit_status, gating_findings
 from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, with_count
@@ -29,7 +29,10 @@ SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/sche
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
 """Severity -> level. A draft's findings are notes, whatever their severity: they do not gate."""
 
+ROOT: Final = "%SRCROOT%"
+"""Base of the paths of logs: the folder in which the check ran, which for code scanning is that of the repository."""
 _STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
+_ROOT_SAID: Final = {"description": {"text": "The folder in which drivelint check ran."}}
 _NOTICES: Final = {
     "unknown": "A rule could not be judged",
     "error": "A rule could not be run",
@@ -57,6 +60,7 @@ class _Run:
         self._gating = frozenset(gating_findings(result)["finding_id"].to_pylist())
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
+        self._paths = _logs_as_named(result)
 
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
@@ -81,7 +85,8 @@ class _Run:
         return {
             "tool": {"driver": driver},
             "invocations": [invocation],
-            "artifacts": [_artifact(drive) for drive in self._logs],
+            **({"originalUriBaseIds": {ROOT: _ROOT_SAID}} if self._paths else {}),
+            "artifacts": [_artifact(drive, self._uri(drive)) for drive in self._logs],
             "results": [self._finding(row) for row in result.findings.to_pylist()],
             "properties": properties,
         }
@@ -127,10 +132,16 @@ class _Run:
                 found["suppressions"] = []  # SARIF: where some results are suppressed, the others say that they are not
         return found
 
+    def _uri(self, drive: Row) -> dict[str, str]:
+        """Return the place of a log: its path from the folder of the check, or its name alone where that is not known."""
+        if path := self._paths.get(drive["drive_id"]):
+            return {"uri": _quoted(path), "uriBaseId": ROOT}
+        return {"uri": _quoted(drive["file_name"])}
+
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
         """Return a log as a place, and within it, if a finding is given, whom it is about and where it was."""
         drive_id = drive["drive_id"]
-        artifact = {"uri": _uri(drive["file_name"]), "index": self._artifact_index[drive_id]}
+        artifact = {**self._uri(drive), "index": self._artifact_index[drive_id]}
         place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
             # a log has no lines; code scanning of GitHub shows no result without one
@@ -170,6 +181,15 @@ class _Run:
             yield _notice("waiver", "warning", text)
 
 
+def _logs_as_named(result: Result) -> Mapping[str, str]:
+    """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
+    if result.asked is not None:
+        return result.asked.named
+    if result.folder is None or not (result.folder / request.RUN_FILE).is_file():
+        return {}
+    return request.load(result.folder).named
+
+
 def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:
     params = [f"{p['name']} = {p['value']}{' ' + p['unit'] if p['unit'] else ''}" for p in rule["params"]]
     lines = [rule["clause"], rule["hypothesis"], f"Derived as: {rule['derivation']}. Status: {rule['status']}."]
@@ -191,9 +211,9 @@ def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:
     }
 
 
-def _artifact(drive: Row) -> dict[str, Any]:
+def _artifact(drive: Row, location: Mapping[str, str]) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "location": {"uri": _uri(drive["file_name"])},
+        "location": dict(location),
         "roles": ["analysisTarget"],
         "properties": {"driveId": drive["drive_id"], "status": drive["status"], "map": drive["map_name"]},
     }
@@ -216,6 +236,6 @@ def _since(t_ns: int | None, start_ns: int | None) -> float | None:
     return None if t_ns is None else (t_ns - (start_ns or 0)) / 1e9
 
 
-def _uri(name: str) -> str:
-    """Return a file's name as a relative URI; a colon in it must not be read as a scheme's."""
-    return quote(name, safe="", errors="surrogateescape")
+def _quoted(path: str) -> str:
+    """Return a file's path as a relative URI; a colon in it must not be read as a scheme's."""
+    return quote(path, safe="/", errors="surrogateescape")

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, field, fields
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Final
 
 import msgspec
@@ -24,10 +24,12 @@ _PATHS: Final = ("map", "map_dir")
 class RunRequest(DriveInput):
     """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
 
+    `named`: drive_id -> that path from the folder in which the check ran, with `/`; a log outside that folder has none.
     `ego` is what was given: the egos that were judged are those of the verdicts.
     """
 
     traces: dict[str, str] = field(default_factory=dict)
+    named: dict[str, str] = field(default_factory=dict)
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
@@ -35,8 +37,9 @@ class RunRequest(DriveInput):
     @classmethod
     def from_options(cls, given: DriveInput, traces: dict[str, str]) -> RunRequest:
         """Return what was asked with the options of `check`, of which all but the traces are kept as they are."""
-        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name != "traces"}
-        return cls(**kept, traces=traces)
+        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name not in {"traces", "named"}}
+        named = {drive: path for drive, path in sorted((name, _named(path)) for name, path in traces.items()) if path}
+        return cls(**kept, traces=traces, named=named)
 
 
 def render(asked: RunRequest, out: Path) -> bytes:
@@ -72,6 +75,16 @@ def load(folder: Path) -> RunRequest:
         ) from error
     except (OSError, ValueError, KeyError, TypeError, AttributeError, msgspec.ValidationError) as error:
         raise UsageError(f"{file}: not what drivelint writes: check the drives again") from error
+
+
+def _named(path: str) -> str:
+    """Return a path from the working folder, through links as it was given if it can be; '' for one outside."""
+    here = Path.cwd()
+    as_given = PurePath(os.path.abspath(path))  # noqa: PTH100 - resolve() follows links
+    for whole in (as_given, Path(path).resolve()):
+        if whole.is_relative_to(here):
+            return whole.relative_to(here).as_posix()
+    return ""
 
 
 def _relative(path: str, out: Path) -> str:

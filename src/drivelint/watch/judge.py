@@ -63,7 +63,7 @@ class JudgedWindow:
         return sorted({(row["rule_id"], row["reason"]) for row in rows.to_pylist()})
 
     def margins_since(self, t_ns: int | None) -> list[Row]:
-        """Return the steps of the courses after a time, None: all, with the columns of `margins.parquet`, in the order of time."""
+        """Return the steps of the courses after a time, None: all, with columns of `margins.parquet`, in the order of time."""
         same = ("drive_id", "ego_id", "rule_id", "profile", "object_id")
         steps = ("t_ns", "observed", "required", "margin", "holds")
         rows = [

@@ -115,7 +115,7 @@ class LiveServer:
         self._log(self._alarms, message, message["t_start_ns"])
 
     def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Publish judged steps, each on the topic of its rule; `rows` have the columns of `margins.parquet`."""
+        """Publish judged steps, each on the topic of its rule; `rows` have columns of `margins.parquet`."""
         for row in rows:
             told = {name: value for name, value in row.items() if name != "drive_id"}
             self._log(self._margins(row["rule_id"]), told, row["t_ns"])

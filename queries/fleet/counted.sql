@@ -1,4 +1,4 @@
--- The rows of a table, each row that logs of one content share only once.
+-- The rows of a table of an audit, each row that logs of one content share only once.
 CREATE OR REPLACE TEMP VIEW counted_{table} AS
 WITH content AS (
     SELECT key, coalesce(sha256, key) AS content, count(*) OVER (PARTITION BY coalesce(sha256, key)) AS n FROM drives WHERE status = 'judged'

@@ -1,0 +1,129 @@
+"""Fits what is told of both parties into the room of page 2: a reason loses its rules' titles before any reason is left out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.phrases import plural
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_ROOM: Final = {"broken": 820, "kept": 300, "excused": 80, "reasons": 350}
+"""Characters that each part has on the page at least; the number of what is left out is told."""
+_WASTE: Final = {"broken": 30}
+"""Characters that the end of a text's last line leaves empty, where each text begins a line."""
+_ALL_ROOM: Final = 3300
+"""Characters of all parts of both parties: what one does not use, the others may."""
+_SECOND_ROOM: Final = 110
+"""Characters that fit where the table second by second has a row less than its most."""
+_JOIN: Final = 2
+"""Characters between two texts."""
+SHARED_HEAD: Final = 100
+"""Characters of the head of the reasons that both parties share, with the end of the line before it."""
+_COUNTED: Final = 80
+"""Characters of the sentence that says where the titles are that were left out."""
+
+
+class Reason(NamedTuple):
+    """Why some rules are not decided, and the titles of these rules."""
+
+    why: str
+    titles: tuple[str, ...]
+
+    @property
+    def full(self) -> str:
+        """The reason with the titles of its rules."""
+        return f"{', '.join(self.titles)}: {self.why}"
+
+    @property
+    def short(self) -> str:
+        """The reason with the number of its rules."""
+        return f"{self.why} ({plural(len(self.titles), 'rule')})"
+
+
+class Fitting(NamedTuple):
+    """The first of some texts, how many more there are, and whether some of those shown are short forms."""
+
+    shown: list[str]
+    more: int
+    is_short: bool = False
+
+
+def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Take the reasons that all parties share, with the same rules, out of each; return them as a part of their own."""
+    given = [told["reasons"] for told in parties if "reasons" in told]
+    shared = [reason for reason in given[0] if all(reason in others for others in given[1:])] if len(given) > 1 else []
+    for told in parties:
+        if "reasons" in told:
+            told["reasons"] = [reason for reason in told["reasons"] if reason not in shared]
+    return {"reasons": shared}
+
+
+def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
+    """Cut the lists of what both parties did to what fits into two columns that share their room.
+
+    What the lists leave goes first to the reasons, until all are told. `seconds_left`: rows that the table second by second does not
+    fill; `taken`: characters of other lines.
+    """
+    parts = [
+        (told, name, min(_least(told[name], name), room))
+        for name, room in _ROOM.items()
+        for told in parties
+        if name in told
+    ]
+    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken - sum(room for *_, room in parts)
+    rooms = []
+    for told, name, room in parts:
+        more = min(_least(told[name], name) - room, max(spare, 0)) if name == "reasons" else 0
+        rooms.append(room + more)
+        spare -= more
+    for (told, name, _), room in zip(parts, rooms, strict=True):
+        fitting = _fitting_reasons if name == "reasons" else _fitting
+        told[name] = fitting(told[name], name, room + max(spare, 0))
+        spare -= max(_length(told[name].shown, name) + _COUNTED * told[name].is_short - room, 0)
+
+
+def first_fitting(texts: Sequence[str], room: int) -> Fitting:
+    """Return as many of some texts as fit into so many characters, at least one."""
+    return _fitting(texts, "", room)
+
+
+def _shortest(reasons: Sequence[Reason]) -> list[str]:
+    return [min(reason.short, reason.full, key=len) for reason in reasons]
+
+
+def _least(texts: Sequence[Any], part: str) -> int:
+    """Return the least room that all texts of a part take, in characters."""
+    if part != "reasons":
+        return _length(texts, part)
+    return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _COUNTED)
+
+
+def _length(texts: Sequence[str], part: str) -> int:
+    """Return the room that texts of a part take, in characters."""
+    return sum(len(text) + _WASTE.get(part, _JOIN) for text in texts)
+
+
+def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
+    """Return as many of the texts as fit, at least one."""
+    shown = list(texts[:1])
+    for text in texts[1:]:
+        if _length([*shown, text], part) > room:
+            break
+        shown.append(text)
+    return Fitting(shown, len(texts) - len(shown))
+
+
+def _fitting_reasons(reasons: Sequence[Reason], part: str, room: int) -> Fitting:
+    """Return the reasons in full, or the longest lists of titles as numbers, until all fit; then as many as fit."""
+    shown, shortest = [reason.full for reason in reasons], _shortest(reasons)
+    if _length(shown, part) <= room:
+        return Fitting(shown, 0)
+    for i in sorted(range(len(shown)), key=lambda i: (len(shortest[i]) - len(shown[i]), i)):
+        shown[i] = shortest[i]
+        if _length(shown, part) + _COUNTED <= room:
+            break
+    fitting = _fitting(shown, part, room - _COUNTED)
+    full = {reason.full for reason in reasons}
+    return fitting._replace(is_short=any(text not in full for text in fitting.shown))

@@ -1,0 +1,64 @@
+"""The incident sheets of a result in its pack: each page is written anew from the log, so a changed page is found."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint import incident
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+    from drivelint.result.model import Result
+    from drivelint.result.request import RunRequest
+
+SHEETS: Final = "data/incidents"
+_PAGE: Final = ".html"
+_PRINTED: Final = ".pdf"
+
+
+def of_result(folder: Path, result: Result, asked: RunRequest) -> dict[str, bytes]:
+    """Return path in the pack -> content of the sheets that lie in a result folder and are of its findings.
+
+    `asked` says where the logs are. A PDF is taken where the page beside it is as it is written anew: only then both tell the same.
+    """
+    ids = set(result.findings["finding_id"].to_pylist())
+    found = {}
+    for page in sorted((folder / incident.FOLDER).glob(f"*{_PAGE}")):
+        if page.stem in ids:
+            written = _page(folder, page.stem, asked)
+            printed = page.with_suffix(_PRINTED)
+            found[f"{SHEETS}/{page.name}"] = written
+            if printed.is_file() and page.read_bytes() == written:
+                found[f"{SHEETS}/{printed.name}"] = printed.read_bytes()
+    return found
+
+
+def again(result_folder: Path, evidence: Mapping[str, Any], asked: RunRequest) -> dict[str, bytes]:
+    """Return path in the pack -> content of the pages that a pack has, written anew from its logs. `result_folder`: of the pack."""
+    pages = [name for name in said(evidence) if name.endswith(_PAGE)]
+    return {name: _page(result_folder, PurePosixPath(name).stem, asked) for name in pages}
+
+
+def said(evidence: Mapping[str, Any]) -> list[str]:
+    """Return the files of sheets that `evidence.json` names. A pack without sheets does not speak of them."""
+    return list(evidence.get("incidents", ()))
+
+
+def has_printed(evidence: Mapping[str, Any]) -> bool:
+    """Whether a pack has a PDF, which nobody can write again."""
+    return any(name.endswith(_PRINTED) for name in said(evidence))
+
+
+def misnamed(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
+    """Return the sheets that `evidence.json` names and that are of no finding, are not there, or are a PDF without its page."""
+    pages = {f"{SHEETS}/{finding_id}{_PAGE}" for finding_id in finding_ids}
+    named = said(evidence)
+    due = pages | {name.removesuffix(_PAGE) + _PRINTED for name in pages & set(named)}
+    return [name for name in named if name not in due or not (folder / name).is_file()]
+
+
+def _page(folder: Path, finding_id: str, asked: RunRequest) -> bytes:
+    return incident.render(incident.open_case(incident.IncidentRequest(finding_id, folder), asked))
