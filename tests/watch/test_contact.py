@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +18,10 @@ from drivelint.engine.interruption import Interruption
 from drivelint.sql import store
 from drivelint.watch.alarms import AlarmLog
 from drivelint.watch.contact import RULE, ContactLook
-from drivelint.watch.judge import JudgedWindow
+from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
+from drivelint.watch.source import Frame
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S
 from tests.scenes import Actor, drive, moving, road, standing, times
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.drive.trace import Trace
+    from drivelint.drive.trace import IngestOptions, Trace
 
 KNOWN = catalogue.load_rules(())
 WAY = road()
@@ -163,3 +165,38 @@ def test_a_contact_is_said_before_its_window_is_judged() -> None:
     (alarm,) = (each for each in said if each["type"] == "alarm")
     assert (alarm["is_early"], alarm["t_s"]) == (True, 9.7)
     assert [each for each in said if each["type"] == "withdrawn"] == []
+
+
+class Going(Replay):
+    """A source that goes on by itself: its frames until 9.9 s, and the others while the window with those is judged."""
+
+    def __init__(self, path: Path, options: IngestOptions) -> None:
+        super().__init__(path, options, speed=0, every_ns=S)
+        self.in_step = self.is_due = False
+        self.rest_came = Event()
+        self._parts = [self._times[self._times <= 9.9 * S], self._times[self._times > 9.9 * S], self._times[:0]]
+
+    def read(self, timeout_s: float) -> list[Frame] | None:  # noqa: ARG002 - of all sources
+        if not self._parts:
+            return None
+        part = self._parts.pop(0)
+        if not len(part):
+            self.rest_came.set()
+        return [Frame(int(t_ns), None, 0) for t_ns in part]
+
+
+def test_the_latency_of_an_alarm_counts_what_came_while_its_window_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = WatchOptions(source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(RULE,))
+    source = Going(Path(asked.source), asked.ingest_options())
+    plain = WindowJudge.judge
+
+    def late(*words: Any) -> Any:
+        assert source.rest_came.wait(60)
+        return plain(*words)
+
+    monkeypatch.setattr(WindowJudge, "judge", late)
+    with Watch(asked, source, lambda _message: None, Interruption()) as watch:
+        watch.watch()
+    (alarm,) = watch.alarms.alarms
+    assert alarm.row["t_end_ns"] <= 9.9 * S
+    assert alarm.said_ns == 15 * S  # the log's end

@@ -320,9 +320,13 @@ class Watch:
             self._emit(messages.settled(row, self._start_ns))
         change = self.alarms.take(judged, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged.t_end_ns
+        # what came while the window was judged is known, too
+        now_ns = judged.t_end_ns + self._window.behind_ns
         for alarm in change.withdrawn:
-            self._emit(messages.withdrawn(alarm, judged.t_end_ns, self._start_ns))
-        self._say(change.new, judged.t_end_ns, self._start_ns)
+            self._emit(messages.withdrawn(alarm, now_ns, self._start_ns))
+        for alarm in change.new:
+            alarm.said_ns = now_ns
+        self._say(change.new, now_ns, self._start_ns)
         for alarm in change.over:
             self._emit(messages.over(alarm, self._start_ns))
         if self._warnings is not None:
