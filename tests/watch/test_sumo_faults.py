@@ -13,9 +13,10 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.engine.interruption import Interruption
 from drivelint.formats import read_trace
 from drivelint.report.progress import Silent
+from drivelint.watch.ending import check_recording
 from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
-from drivelint.watch.run import Watch, check_recording
+from drivelint.watch.run import Watch
 from drivelint.watch.sources import sumo
 from drivelint.watch.window import S
 from tests.sumo import world

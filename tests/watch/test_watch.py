@@ -19,8 +19,9 @@ from drivelint.report.progress import Silent
 from drivelint.result.files import parquet_bytes
 from drivelint.result.load import load_result
 from drivelint.result.model import exit_status
+from drivelint.watch.ending import check_recording
 from drivelint.watch.options import WatchOptions
-from drivelint.watch.run import Watch, check_recording
+from drivelint.watch.run import Watch
 from drivelint.watch.source import Frame
 from drivelint.watch.sources.choice import open_source
 from drivelint.watch.window import S

@@ -196,8 +196,9 @@ def _watch_and_check(
     from drivelint.report.outputs import write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages
+    from drivelint.watch.ending import check_recording, conclude
     from drivelint.watch.judge import WindowJudge
-    from drivelint.watch.run import Watch, check_recording, conclude
+    from drivelint.watch.run import Watch
     from drivelint.watch.server import open_server
     from drivelint.watch.sources.choice import open_source
 

@@ -1,0 +1,89 @@
+"""What follows the live part of a watch: the recording is checked, and what was said is held against the result."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from drivelint import run
+from drivelint.errors import ChangedLogError, TraceError
+from drivelint.phrases import plural
+from drivelint.result.model import exit_status
+from drivelint.watch import messages
+from drivelint.watch.window import S
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from drivelint.engine.interruption import Interruption
+    from drivelint.report.progress import Progress
+    from drivelint.result.model import Result
+    from drivelint.watch.messages import Message
+    from drivelint.watch.options import WatchOptions
+    from drivelint.watch.run import Watch
+
+
+def check_recording(
+    options: WatchOptions,
+    recording: Path,
+    work: Path | None,
+    watch: Watch,
+    *,
+    folder: Path,
+    progress: Progress,
+    interruption: Interruption,
+) -> Result:
+    """Check what was recorded as any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
+    if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
+        raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
+    try:
+        result = run.check(run.CheckOptions.judging((str(recording),), options, work), progress, interruption)
+    except ChangedLogError:
+        # another program goes on with it: what is there now is checked
+        copy = folder / recording.name
+        shutil.copy(recording, copy)
+        result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
+    if watch.watched.broken is not None:
+        why = f"the recording ended early: {watch.watched.broken}"
+        result = replace(result, ended_early=why, notes=(*result.notes, why))
+    halted = watch.watched.halted
+    if halted is None or watch.watched.halted_ns is None:
+        return result
+    start_ns = result.drives["t_start_ns"][0].as_py() or 0
+    told = (
+        f"halted at {(watch.watched.halted_ns - start_ns) / S:.2f} s by an alarm of {halted.row['rule_id']} "
+        f"at {(halted.row['t_start_ns'] - start_ns) / S:.2f} s"
+    )
+    return replace(result, halted=told, notes=(*result.notes, told))
+
+
+def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
+    """Say what the check of the whole log made of the alarms, then its verdicts. Return the counts in one sentence."""
+    missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
+    for alarm in watch.alarms.alarms:
+        emit(messages.confirmed(alarm))
+    late, other = watch.settled.hold_against(result.verdicts)
+    for row in late:
+        emit(messages.verdict(row))
+    for row in other:
+        emit(messages.revised(row))
+    status = exit_status(result)
+    alarms = watch.alarms.alarms
+    counts = {
+        "n_windows": len(watch.watched.busy_s),
+        "n_windows_not_judged": watch.watched.n_unjudged,
+        "n_verdicts_said_before_the_end": len(watch.settled),
+        "n_verdicts_revised": len(other),
+        "n_alarms": len(alarms),
+        "n_alarms_withdrawn": sum(alarm.withdrawn_ns is not None for alarm in alarms),
+        "n_alarms_that_are_findings": sum(bool(alarm.finding_ids) for alarm in alarms),
+        "n_findings": result.findings.num_rows,
+        "n_findings_without_alarm": len(missed),
+    }
+    emit(messages.end(counts, int(status.code), status.why))
+    return (
+        f"{plural(len(alarms), 'alarm')}, {counts['n_alarms_that_are_findings']} of them findings of the whole log, "
+        f"{counts['n_alarms_withdrawn']} withdrawn; {len(missed)} of {plural(result.findings.num_rows, 'finding')} without an alarm"
+    )
