@@ -153,12 +153,13 @@ def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.Complet
     }  # fmt: skip
 
 
-def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
-    _, out = checked
-    done = drivelint("check", *reversed(TRACES), *ON_ROAD, *SDA, *PROFILES, NO_COPIES, "--format", "json", "--quiet")
-    assert done.stdout == (out / "summary.json").read_text(encoding="utf-8")
-    assert done.stderr == ""
-    assert json.loads(done.stdout)["exit"]["code"] == done.returncode == 1
+def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.CompletedProcess[str], Path], ran: Ran) -> None:
+    _, folder = checked
+    asked = [*reversed(TRACES), *ON_ROAD, *SDA, *PROFILES, NO_COPIES]
+    code, out, err = ran("check", *asked, "--format", "json", "--quiet")
+    assert out == (folder / "summary.json").read_text(encoding="utf-8")
+    assert err == ""
+    assert json.loads(out)["exit"]["code"] == code == 1
 
 
 def test_fail_on_never(ran: Ran) -> None:

@@ -66,9 +66,9 @@ def judged_together(rules: Sequence[Rule]) -> dict[str, Judged]:
         n_cases += len(cases)
     told = {rule.id: Judged("", set()) for rule in rules}
     for groups in scenes.values():
-        for group, outcome in zip(groups, _outcomes(groups), strict=True):
-            before = told[group.rule.id]
-            told[group.rule.id] = Judged(before.problem or _problem(group, outcome), before.codes | _codes(outcome))
+        for asked, outcome in zip(groups, _outcomes(groups), strict=True):
+            before = told[asked.rule.id]
+            told[asked.rule.id] = Judged(before.problem or _problem(asked, outcome), before.codes | _codes(outcome))
     return told
 
 
