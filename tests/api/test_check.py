@@ -43,7 +43,8 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def checked(drives: Path) -> drivelint.CheckResult:
-    return drivelint.check([drives / "near-miss.mcap", drives / "safe.mcap"], map=drives / "road.xodr")
+    logs = [drives / "near-miss.mcap", drives / "safe.mcap"]
+    return drivelint.check(logs, map=drives / "road.xodr", robustness=False)  # the slow tests have copies
 
 
 def command_line(*args: object, code: int) -> None:
@@ -72,7 +73,7 @@ def test_write_writes_the_bytes_of_the_command_line(
     checked: drivelint.CheckResult, drives: Path, tmp_path: Path
 ) -> None:
     said = [drives / "near-miss.mcap", drives / "safe.mcap", "--map", drives / "road.xodr"]
-    command_line("check", *said, "--out", tmp_path / "a", "--no-annotate", code=1)
+    command_line("check", *said, "--out", tmp_path / "a", "--no-annotate", "--no-robustness", code=1)
     assert checked.write(tmp_path / "b") == tmp_path / "b"
     theirs, ours = files(tmp_path / "a"), files(tmp_path / "b")
     assert set(theirs) >= {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "run.json", "summary.json"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from drivelint.casefile import Case, judge
+from drivelint.casefile.merged_cases import CaseOutcome
 from drivelint.catalogue import Rule, read_rule
 
 if TYPE_CHECKING:
@@ -67,12 +68,25 @@ def verdicts(
     rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()
 ) -> list[Row]:
     """Return the verdict rows of a scene."""
-    return judge(rule, Case(name="scene", given=given, expect="pass", params=params or {}, missing=missing))[0]
+    return _outcome(rule, Case(name="scene", given=given, expect="pass", params=params or {}, missing=missing)).verdicts
 
 
 def findings(rule: Rule, given: dict[str, Any]) -> list[Row]:
     """Return the finding rows of a scene."""
-    return judge(rule, Case(name="scene", given=given, expect="pass"))[1]
+    return _outcome(rule, Case(name="scene", given=given, expect="pass")).findings
+
+
+_LAST: dict[str, CaseOutcome] = {}
+
+
+def _outcome(rule: Rule, case: Case) -> CaseOutcome:
+    """Judge a case, unless it was the last one: many tests look at a scene's verdicts, and then at its findings."""
+    key = repr((rule, case))
+    if key not in _LAST:
+        found = judge(rule, case)
+        _LAST.clear()
+        _LAST[key] = found
+    return CaseOutcome(*([dict(row) for row in rows] for rows in _LAST[key]))
 
 
 def brief(rows: list[Row]) -> list[tuple[str, str]]:

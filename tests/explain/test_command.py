@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("command")
-    check(out, rules=("ukhc.no-collision",), params=())
+    check(out, rules=("ukhc.no-collision",), params=(), robustness=False)
     return out
 
 

@@ -36,10 +36,19 @@ def lake_copy(filled: lake.Lake, tmp_path_factory: pytest.TempPathFactory) -> Pa
     return copy
 
 
+@pytest.fixture(scope="module")
+def ten(lake_copy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a copy with the pages of the ten worst drives; no test writes other pages into it."""
+    copy = tmp_path_factory.mktemp("ten") / "audit"
+    shutil.copytree(lake_copy, copy, ignore=lambda folder, _: ["drives"] if folder == str(lake_copy) else [])
+    assert ran("report", copy, "--drive-pages", 10).code == 0
+    return copy
+
+
 @pytest.fixture
-def ten(lake_copy: Path) -> Path:
-    assert ran("report", lake_copy, "--drive-pages", 10).code == 0
-    return lake_copy
+def own_ten(ten: Path, tmp_path: Path) -> Path:
+    """Return such a copy of a test's own."""
+    return tmp_path / shutil.copytree(ten, tmp_path / "audit").name
 
 
 def table(audit: Path, name: str) -> list[dict[str, Any]]:
@@ -136,29 +145,29 @@ def test_all_are_all_drives_of_the_audit(lake_copy: Path) -> None:
     assert lost["status_reason"] in words(page.find(".//header"))
 
 
-def test_pages_of_an_earlier_report_are_removed_and_nothing_else(ten: Path) -> None:
-    kept = [ten / "drives" / "notes.html", ten / "drives" / f"{'a' * 64}.html", ten / "summary.json"]
+def test_pages_of_an_earlier_report_are_removed_and_nothing_else(own_ten: Path) -> None:
+    kept = [own_ten / "drives" / "notes.html", own_ten / "drives" / f"{'a' * 64}.html", own_ten / "summary.json"]
     for file in kept[:2]:
         file.write_text("mine", encoding="utf-8")
-    listed = ten / "drives" / "pages.json"
+    listed = own_ten / "drives" / "pages.json"
     told = json.loads(listed.read_bytes())
     told["written_by_drivelint"] += ["summary.json", "drives/../summary.json", "drives/notes.html", "/etc/hostname"]
     listed.write_text(json.dumps(told), encoding="utf-8")
-    assert ran("report", ten, "--drive-pages", 2).code == 0
-    assert len(pages_in(ten)) == 2 + 2
-    assert ran("report", ten, "--drive-pages", 0).code == 0
-    assert pages_in(ten) == {f"drives/{file.name}" for file in kept[:2]}
+    assert ran("report", own_ten, "--drive-pages", 2).code == 0
+    assert len(pages_in(own_ten)) == 2 + 2
+    assert ran("report", own_ten, "--drive-pages", 0).code == 0
+    assert pages_in(own_ten) == {f"drives/{file.name}" for file in kept[:2]}
     assert not listed.exists()
-    assert links_of(ten) == []
+    assert links_of(own_ten) == []
     assert all(file.is_file() for file in kept)
     for file in kept[:2]:
         file.unlink()
 
 
 def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
-    ten: Path, monkeypatch: pytest.MonkeyPatch
+    own_ten: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = pages_in(ten)
+    before = pages_in(own_ten)
 
     def broken(*_: object) -> Any:
         yield drive_pages.page_name("new"), b"new"
@@ -167,11 +176,11 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
     monkeypatch.setattr(drive_pages, "pages", broken)
     monkeypatch.setattr(drive_pages, "choose", lambda *_: [drive_pages.page_name("new")])
     with pytest.raises(RuntimeError):
-        ran("report", ten)
+        ran("report", own_ten)
     monkeypatch.undo()
-    assert pages_in(ten) == {*before, drive_pages.page_name("new")}
-    assert ran("report", ten, "--drive-pages", 3).code == 0
-    assert pages_in(ten) == {drive_pages.page_name(key) for key in worst_keys(ten)[:3]}
+    assert pages_in(own_ten) == {*before, drive_pages.page_name("new")}
+    assert ran("report", own_ten, "--drive-pages", 3).code == 0
+    assert pages_in(own_ten) == {drive_pages.page_name(key) for key in worst_keys(own_ten)[:3]}
 
 
 def test_the_same_audit_gives_the_same_bytes(lake_copy: Path) -> None:

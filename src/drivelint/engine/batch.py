@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
 LARGE_STATES: Final = 1_000_000
 """Of more states, the drives themselves take much of the memory: the database gives its own back between stages."""
+ONE_CORE_STATES: Final = 100_000
+"""States up to which a statement on several cores takes no less time, and a fifth more of the cores'."""
 PAIRS_PER_PART: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 READ_AHEAD: Final = 4
@@ -151,6 +153,11 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
 def are_large(drives: Iterable[Drive]) -> bool:
     """Whether drives take so much memory themselves that the database must do with less of it."""
     return sum(drive.n_states for drive in drives) > LARGE_STATES
+
+
+def are_few(drives: Iterable[Drive]) -> bool:
+    """Whether drives have so few states that a statement on them had best keep to one core."""
+    return sum(drive.n_states for drive in drives) <= ONE_CORE_STATES
 
 
 def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:

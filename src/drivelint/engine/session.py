@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from typing import TYPE_CHECKING, Protocol
 
 import duckdb
@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import with_columns
-from drivelint.engine.batch import are_large, skipped_egos_by_part
+from drivelint.engine.batch import are_few, are_large, skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
@@ -130,7 +130,8 @@ class JudgingSession:
         done = False
         while not done:
             try:
-                with self._interruption.interruptible(self._con):
+                one_core = store.one_thread(self._con) if are_few(drives) else nullcontext()
+                with one_core, self._interruption.interruptible(self._con):
                     done = self._judge(drives)
             except InterruptedRunError:
                 self._forget([drive.trace.drive_id for drive in drives])  # what did so may have been interrupted too

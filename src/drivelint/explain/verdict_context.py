@@ -6,6 +6,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from drivelint.engine.batch import are_few
 from drivelint.engine.copies import crop
 from drivelint.explain import evidence
 from drivelint.explain.sandbox import Sandbox
@@ -27,8 +28,6 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
-ONE_CORE_STATES: Final = 100_000
-"""States up to which a statement on several cores takes no less time, and a fifth more of the cores'."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
@@ -45,8 +44,7 @@ class VerdictContext:
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a database with these drives, derived for the rule."""
-        states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
-        with store.workspace(self.memory, threads=1 if states <= ONE_CORE_STATES else None) as con:
+        with store.workspace(self.memory, threads=1 if are_few(drives) else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:

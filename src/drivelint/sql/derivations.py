@@ -81,10 +81,14 @@ def _with_sources(tables: Iterable[str]) -> list[Derivation]:
     return [_derivation(table) for table in TopologicalSorter(dict(sorted(graph.items()))).static_order()]
 
 
-def with_sources(tables: Iterable[str]) -> set[str]:
+def with_sources(tables: Iterable[str]) -> frozenset[str]:
     """Return these tables and the library tables from which they are derived."""
-    tables = list(tables)
-    return {*tables, *(each.table for each in _with_sources(tables))}
+    return _names_with_sources(frozenset(tables))
+
+
+@cache  # of each rule it is asked several times for every batch
+def _names_with_sources(tables: frozenset[str]) -> frozenset[str]:
+    return tables | {each.table for each in _with_sources(tables)}
 
 
 def needed(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
