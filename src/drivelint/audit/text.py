@@ -75,7 +75,9 @@ def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
     has = "has" if counted.copies == 1 else "have"
     yield f"{plural(counted.copies, 'more log')} {has} the content of another one: each content counts once"
     for row in counted.copied:
-        yield f"  {row['log']}: a copy of {row['other']}"
+        is_same = row["log"] == row["other"]
+        told = "judged again, with another ego or under other conditions" if is_same else f"a copy of {row['other']}"
+        yield f"  {row['log']}: {told}"
     if counted.copied and (more := counted.copies - len(counted.copied)):
         query = "SELECT log_sha256, list(log) FROM receipts GROUP BY ALL HAVING count(*) > 1"
         yield f'  and {more} more: drivelint sql {out} "{query}"'

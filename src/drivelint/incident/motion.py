@@ -25,6 +25,8 @@ SLOWING_MPS2: Final = 1.0
 """Who slows by less, as a mean of half a second, may coast."""
 _TYRES_MPS2, _LEAST_LOSS_MPS = 12.0, 1.0
 """Tyres cannot brake a vehicle this hard: such a loss of speed between two steps is an impact."""
+_STANDING_MPS: Final = 0.5
+"""As the rules have it (`standing_mps`)."""
 _MEAN_S: Final = 0.5
 _MERGE_S: Final = 0.5
 """Two stretches of slowing with a shorter break between them are one."""
@@ -34,14 +36,15 @@ _MERGE_S: Final = 0.5
 class Motion:
     """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
 
-    `t`: seconds from the moment; `gap`: box to box in m, negative: depth of overlap; `closing`: speed at which the line
-    between the box centres shortens; `relative`: speed of the one as seen from the other; `turn`: angle between the headings;
-    `lane_offset`: left of the middle of the ego's lane, as the ego drives; `out_since`: when the ego left its lane, in seconds from
-    the moment; NaN: it is in it, or nobody looked.
+    `t`: seconds from the moment; `backwards`: whether it moves against its heading; `gap`: box to box in m, negative: depth of
+    overlap; `closing`: speed at which the line between the box centres shortens; `relative`: speed of the one as seen from the other;
+    `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as the ego drives; `out_since`: when the
+    ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
     """
 
     t: Floats
     speed: tuple[Floats, Floats]
+    backwards: tuple[Mask, Mask]
     lane_offset: tuple[Floats, Floats]
     gap: Floats
     closing: Floats
@@ -66,6 +69,7 @@ class Motion:
         return cls(
             t=(steps["t_ns"].to_numpy() - moment_ns) / 1e9,
             speed=(c["speed_mps"], c["object_speed_mps"]),
+            backwards=(_is_backwards(c, ""), _is_backwards(c, "object_")),
             lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
             gap=np.where(np.isnan(exact), _apart(c), exact),
             closing=closing,
@@ -114,6 +118,14 @@ class Motion:
         """Whether a party lost speed so in the time before a step."""
         within = (self.t > self.t[i] - over_s + 1e-9) & (self.t <= self.t[i])
         return bool(self.sudden(party)[within].any())
+
+
+def _is_backwards(columns: dict[str, Floats], of: str) -> Mask:
+    """Return at which steps one moves against its heading, faster than a vehicle that stands may seem to."""
+    yaw = columns[f"{of}yaw_rad"]
+    along: Floats = columns[f"{of}vx_mps"] * np.cos(yaw) + columns[f"{of}vy_mps"] * np.sin(yaw)
+    found: Mask = along < -_STANDING_MPS
+    return found
 
 
 def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
@@ -189,7 +201,7 @@ def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[
         "t": t,
         "last_before": t == last_before_s,
         "moment": t == 0,
-        "speed": [float(v[i]) for v in motion.speed],
+        "speed": [float(-v[i] if back[i] else v[i]) for v, back in zip(motion.speed, motion.backwards, strict=True)],
         "accel": [motion.acceleration(party, i, 1.0) for party in (0, 1)],
         "hardest": [motion.hardest_braking(party, i) for party in (0, 1)],
         "impact": [motion.is_sudden(party, i, 1.0) for party in (0, 1)],

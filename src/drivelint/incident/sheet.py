@@ -278,11 +278,15 @@ def _rests_on(case: Case, motion: Motion) -> str:
         return ""
     since_s, until_s = ((row[key] - case.finding.moment_ns) / 1e9 for key in ("t_start_ns", "t_end_ns"))
     beside_s = 1.5 * motion.step_s  # the step before it and the one after it, too
-    gaps = motion.gap[(motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)]
+    near = (motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)
+    gaps, times = motion.gap[near], motion.t[near]
     known = gaps[~np.isnan(gaps)]
     if known.size and known.min() <= 0:
         return ""
-    told = f"least gap {known.min():.2f} m" if known.size else "no gap is known"
+    told = "no gap is known"
+    if known.size:
+        at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.start_ns) / 1e9
+        told = f"least gap {known.min():.2f} m, at {at_s:.2f} s"
     boxes = (
         "the boxes do not touch at that time" if 0 < known.size == gaps.size else "nobody knows whether the boxes touch"
     )
