@@ -51,6 +51,23 @@ def test_what_is_unknown_and_may_not_be_is_counted_by_rule() -> None:
     assert exit_status(run).why == "3 verdicts of required rules unknown (--require): 1 of a, 2 of b"
 
 
+@pytest.mark.parametrize(
+    ("drives", "settings", "also"),
+    [
+        (None, {"required": (SDA,)}, f"1 verdict of required rules unknown (--require): 1 of {SDA}"),
+        ([drive(), LOST], {}, "1 of 2 drives could not be judged"),
+    ],
+)
+def test_a_failure_does_not_hide_what_was_not_judged(
+    drives: list[dict[str, Any]] | None, settings: dict[str, Any], also: str
+) -> None:
+    run = result([verdict("fail"), verdict("unknown", occurrence=1)], drives=drives, **settings)
+    assert exit_status(run).code is ExitCode.FAILED
+    assert exit_status(run).why.endswith(f"; also {also}")
+    alone = result([verdict("fail"), verdict("unknown", occurrence=1)])
+    assert "also" not in exit_status(alone).why
+
+
 def test_an_interrupted_run_says_how_far_it_came() -> None:
     run = result([verdict("fail")], drives=[drive(), LOST, drive("d3")], interrupted=True)
     assert exit_status(run).why == "partial: 2 of 3 drives judged, interrupted"

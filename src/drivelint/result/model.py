@@ -91,9 +91,12 @@ class Result:
 def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
-    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2.
+    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2. What failed does
+    not hide what was not judged: whoever mends the one would meet the other in the next run.
     """
-    return next(_outcomes(result))
+    status = next(_outcomes(result))
+    hidden = next(_not_judged(result), None) if status.code is ExitCode.FAILED else None
+    return status if hidden is None else ExitStatus(status.code, f"{status.why}; also {hidden.why}")
 
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
