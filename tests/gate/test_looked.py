@@ -80,7 +80,7 @@ def test_gone_and_not_recorded_is_exit_code_4() -> None:
 
 
 def less(base: Result, new: Result) -> str:
-    return descriptions.judged_less(diff.compare(base, new))
+    return descriptions.judged_otherwise(diff.compare(base, new))
 
 
 DECIDED = [
@@ -114,6 +114,17 @@ def test_drives_and_rules_that_are_left_out_are_judged_less() -> None:
     new = result([verdict("pass", drive_id="d3")], drives=[drive("d3")])
     assert less(base, new) == "judged less than the baseline: 2 drives of it not checked, 1 rule of it not selected"
     assert less(new, base) == "judged less than the baseline: 1 drive of it not checked"
+
+
+def test_another_map_is_said_and_a_drive_that_was_perhaps_cut_off() -> None:
+    base = result([PASS], drives=[drive(duration_s=14.0, map_sha256="a")])
+    for now, said in (
+        (drive(duration_s=13.0, map_sha256="a"), ""),
+        (drive(duration_s=12.0, map_sha256="a"), "judged less than the baseline: 1 drive more than a tenth shorter"),
+        (drive(duration_s=14.0, map_sha256="b"), "judged on another map than in the baseline: 1 drive"),
+        (drive(duration_s=14.0, map_sha256=None), "judged on another map than in the baseline: 1 drive"),
+    ):
+        assert less(base, result([PASS], drives=[now])) == said
 
 
 def test_results_without_a_common_drive_say_so_and_count_no_more_unknowns() -> None:

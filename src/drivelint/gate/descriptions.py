@@ -78,8 +78,8 @@ def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) ->
     return text
 
 
-def judged_less(difference: Difference) -> str:
-    """Return what the newer result did not judge and the earlier one did, in words; '' for nothing."""
+def judged_otherwise(difference: Difference) -> str:
+    """Return what the newer result judged less than the earlier one, and what on another map, in words; '' for nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
     parts = [f"{plural(n, 'verdict')} unknown that had been pass or fail{more}"] if n else []
@@ -88,7 +88,11 @@ def judged_less(difference: Difference) -> str:
         ("rule", difference.rules_not_run, "selected"),
     ):
         parts += [f"{plural(len(names), noun)} of it not {done}"] if names else []
-    return f"judged less than the baseline: {', '.join(parts)}" if parts else ""
+    parts += [f"{plural(len(difference.shorter), 'drive')} more than a tenth shorter"] if difference.shorter else []
+    told = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
+    if difference.other_maps:
+        told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
+    return "; ".join(told)
 
 
 def difference_text(
@@ -99,7 +103,7 @@ def difference_text(
         diff=difference,
         verdicts=counts.VERDICTS,
         headline=headline(difference),
-        less=judged_less(difference),
+        less=judged_otherwise(difference),
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
         groups=group_by_reason(difference.opened),

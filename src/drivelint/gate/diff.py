@@ -25,6 +25,9 @@ MARGIN_TOLERANCE: Final = 0.01
 INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch has changed if one of its ends moved by more."""
 
+LEAST_SHARE: Final = 0.9
+"""A drive that lasts less of what it lasted in BASE was perhaps cut off."""
+
 _WEIGHT = ("error", "fail", "unknown", "pass")
 """Of several verdicts at one moment the first of these is what is said."""
 _WHERE = ("drive_id", "ego_id", "rule_id", "profile")
@@ -44,6 +47,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         found, left = _drive(had, has, same.get(drive_id), drive_id)
         entries += found
         gone += left
+    both = [(has.drives[now], had.drives[was]) for now, was in same.items()]
     known = set(same.values())
     for drive_id, stretches in had.findings.items():
         if drive_id not in known:
@@ -60,7 +64,14 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         undecided=_undecided(base, new, same, had),
         rules_not_run=tuple(sorted(had.rules.keys() - has.rules.keys())),
         n_both=len(same),
+        other_maps=tuple(sorted(now["drive_id"] for now, was in both if now["map_sha256"] != was["map_sha256"])),
+        shorter=tuple(sorted(now["drive_id"] for now, was in both if _is_much_shorter(now, was))),
     )
+
+
+def _is_much_shorter(now: Row, was: Row) -> bool:
+    lasts, lasted = now["duration_s"], was["duration_s"]
+    return lasts is not None and lasted is not None and bool(lasts < LEAST_SHARE * lasted)
 
 
 def _drive(

@@ -95,7 +95,7 @@ def _parts(template: str, **values: Any) -> list[str]:
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,
         "difference_headline": descriptions.headline,
-        "judged_less": descriptions.judged_less,
+        "judged_otherwise": descriptions.judged_otherwise,
         "since_baseline": descriptions.since_baseline,
         "short": _short,
         "utc_at": utc_at,

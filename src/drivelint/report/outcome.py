@@ -79,7 +79,7 @@ def headline(result: Result) -> Headline:
     whole = not told["unknown"] + told["error"] and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
-    less = "" if before is None else descriptions.judged_less(before)
+    less = "" if before is None else descriptions.judged_otherwise(before)
     whole = whole and not less
     kind = "unknown" if less else {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable"}.get(label, "unknown")
     if not rows:

@@ -91,6 +91,10 @@ class Difference:
     rules_not_run: tuple[str, ...] = ()
     n_both: int | None = None
     """Drives that both have."""
+    other_maps: tuple[str, ...] = ()
+    """Drives of NEW that BASE judged on another map, or without one."""
+    shorter: tuple[str, ...] = ()
+    """Drives of NEW that last less than nine tenths of what they last in BASE."""
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
