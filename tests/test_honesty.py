@@ -321,12 +321,20 @@ def test_a_log_that_begins_too_late(judged: Judged, run: str) -> None:
 
 @pytest.mark.parametrize("run", RUNS)
 def test_a_log_that_ends_too_early(judged: Judged, run: str) -> None:
-    """t0 was seen, so its distance stands; what comes later is not claimed: what was driven may be too much already, and never enough."""
+    """t0 was seen, so its distance stands; what comes later is not claimed: what was driven may be too much already, and never enough.
+
+    Of a distance that was too small at the speed at t0, it is not known whether it was while the ego may still speed up.
+    """
     whole = {row["profile"]: row["verdict"] for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
     for name, span in ENDS.items():
-        found = {row["profile"]: row["verdict"] for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
-        observed = found.pop("observed")
-        assert found == {profile: verdict for profile, verdict in whole.items() if profile != "observed"}
+        rows = {row["profile"]: row for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
+        observed = rows.pop("observed")["verdict"]
+        assert rows.keys() == whole.keys() - {"observed"}
+        for profile, row in rows.items():
+            said = (row["verdict"], row["cause_code"])
+            assert row["verdict"] == whole[profile] or (*said, whole[profile]) == ("unknown", "may_speed_up", "fail")
+        assert rows["relaxed"]["verdict"] == whole["relaxed"]  # which is far off
+        assert run != "collision" or name != "to 13 s" or all(whole[p] == row["verdict"] for p, row in rows.items())
         assert observed == "unknown" or observed == whole["observed"] == "fail"
         for row in judged.of(Case(run, "cut", name), *SPACES_OV, SPACE_VBP, NO_COLLISION):
             assert row["t_end_ns"] / 1e9 <= span[1] + 1e-6
