@@ -204,7 +204,8 @@ def _watch_and_check(
 
     with (
         temporary_folder() as folder,
-        WindowJudge(settings) as judge,  # whose rules and map must be known before anything is started
+        # rules and map are read here: a fault in them ends the watch before the source or COMMAND starts
+        WindowJudge(settings) as judge,
         open_server(settings.serve, judge.rules) as server,
         open_source(settings, progress) as opened,
         Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,

@@ -1,4 +1,4 @@
-"""The incident sheets of a result in its pack: each page is written anew from the log, so a changed page is found."""
+"""Puts the incident sheets of a result into its pack. It writes each page again from the log, and so finds a page that was changed."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def of_result(folder: Path, result: Result, asked: RunRequest) -> dict[str, byte
 
 
 def again(result_folder: Path, evidence: Mapping[str, Any], asked: RunRequest) -> dict[str, bytes]:
-    """Return path in the pack -> content of the pages that a pack has, written anew from its logs. `result_folder`: of the pack."""
+    """Write the pages of a pack again from its logs; return path in the pack -> content. `result_folder`: the result in the pack."""
     pages = [name for name in said(evidence) if name.endswith(_PAGE)]
     return {name: _page(result_folder, PurePosixPath(name).stem, asked) for name in pages}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import count
 from typing import TYPE_CHECKING, Final, Protocol, cast
 
@@ -271,11 +271,10 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
 
 @contextmanager
 def _closed_on_error(opened: socket.socket) -> Generator[None, None, None]:
-    try:
+    with ExitStack() as undo:
+        undo.callback(opened.close)
         yield
-    except BaseException:
-        opened.close()
-        raise
+        undo.pop_all()
 
 
 def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:

@@ -14,7 +14,7 @@ import socket
 import subprocess
 import tempfile
 import time
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -97,16 +97,15 @@ class SumoProcess:
         self._con: Any = None
         self._is_asked = False
         """It was asked for something that it has not answered yet."""
-        try:
+        with ExitStack() as undo:
+            undo.callback(self.end)
             self._begin(precision)
             with self._asked() as con:
                 self.step_s = float(con.simulation.getDeltaT())
                 end_s = float(con.simulation.getEndTime())  # less than 0: until everybody has arrived
                 for light in con.trafficlight.getIDList():
                     con.trafficlight.subscribe(light, (self._light_state,))
-        except BaseException:
-            self.end()
-            raise
+            undo.pop_all()
         self._ends_empty = end_s < 0
         self._end_s = min(each for each in (end_s if end_s >= 0 else inf, until_s) if each is not None)
 
