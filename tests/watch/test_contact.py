@@ -17,7 +17,7 @@ from drivelint import catalogue
 from drivelint.engine.interruption import Interruption
 from drivelint.sql import store
 from drivelint.watch.alarms import AlarmLog
-from drivelint.watch.contact import RULE, ContactLook
+from drivelint.watch.contact import JOLT, OVERLAP, ContactLook
 from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
@@ -47,7 +47,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 @pytest.fixture
 def look(con: duckdb.DuckDBPyConnection) -> ContactLook:
-    return ContactLook(con, KNOWN[RULE])
+    return ContactLook(con, KNOWN)
 
 
 def ego(lateral: float = 0.0) -> Actor:
@@ -86,6 +86,80 @@ def test_contacts_are_where_the_boxes_overlap(look: ContactLook, turned: float, 
     assert bool(found) == (beside < 2.9 or turned > 0)
 
 
+def ends_at(gap_m: float, *, loss_mps: float = 10.0, name: str = "ego") -> Actor:
+    """Return an ego that drives on until it is `gap_m` behind the car at 110 m and loses so much speed from one step to the next."""
+    stop = 110.0 - 4.8 - gap_m
+    speed = np.where(T < 5.0, 10.0, 10.0 - loss_mps)
+    return replace(moving(name, WAY, T, np.minimum(stop - 50 + 10 * T, stop), WAY.own), vx=speed, vy=0 * T)
+
+
+STRUCK = standing("car", WAY, T, 110.0, WAY.own)
+
+
+def jolts(look: ContactLook, log: Trace) -> list[tuple[float, float]]:
+    return [
+        (row["t_start_ns"] / S, round(row["observed"], 6)) for row in look.look(log, None) if row["rule_id"] == JOLT
+    ]
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "loss_mps", "expected"),
+    [
+        (0.3, 10.0, [(5.0, 100.0)]),
+        (0.3, 1.25, [(5.0, 12.5)]),
+        (0.3, 1.125, []),
+        (0.45, 3.0, [(5.0, 30.0)]),
+        (0.55, 10.0, []),
+    ],
+)
+def test_a_jolt_is_told_where_the_boxes_are_near(
+    look: ContactLook, gap_m: float, loss_mps: float, expected: list[tuple[float, float]]
+) -> None:
+    log = trace(ends_at(gap_m, loss_mps=loss_mps), STRUCK)
+    assert jolts(look, log) == expected
+    with WindowJudge(WatchOptions(source="", rules=(JOLT,))) as judge:
+        (window,) = judge.judge([log])
+    assert isinstance(window, JudgedWindow)
+    same = [(row["t_start_ns"] / S, round(row["observed"], 6)) for row in window.findings.to_pylist()]
+    assert same == expected
+
+
+@pytest.mark.parametrize(
+    ("speed_mps", "kind", "told"), [(8.0, "car", True), (2.9, "pedestrian", False), (3.1, "pedestrian", True)]
+)
+def test_who_is_struck_gains_speed(look: ContactLook, speed_mps: float, kind: str, *, told: bool) -> None:
+    gains = replace(STRUCK, vx=np.where(T < 5.0, 0.0, speed_mps), kind=kind)
+    assert jolts(look, trace(ends_at(0.3, loss_mps=0.5), gains)) == ([(5.0, round(10 * speed_mps, 6))] if told else [])
+
+
+def test_a_jolt_waits_for_the_window_if_the_velocity_is_derived(look: ContactLook) -> None:
+    log = trace(ends_at(0.3), STRUCK)
+    schema = log.tables["quality"].schema
+    for names, expected in (("velocity_derived", []), ("velocity_filtered", []), ("other", [(5.0, 100.0)])):
+        row = {"drive_id": "d", "check_id": names, "severity": "warning", "actor_id": None, "n": 2, "message": ""}
+        told = replace(log, tables={**log.tables, "quality": pa.Table.from_pylist([row], schema=schema)})
+        assert jolts(look, told) == expected
+
+
+def test_a_jolt_waits_for_the_window_if_the_step_is_long(look: ContactLook) -> None:
+    missed = (T > 4.85) & (T < 4.95)
+    log = trace(ends_at(0.3).keep(~missed), STRUCK)
+    assert jolts(look, log) == []
+
+
+def test_an_actor_that_was_always_near_may_be_towed(look: ContactLook) -> None:
+    jolted = np.where(T < 5.0, 10.0, 0.0)
+    towed = replace(moving("trailer", WAY, T, 50 + 10 * T - 5.1, WAY.own), vx=jolted)
+    assert jolts(look, trace(replace(ego(), vx=jolted), towed)) == []
+
+
+def test_only_rules_that_are_asked_for_are_told(con: duckdb.DuckDBPyConnection) -> None:
+    log = trace(ends_at(-0.2), STRUCK)
+    assert {row["rule_id"] for row in ContactLook(con, KNOWN).look(log, None)} == {OVERLAP, JOLT}
+    assert {row["rule_id"] for row in ContactLook(con, KNOWN, (JOLT,)).look(log, None)} == {JOLT}
+    assert ContactLook(con, KNOWN, (JOLT,), {JOLT: {"tyre_mps2": 101.0}}).look(log, None) == []
+
+
 def test_steps_that_were_looked_at_are_not_told_again(look: ContactLook) -> None:
     log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
     steps = [row["t_start_ns"] for row in look.look(log, None)]
@@ -104,7 +178,7 @@ def test_a_contact_that_lasts_is_told_by_the_looks_after_it(con: duckdb.DuckDBPy
     assert look.look(part_of(log, 0.0, 3.0), None) == []
     late = part_of(log, 8.0, 9.0)
     assert [row["t_start_ns"] for row in look.look(late, round(8.9 * S))] == [9 * S]
-    assert ContactLook(con, KNOWN[RULE]).look(late, None) == []  # it has not seen the two apart
+    assert ContactLook(con, KNOWN).look(late, None) == []  # it has not seen the two apart
 
 
 def part_of(log: Trace, from_s: float, to_s: float) -> Trace:
@@ -138,7 +212,7 @@ def window(t_end_s: float, findings: list[dict[str, Any]]) -> JudgedWindow:
 
 def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook) -> None:
     rows = look.look(trace(ego(), standing("car", WAY, T, 110.0, WAY.own)), None)
-    log = AlarmLog({RULE: 2 * S}, ())
+    log = AlarmLog({OVERLAP: 2 * S}, ())
     (alarm,) = log.look(rows, 10 * S)
     assert (alarm.is_early, alarm.row["t_start_ns"], alarm.t_end_ns) == (
         True,
@@ -148,7 +222,7 @@ def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook)
     assert log.look(rows, 10 * S) == []
     before = log.take(window(rows[0]["t_start_ns"] / S - 0.1, []), None, None)
     assert (before.new, before.withdrawn) == ([], [])
-    seen = log.take(window(10.0, [{"rule_id": RULE, **rows[0]}]), None, None)
+    seen = log.take(window(10.0, [{"rule_id": OVERLAP, **rows[0]}]), None, None)
     assert (seen.new, seen.withdrawn, len(log.alarms)) == ([], [], 1)
     assert log.take(window(10.1, []), None, None).withdrawn == [alarm]
 
@@ -156,7 +230,7 @@ def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook)
 def test_a_contact_is_said_before_its_window_is_judged() -> None:
     """A log of 11.6 s, judged every 9 s and at its end: the contact at 9.7 s is in the second window."""
     asked = WatchOptions(
-        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(RULE,), every_s=9.0
+        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,), every_s=9.0
     )
     said: list[dict[str, Any]] = []
     source = Replay(Path(asked.source), asked.ingest_options(), speed=0, every_ns=9 * S)
@@ -186,7 +260,9 @@ class Going(Replay):
 
 
 def test_the_latency_of_an_alarm_counts_what_came_while_its_window_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = WatchOptions(source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(RULE,))
+    asked = WatchOptions(
+        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,)
+    )
     source = Going(Path(asked.source), asked.ingest_options())
     plain = WindowJudge.judge
 

@@ -20,6 +20,10 @@
 -- [reasons.class_there_unknown]
 -- says = "the class of somebody there is not known"
 -- advice = "record it"
+--
+-- [reasons.may_pass_next]
+-- says = "{gap_m:.2f} m ahead of the vehicle being passed are too few, but the log ends before the ego is back: it may pass the next vehicle, too"
+-- advice = "record until the ego is back"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, vbp_id AS object_id, occurrence
@@ -50,22 +54,26 @@ possible_vehicle AS (
     GROUP BY r.ref_id
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
-    coalesce(h.gap_m IS NULL OR free_gap.unseen_m < h.gap_m, false) AND NOT coalesce(h.vehicle_gap_m < required_gap.size_m, false) AS at_least,
+    coalesce(h.gap_m IS NULL OR free_gap.unseen_m < h.gap_m, false) AND NOT too_small.is_known AS at_least,
     CASE
         WHEN NOT o.begin_seen THEN NULL
+        -- An ego that is not back yet may pass the vehicle ahead of the gap, too, and return ahead of that one.
+        WHEN too_small.is_known AND o.status = 'truncated' THEN NULL
         -- Only a known vehicle makes the gap too small: an object nearer than that, of a class that is not known, may be no vehicle.
-        WHEN h.vehicle_gap_m < required_gap.size_m THEN h.vehicle_gap_m
+        WHEN too_small.is_known THEN h.vehicle_gap_m
         -- least() ignores NULL (no vehicle without a place), as is right here.
         WHEN h.gap_m IS NULL THEN CASE WHEN free_gap.seen_m IS NOT NULL THEN greatest(0.0, least(free_gap.seen_m, free_gap.unseen_m)) END
         WHEN h.gap_m >= required_gap.size_m THEN greatest(0.0, least(h.gap_m, free_gap.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN h.vehicle_gap_m < required_gap.size_m THEN NULL
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')
+        WHEN too_small.is_known THEN CASE WHEN o.status = 'truncated' THEN why('may_pass_next', {'gap_m': h.vehicle_gap_m}) END
         WHEN free_gap.unseen_m < required_gap.size_m THEN why('actor_may_be_there', {'object_id': d.o.object_id, 'lack': d.o.lack})
         WHEN h.gap_m < required_gap.size_m THEN why('class_there_unknown') END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS size_m) required_gap
 LEFT JOIN gap_ahead_of_passed h USING (ref_id)
+CROSS JOIN LATERAL (SELECT coalesce(h.vehicle_gap_m < required_gap.size_m, false) AS is_known) too_small
 LEFT JOIN possible_vehicle d USING (ref_id)
 LEFT JOIN ego_state e ON e.drive_id = r.drive_id AND e.ego_id = r.ego_id AND e.t_ns = r.t_ns
 LEFT JOIN oncoming n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.t_ns = r.t_ns

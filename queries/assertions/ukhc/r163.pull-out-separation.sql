@@ -21,7 +21,8 @@ WHERE NOT begin_seen OR coalesce(vbp_gap_m >= 0, true)
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, stopping_distance_m(o.v_av_mps) AS required,
-    CASE WHEN o.begin_seen THEN o.vbp_gap_m END AS observed,
-    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') END AS reason
+    CASE WHEN o.begin_seen AND NOT is_doubtful THEN o.vbp_gap_m END AS observed,
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN is_doubtful THEN overtake_doubt(o.vbp_id) END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
+CROSS JOIN LATERAL (SELECT coalesce(o.vbp_gap_m <= stopping_distance_m(o.v_av_mps), false) AND may_be_no_overtake(o.status, o.sure) AS is_doubtful) doubt

@@ -1,4 +1,4 @@
-"""Looks at the newest frames for overlapping boxes, so that a contact is an alarm long before its window is judged.
+"""Looks at the newest frames for contacts, so that a contact is an alarm long before its window is judged.
 
 It reads the log as the windows are read, and takes the boxes' distance by the macro of the rules. It says only what needs no more than
 that: an actor that was never seen apart from the ego may be its trailer or another id of it, and is left to the window. The window that has
@@ -9,70 +9,93 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from drivelint.evaluate.sql_fragments import Binding
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import duckdb
 
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import Trace
     from drivelint.result.text import Row
 
-RULE: Final = "ukhc.no-collision"
-"""The rule whose alarms come early."""
+OVERLAP: Final = "ukhc.no-collision"
+JOLT: Final = "ukhc.contact-signature"
+RULES: Final = (OVERLAP, JOLT)
+"""The rules whose alarms come early."""
 LOOK_NS: Final = 1_000_000_000
 """So long a look is at least: what a reader takes from the steps before is there, and a box that comes near is seen apart first."""
 NEAR_M: Final = 50.0
 """Centres farther from each other along x or y are not looked at."""
+_JOLT_PARAMS: Final = ("within_m", "tyre_mps2", "jolt_s", "walk_mps")
 _NOT_KNOWN: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing_mps")
 
 
 class ContactLook:
     """Finds contacts in the newest frames of a log. Memory: the actors that are near an ego.
 
-    `con`: a database with the macros; it is used by this thread alone.
+    `con`: a database with the macros; it is used by this thread alone. `known`: the catalogue's rules by id. `asked`: those of `RULES` that
+    are looked for. `params`: parameters that were given, by rule.
     """
 
-    def __init__(self, con: duckdb.DuckDBPyConnection, rule: Rule) -> None:
+    def __init__(
+        self,
+        con: duckdb.DuckDBPyConnection,
+        known: Mapping[str, Rule],
+        asked: tuple[str, ...] = RULES,
+        params: Mapping[str, Mapping[str, object]] | None = None,
+    ) -> None:
         self._con = con
-        self._rule = rule
+        self._rules = {rule_id: known[rule_id] for rule_id in asked}
+        bound = Binding(known[JOLT], 0, (params or {}).get(JOLT, {}))
+        self._values = {"near_m": NEAR_M, **bound.values(_JOLT_PARAMS)}
         self._statement = statement("watch/contact")
-        self._apart: set[tuple[str, str]] = set()
+        self._apart: set[tuple[str, str, str]] = set()
 
     def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
-        """Return the contacts of the egos at the steps after `since_ns`, None: at all; each as a row of `finding` that lasts one step.
+        """Return what breaks a rule at the steps after `since_ns`, None: at all; each as a row of `finding` that lasts one step.
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """
-        tables = {"_state": trace.tables["actor_state"], "_actor": trace.tables["actor"]}
+        tables = {f"_{name}": trace.tables[table] for name, table in _READ.items()}
         with store.registered(self._con, tables):
-            cursor = self._con.execute(self._statement, {"near_m": NEAR_M})
-            pairs = cursor.to_arrow_table().to_pylist()
-        near = {(pair["ego_id"], pair["object_id"]) for pair in pairs}
-        self._apart = (self._apart & near) | {(p["ego_id"], p["object_id"]) for p in pairs if p["is_apart"]}
+            pairs = self._con.execute(self._statement, self._values).to_arrow_table().to_pylist()
+        self._apart &= {_key(pair) for pair in pairs}
+        self._apart |= {_key(pair) for pair in pairs if pair["is_apart"]}
         return [
-            self._finding(pair, step)
+            _finding(self._rules[pair["rule_id"]], pair, step)
             for pair in pairs
-            if (pair["ego_id"], pair["object_id"]) in self._apart
-            for step in pair["contacts"] or ()
+            if pair["rule_id"] in self._rules and _key(pair) in self._apart
+            for step in pair["steps"] or ()
             if since_ns is None or step["t_ns"] > since_ns
         ]
 
-    def _finding(self, pair: Row, step: Row) -> Row:
-        depth_m = -step["clearance_m"]
-        return {
-            **dict.fromkeys(_NOT_KNOWN),
-            "rule_id": self._rule.id,
-            "severity": self._rule.severity,
-            "ego_id": pair["ego_id"],
-            "object_id": pair["object_id"],
-            **dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), step["t_ns"]),
-            "observed": step["clearance_m"],
-            "required": 0.0,
-            "margin": step["clearance_m"],
-            "unit": self._rule.unit,
-            "x_m": step["x_m"],
-            "y_m": step["y_m"],
-            "reason": f"contact, {depth_m:.2f} m deep",
-        }
+
+_READ: Final = {"state": "actor_state", "actor": "actor", "quality": "quality"}
+
+
+def _key(pair: Row) -> tuple[str, str, str]:
+    return pair["rule_id"], pair["ego_id"], pair["object_id"]
+
+
+def _finding(rule: Rule, pair: Row, step: Row) -> Row:
+    if rule.id == OVERLAP:
+        reason = f"contact, {-step['clearance_m']:.2f} m deep"
+    else:
+        reason = (
+            f"change of speed of the ego or the other by {step['observed']:.4g} m/s2, {step['clearance_m']:.2f} m apart"
+        )
+    return {
+        **dict.fromkeys(_NOT_KNOWN),
+        "rule_id": rule.id,
+        "severity": rule.severity,
+        "ego_id": pair["ego_id"],
+        "object_id": pair["object_id"],
+        **dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), step["t_ns"]),
+        **{name: step[name] for name in ("observed", "required", "margin", "x_m", "y_m")},
+        "unit": rule.unit,
+        "reason": reason,
+    }

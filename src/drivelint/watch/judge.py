@@ -82,10 +82,10 @@ class WindowJudge:
     """
 
     def __init__(self, options: WatchOptions) -> None:
-        known = catalogue.load_rules(options.rules_dirs)
+        self._known = known = catalogue.load_rules(options.rules_dirs)
         rules = catalogue.select_rules(known, options.rules, options.ignore)
         self.rules: dict[str, Rule] = {rule.id: rule for rule in rules}
-        params = catalogue.parse_params(rules, options.params)
+        self._params = params = catalogue.parse_params(rules, options.params)
         profiles = load_profiles(options.rules_dirs)
         self.gaps_ns = {
             rule.id: int(str(Binding(rule, 0, params.get(rule.id, {})).values(["_merge_ns"])["_merge_ns"]))
@@ -109,12 +109,12 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return what looks for contacts in frames that no window was judged with; None: the rule of contacts is not asked for."""
-        rule = self.rules.get(contact.RULE)
-        if rule is None:
+        """Return what looks for contacts in frames that no window was judged with; None: no rule of contacts is asked for."""
+        asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
+        if not asked:
             return None
         # a cursor of its own, which a rule's time limit does not interrupt
-        return ContactLook(self._stack.enter_context(self._con.cursor()), rule)
+        return ContactLook(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
         """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's.
