@@ -133,11 +133,15 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
     )
+    (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
     return replace(
         summed_receipts(con, "receipts"),
         reused=n_reused,
         **contacts.to_pylist()[0],
+        copies=totals["copies"],
+        km=totals["km"],
+        hours=totals["log_hours"],
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
         unknown=pc.sum(unknown_for["n"]).as_py() or 0,
         digest=tables_digest(con),

@@ -64,7 +64,7 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
-    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
+    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 
 
@@ -79,7 +79,7 @@ def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
         told = "judged again, with another ego or under other conditions" if is_same else f"a copy of {row['other']}"
         yield f"  {row['log']}: {told}"
     if counted.copied and (more := counted.copies - len(counted.copied)):
-        query = "SELECT log_sha256, list(log) FROM receipts GROUP BY ALL HAVING count(*) > 1"
+        query = "SELECT sha256, list(log) FROM drives WHERE sha256 IS NOT NULL GROUP BY ALL HAVING count(*) > 1"
         yield f'  and {more} more: drivelint sql {out} "{query}"'
 
 
