@@ -95,5 +95,5 @@ def _difference(counted: AuditSummary) -> str:
         parts.append(f"{plural(counted.n_absent, 'result')} of earlier runs, of other logs (--prune takes them out)")
     doubles = (counted.n_asked or 0) - (counted.n_drives - counted.n_absent)
     if doubles > 0:
-        parts.append(f"{plural(doubles, 'log')} of the name and content of another, judged once")
+        parts.append(f"{plural(doubles, 'log')} of the name and content of another, with its tags: judged once")
     return f"; {'; '.join(parts)}" if parts else ""
