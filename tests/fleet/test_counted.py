@@ -14,6 +14,7 @@ from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.fleet.coverage import coverage
 from drivelint.fleet.rates import rates
 from drivelint.fleet_report.difference import difference
+from drivelint.fleet_report.difference_text import to_text
 from drivelint.fleet_report.opened import BASE, Audit
 from drivelint.sql.statements import statement
 from tests.fleet import audits
@@ -111,7 +112,7 @@ def compared(base: list[Any], new: list[Any]) -> Any:
         egos = [(row["drive_id"], ego["ego_id"]) for row in drives for ego in row["exposure"]]
         findings = [found(name, ego_id=ego, finding_id=f"{name}-{ego}") for name, ego in egos]
         add(con, drives, [said(name, "fail", ego_id=ego) for name, ego in egos], findings, of)
-        sides.append(Audit(of, LocalFolder(Path(of)), {"settings": {}}, Standing("d")))
+        sides.append(Audit(of or "new", LocalFolder(Path(of)), {"settings": {}}, Standing("d")))
     return difference(con, sides[1], sides[0], 50)
 
 
@@ -126,6 +127,18 @@ def test_a_copy_is_neither_new_nor_gone_for_diff(*, swapped: bool) -> None:
     assert (told.n_failing("minor"), told.n_gone("minor"), told.base_only, told.new_only) == (0, 0, [], [])
     assert [verdicts["fail"] for verdicts in told.verdicts] == [1, 1]
     assert not any(rate.egos_judged for each in told.rates for rate in (each.base, each.new) if rate)
+
+
+def test_lists_of_diff_say_how_many_more_there_are_and_use_words() -> None:
+    others = [ego_drive(name, sha256=name) for name in "bcdefgh"]
+    gone = to_text(compared([*ONCE, *others], ONCE), "minor")
+    assert "Only in the base (7 drives): b.csv, c.csv, d.csv, e.csv, f.csv and 2 more\n" in gone
+    assert "  drive: 7 not looked at\n" in gone
+    assert "lost" not in gone
+    assert "Only in the newer audit: 7 drives: `b.csv`, `c.csv`, `d.csv`, `e.csv`, `f.csv` and 2 more" in to_text(
+        compared(ONCE, [*ONCE, *others]), "minor", markdown=True
+    )
+    assert "and 2 more" not in to_text(compared([*ONCE, *others[:5]], ONCE), "minor")
 
 
 def test_another_ego_of_a_known_log_is_new_for_diff() -> None:
