@@ -161,7 +161,7 @@ def test_kills_lose_nothing_and_double_nothing(
     out = tmp_path / "out"
     left = {path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()}
     parts = {"parts/begun/all", "parts/ended/all"}
-    files = {".lock", "audit.json", "rules.parquet", "summary.json"}
+    files = {".lock", "audit.json", "files.json", "rules.parquet", "summary.json"}
     assert {name for name in left if not name.startswith("tables/")} == parts | files
 
 
