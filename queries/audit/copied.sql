@@ -1,11 +1,8 @@
--- Judged drives whose logs have the content of another one, which stands for them where a content counts once.
-SELECT log, other
-FROM (
-    SELECT log, first_value(log) OVER same AS other, row_number() OVER same AS n
-    FROM receipts
-    WHERE status = 'judged' AND log_sha256 IS NOT NULL
-    WINDOW same AS (PARTITION BY log_sha256 ORDER BY key)
-)
-WHERE n > 1
-ORDER BY log, other
+-- Judged results of logs that have another result before, which stands for them where a log counts once.
+SELECT d.log, o.log AS other
+FROM counted_key k
+JOIN drives d ON d.key = k.key
+JOIN drives o ON o.key = k.log_key
+WHERE k.no > 1
+ORDER BY d.log, other
 LIMIT $most

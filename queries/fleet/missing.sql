@@ -12,13 +12,13 @@ WITH requirement AS (
     JOIN requirement r ON r.rule_id = u.rule_id AND r.rule_version = u.rule_version
     JOIN lack l ON l.key = u.key AND l.ego_id = u.ego_id AND l.signal = r.signal
 ), subject_of_signal AS (
-    SELECT n.signal, n.key, n.ego_id, count(*) AS n_rules, count(*) FILTER (n_lacking = 1) AS n_alone, any_value(s.km) AS km, any_value(d.format) AS format
+    SELECT n.signal, n.key, s.content, n.ego_id, count(*) AS n_rules, count(*) FILTER (n_lacking = 1) AS n_alone, any_value(s.km) AS km, any_value(d.format) AS format
     FROM needed n JOIN subject s ON s.key = n.key AND s.ego_id = n.ego_id JOIN {of}drives d ON d.key = n.key GROUP BY ALL
 ), rule_of_signal AS (
     SELECT n.signal, count(DISTINCT n.rule_id) AS rules, count(DISTINCT n.rule_id) FILTER (n_lacking = 1) AS rules_alone
     FROM needed n SEMI JOIN subject s ON s.key = n.key AND s.ego_id = n.ego_id GROUP BY ALL
 )
-SELECT r.signal, r.rules, r.rules_alone, count(DISTINCT s.key) AS drives, count(DISTINCT s.key) FILTER (n_alone > 0) AS drives_alone,
+SELECT r.signal, r.rules, r.rules_alone, count(DISTINCT s.content) AS drives, count(DISTINCT s.content) FILTER (n_alone > 0) AS drives_alone,
     coalesce(sum(round(1e9 * s.km)::BIGINT), 0) / 1e9 AS km, coalesce(sum(round(1e9 * s.km)::BIGINT) FILTER (n_alone > 0), 0) / 1e9 AS km_alone,
     sum(n_rules)::BIGINT AS judgements, sum(n_alone)::BIGINT AS judgements_alone,
     list_sort(list(DISTINCT s.format)) AS formats

@@ -4,4 +4,4 @@ FROM (
     SELECT key, count(*) FILTER (severity = 'critical') AS critical, count(*) FILTER (severity = 'major') AS major,
         count(*) FILTER (severity = 'minor') AS minor, count(*) FILTER (n_stays < {least_share} * n_copies) AS possible
     FROM counted_findings GROUP BY key
-) c JOIN drives d ON d.key = c.key
+) c JOIN counted_drives d ON d.key = c.key

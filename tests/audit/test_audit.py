@@ -161,7 +161,7 @@ def test_kills_lose_nothing_and_double_nothing(
     out = tmp_path / "out"
     left = {path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()}
     parts = {"parts/begun/all", "parts/ended/all"}
-    files = {".lock", "audit.json", "rules.parquet", "summary.json"}
+    files = {".lock", "audit.json", "files.json", "rules.parquet", "summary.json"}
     assert {name for name in left if not name.startswith("tables/")} == parts | files
 
 
@@ -249,6 +249,40 @@ def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp
         assert (counted.n_drives, counted.n_asked) == (3, 4)
         assert counted.reused >= n_reused
         assert "1 log of the name and content of another" in summary_text(counted, "out", ExitCode.OK)
+
+
+def tags_in(out: Path) -> list[dict[str, str]]:
+    """Return the tags of the drives of an audit."""
+    files = sorted((out / "tables" / "drives").iterdir())
+    rows = [row for file in files for row in pq.read_table(file, partitioning=None).to_pylist()]
+    return sorted((dict(row["tags"]) for row in rows), key=str)
+
+
+def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 1)
+    log = few.manifest.parent / "logs" / "drive-00000.parquet"
+    for folder in ("again", "once more"):
+        (log.parent / folder).mkdir()
+        (log.parent / folder / log.name).write_bytes(log.read_bytes())
+    rows = (
+        f"logs/{folder}{log.name},{release}" for folder, release in (("", "a"), ("again/", "b"), ("once more/", "a"))
+    )
+    few.manifest.write_text("\n".join(["log,release", *rows]), encoding="utf-8")
+    for _ in range(2):
+        counted = judged(few, tmp_path / "out")
+        assert tags_in(tmp_path / "out") == [{"release": "a"}, {"release": "b"}]
+        assert (counted.n_drives, counted.copies, counted.n_asked) == (2, 1, 3)
+        assert "1 log of the name and content of another, with its tags" in summary_text(counted, "out", ExitCode.OK)
+
+
+def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 2)
+    judged(few, tmp_path / "out")
+    text = few.manifest.read_text(encoding="utf-8")
+    few.manifest.write_text(text.replace("york", "bath"), encoding="utf-8")
+    counted = judged(few, tmp_path / "out")
+    assert [each["site"] for each in tags_in(tmp_path / "out")] == ["leeds", "bath"]
+    assert (counted.n_drives, counted.reused) == (2, 1)
 
 
 @pytest.mark.slow

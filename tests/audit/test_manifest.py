@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from drivelint.audit.sources import drives
@@ -68,6 +70,42 @@ def test_a_manifest_without_a_column_log_is_no_drive(tmp_path: Path, log: str) -
     source = written(tmp_path, "path,release", f"{log},r1")
     with pytest.raises(UsageError, match="a manifest needs a column log: its column 'path' names logs"):
         list(drives([source], DriveInput()))
+
+
+@pytest.mark.parametrize(
+    ("columns", "row", "said"),
+    [
+        ("map,ego,release", "road.xodr,1,r1", "its columns are map, ego, release$"),
+        ("file,release", "nowhere/a.mcap,r1", "its columns are file, release$"),
+        ("vehicle,year", "v1,2026", "its columns are vehicle, year$"),
+        ("log;release", "logs/a.mcap;r1", "its columns are log;release; separate them by commas$"),
+        ("ego,environment", "", "its columns are ego, environment$"),
+    ],
+)
+def test_a_manifest_is_told_which_column_it_lacks(tmp_path: Path, columns: str, row: str, said: str) -> None:
+    source = written(tmp_path, columns, row)
+    with pytest.raises(UsageError, match=f"^{re.escape(source)}: a manifest needs a column log: {said}"):
+        list(drives([source], DriveInput()))
+
+
+def test_a_manifest_in_parquet_is_told_which_column_it_lacks(tmp_path: Path) -> None:
+    pq.write_table(pa.table({"file": ["nowhere/a.mcap"], "year": [2026]}), tmp_path / "fleet.parquet")
+    with pytest.raises(UsageError, match=r"a manifest needs a column log: its columns are file, year$"):
+        list(drives([str(tmp_path / "fleet.parquet")], DriveInput()))
+
+
+def test_a_table_with_lines_before_its_header_is_a_drive(tmp_path: Path) -> None:
+    """As esmini writes them."""
+    source = written(
+        tmp_path, "esmini GIT REV: N/A", "Scenario File Name: cut-in.xosc", "t [s], x, y, name", "0.0, 1.0, 2.0, car"
+    )
+    assert [each.log for each in drives([source], DriveInput())] == [source]
+
+
+@pytest.mark.parametrize("empty", ["time,x", ""])
+def test_a_table_without_rows_is_left_to_its_reader(tmp_path: Path, empty: str) -> None:
+    source = written(tmp_path, empty)
+    assert [each.log for each in drives([source], DriveInput())] == [source]
 
 
 def test_a_table_of_states_is_a_drive(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit import AuditRequest, AuditSummary, audit
+from drivelint.audit import AuditRequest, AuditSummary, audit, summary
 from drivelint.audit.compact import create_views, database
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.summary import summed
@@ -104,6 +104,50 @@ def test_one_reason_of_many_drives_is_told_once_with_its_number(tmp_path: Path) 
     lines = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.NOT_JUDGED).splitlines()
     assert sum("nowhere.xodr" in line for line in lines) == 1
     assert any(line.startswith("  refused (4 drives, such as ") for line in lines)
+
+
+def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
+    broken = [{"severity": "major", "rule_id": "a.rule", "n_findings": 2, "n_drives": 1}]
+    reasons = [{"reason_code": "missing_step", "n": 3, "n_rules": 1, "n_drives": 2, "reason": "not recorded"}]
+    counted = AuditSummary(
+        n_drives=5, digest="0", broken=broken, unknown_for=reasons, unknown=9, n_broken=3, n_unknown_for=2
+    )
+    lines = summary_text(counted, "out", ExitCode.OK).splitlines()
+    at = lines.index("  major    a.rule: 2 findings in 1 drive")
+    assert lines[at + 1].startswith('  and 2 more rules: drivelint sql out "SELECT ')
+    at = lines.index("  3 of 1 rule in 2 drives: not recorded")
+    assert lines[at + 1].startswith('  and 1 more reason: drivelint sql out "SELECT ')
+    assert "missing_step" not in "\n".join(lines)
+    all_told = summary_text(replace(counted, n_broken=1, n_unknown_for=1), "out", ExitCode.OK)
+    assert "more rule" not in all_told
+    assert "more reason" not in all_told
+
+
+def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(summary, "MOST_RULES", 0)
+    few = fleet.write(tmp_path / "fleet", 12)
+    counted = judged(few, tmp_path / "out")
+    assert (counted.broken, counted.n_broken, counted.n_unknown_for) == ([], 1, len(counted.unknown_for))
+    assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(counted, "out", ExitCode.FAILED)
+
+
+@pytest.mark.parametrize("ego", ["0", "1"])
+def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: str) -> None:
+    """A log is judged with ego 0, and again with the same or another one: only another one adds its distance."""
+    few = fleet.write(tmp_path / "fleet", 1)
+    copy = few.manifest.parent / "logs" / "copy.parquet"
+    copy.write_bytes((copy.parent / "drive-00000.parquet").read_bytes())
+    few.manifest.write_text(f"log,ego\nlogs/drive-00000.parquet,0\nlogs/copy.parquet,{ego}\n", encoding="utf-8")
+    counted = judged(few, tmp_path / "out")
+    with opened(str(tmp_path / "out")) as (con, out, _):
+        page = content(con, out, None, ())
+        ways = {
+            row[0]: row[1]
+            for row in con.sql("SELECT e.ego_id, e.km FROM (SELECT unnest(exposure) AS e FROM drives)").fetchall()
+        }
+    assert (counted.n_drives, counted.copies, page.totals["egos"]) == (2, 1, len({"0", ego}))
+    assert counted.km == page.totals["km"] == pytest.approx(sum(ways[name] for name in {"0", ego}), abs=1e-9)
+    assert counted.hours == pytest.approx(fleet.SECONDS / 3600, abs=1e-4)
 
 
 def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:

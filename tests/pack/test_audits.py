@@ -18,6 +18,7 @@ from drivelint.audit import parts
 from drivelint.audit.store import LocalFolder
 from drivelint.errors import UsageError
 from drivelint.pack import VerifyRequest, verify
+from drivelint.result.folder import MANIFEST
 from tests.pack import audited
 from tests.pack.audited import (
     AUDIT,
@@ -200,6 +201,9 @@ def test_an_audit_that_has_not_ended_is_not_packed(packed: PackedAudit, tmp_path
 def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAudit, tmp_path: Path) -> None:
     audit = shutil.copytree(packed.audit, tmp_path / "audit")
     audited.change_json(audit / "summary.json", lambda told: told.update(refused=0))
+    with pytest.raises(UsageError, match=r"summary\.json: is not as drivelint audit wrote it"):
+        make_pack(audit, tmp_path / "pack")
+    (audit / MANIFEST).unlink()  # of an audit without this list, the tables tell it
     with pytest.raises(UsageError, match="its summary and its tables do not agree \\(refused\\)"):
         make_pack(audit, tmp_path / "pack")
 

@@ -15,6 +15,7 @@ from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
+from drivelint.fleet.counted import create_counted_views
 from drivelint.phrases import inert, inert_json
 from drivelint.sql.store import quoted
 
@@ -66,6 +67,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
     if results.read(AUDIT_FILE) is not None:
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
+        create_counted_views(con)
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
         if "verdicts.parquet" not in files:

@@ -36,7 +36,7 @@ class AuditDrive:
     """One drive of an audit: a row of the manifest, or a log that was found in a folder.
 
     `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) tell that it is still the same file.
-    `source_id`: hash of them, of the options and of the run; `options_id`: hash of the options and of what the map holds.
+    `source_id`: hash of them, of the tags, of the options and of the run; `options_id`: hash of the options and of what the map holds.
     """
 
     log: str
@@ -49,7 +49,7 @@ class AuditDrive:
 
     def found(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
         """Return the drive with what was found of its log, and its ids."""
-        source_id = digest([run_id, options_id, self.log, size, stamp])
+        source_id = digest([run_id, options_id, self.log, size, stamp, self.tags])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)
 
     @property
@@ -78,7 +78,7 @@ class Task:
 class Receipt:
     """The proof that a drive was judged, written after its results: a drive without one has no result.
 
-    `key`: hash of log, map, options, rules, parameters, and versions. `batch`: the file of each table that has its rows, beside those
+    `key`: hash of log, tags, map, options, rules, parameters, and versions. `batch`: the file of each table that has its rows, beside those
     of `n_in_batch` drives in all.
     `off_map`: the map does not fit it. `rows_sha256`: hash of these rows, whatever other drives are in the file.
     `counts`: verdict -> rows; `failed`: severity -> failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules.

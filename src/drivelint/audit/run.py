@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit import delta, listing, parts
+from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
@@ -226,12 +226,14 @@ def _stale(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
 def _close(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing: Sequence[str] = ()
 ) -> AuditSummary:
-    """Pack everything, write the summary last, and return it."""
+    """Pack everything, write the summary and the list of files last, and return the summary."""
+    sealed.unseal(results)
     compact(results)
     create_views(con, results, home)
     asked = json.loads(results.read(AUDIT_FILE) or b"{}")["settings"]
     counted = replace(summed(con, n_reused), missing_parts=list(missing), robust=bool(asked["robustness"]))
     results.write(SUMMARY_FILE, (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode())
+    sealed.seal(results, [AUDIT_FILE, RULES_FILE, SUMMARY_FILE])
     return counted
 
 
@@ -298,6 +300,7 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
+        sealed.unseal(results)
         results.delete([SUMMARY_FILE])  # it is not of what is there from now on
     # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))

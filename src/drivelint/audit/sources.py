@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow as pa
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
@@ -17,7 +20,7 @@ from drivelint.drive import conditions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import TRACE_SUFFIXES, is_utf8
-from drivelint.phrases import hint
+from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -27,6 +30,11 @@ if TYPE_CHECKING:
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
 """Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=wet;light=night`), and options."""
 _SIDES: Final = ("auto", "lht", "rht")
+_TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
+"""Columns of a manifest that no table of states has."""
+_LEAST_NUMBERS: Final = 3
+"""Numbers that a row of a table of states has at least: a time and two coordinates."""
+_LINES: Final = 100
 _ROWS: Final = 10_000
 
 
@@ -75,7 +83,7 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
 
 
 def _is_manifest(path: Path) -> bool:
-    """Whether a file is a manifest. Errors: `UsageError` for one in which another column than `log` names the logs."""
+    """Whether a file is a manifest. Errors: `UsageError` for one without a column `log`, and for what is no table of states either."""
     if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
     try:
@@ -96,7 +104,31 @@ def _is_manifest(path: Path) -> bool:
             raise UsageError(
                 f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
             )
+    if not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path):
+        apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""
+        raise UsageError(
+            f"{path}: a manifest needs a column log: its columns are {listed([name for name in names if name], 6)}{apart}"
+        )
     return False
+
+
+def _may_have_states(path: Path) -> bool:
+    """Whether one of the first rows, or the types of Parquet, leave room for a time and a place. A CSV without rows may be anything."""
+    if path.suffix.lower() == ".parquet":
+        types = [field.type for field in pq.read_schema(path)]
+        numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
+        return numbers >= _LEAST_NUMBERS or any(map(pa.types.is_nested, types))
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _LINES)]
+    rows = [row for row in some if any(cell.strip() for cell in row)]
+    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBERS for row in rows)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return math.isfinite(float(cell))
+    except ValueError:
+        return False
 
 
 def _exists(path: Path) -> bool:

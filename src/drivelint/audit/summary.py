@@ -65,6 +65,9 @@ class AuditSummary:
     not_judged: list[dict[str, Any]] = field(default_factory=list)
     copied: list[dict[str, Any]] = field(default_factory=list)
     """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`)."""
+    n_broken: int = 0
+    n_unknown_for: int = 0
+    """How many rules were broken, and how many reasons for unknown verdicts there are."""
 
     def count(self, receipt: Receipt) -> None:
         """Add a drive."""
@@ -133,11 +136,15 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
     )
+    (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
     return replace(
         summed_receipts(con, "receipts"),
         reused=n_reused,
         **contacts.to_pylist()[0],
+        copies=totals["copies"],
+        km=totals["km"],
+        hours=totals["log_hours"],
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
         unknown=pc.sum(unknown_for["n"]).as_py() or 0,
         digest=tables_digest(con),
@@ -147,5 +154,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         broken=broken.slice(0, MOST_RULES).to_pylist(),
         unknown_for=unknown_for.slice(0, MOST_REASONS).to_pylist(),
         not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
+        n_broken=broken.num_rows,
+        n_unknown_for=unknown_for.num_rows,
         copied=con.execute(statement("audit/copied"), {"most": MOST_COPIES}).to_arrow_table().to_pylist(),
     )

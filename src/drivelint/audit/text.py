@@ -46,12 +46,38 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     found = [f"{counted.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
     sure = f"examined: {counted.possible} only possible" if counted.robust else "not examined: --robustness"
     yield f"findings: {', '.join(found)}{_contacts(counted)}; how sure they are was {sure}"
+    yield from _broken(counted, out)
+    yield from _unknown(counted, out)
+    yield from _not_judged(counted, out)
+    yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
+    yield f"look     drivelint report {out}"
+    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY 2 DESC"'
+    yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
+
+
+def _broken(counted: AuditSummary, out: str) -> Iterator[str]:
+    """Yield the rules that were broken most."""
     for row in counted.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
+    if (more := counted.n_broken - len(counted.broken)) > 0:
+        query = "SELECT severity, rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY ALL"
+        yield f'  and {plural(more, "more rule")}: drivelint sql {out} "{query}"'
+
+
+def _unknown(counted: AuditSummary, out: str) -> Iterator[str]:
+    """Yield the most frequent reasons of unknown verdicts."""
     if counted.unknown_for:
         yield f"unknown: {counted.unknown} verdicts of stable rules"
     for row in counted.unknown_for:
-        yield f"  {row['reason_code']}: {row['n']} of {plural(row['n_rules'], 'rule')} in {plural(row['n_drives'], 'drive')}"
+        why = row["reason"] or row["reason_code"].replace("_", " ")
+        yield f"  {row['n']} of {plural(row['n_rules'], 'rule')} in {plural(row['n_drives'], 'drive')}: {why}"
+    if (more := counted.n_unknown_for - len(counted.unknown_for)) > 0:
+        query = "SELECT reason_code, reason, count(*) FROM counted_verdicts WHERE verdict = 'unknown' GROUP BY ALL ORDER BY ALL"
+        yield f'  and {plural(more, "more reason")}: drivelint sql {out} "{query}"'
+
+
+def _not_judged(counted: AuditSummary, out: str) -> Iterator[str]:
+    """Yield drives that could not be judged, and why."""
     if left := counted.refused + counted.quarantined:
         yield f"not judged: {plural(left, 'drive')}"
         for row in counted.not_judged:
@@ -62,10 +88,6 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
             yield f"  {row['status']}{which}: {row['reason']}"
         if more := left - sum(row["n"] for row in counted.not_judged):
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
-    yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
-    yield f"look     drivelint report {out}"
-    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM findings GROUP BY ALL ORDER BY 2 DESC"'
-    yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 
 
 def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
@@ -79,7 +101,7 @@ def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
         told = "judged again, with another ego or under other conditions" if is_same else f"a copy of {row['other']}"
         yield f"  {row['log']}: {told}"
     if counted.copied and (more := counted.copies - len(counted.copied)):
-        query = "SELECT log_sha256, list(log) FROM receipts GROUP BY ALL HAVING count(*) > 1"
+        query = "SELECT sha256, list(log) FROM drives WHERE sha256 IS NOT NULL GROUP BY ALL HAVING count(*) > 1"
         yield f'  and {more} more: drivelint sql {out} "{query}"'
 
 
@@ -95,5 +117,5 @@ def _difference(counted: AuditSummary) -> str:
         parts.append(f"{plural(counted.n_absent, 'result')} of earlier runs, of other logs (--prune takes them out)")
     doubles = (counted.n_asked or 0) - (counted.n_drives - counted.n_absent)
     if doubles > 0:
-        parts.append(f"{plural(doubles, 'log')} of the name and content of another, judged once")
+        parts.append(f"{plural(doubles, 'log')} of the name and content of another, with its tags: judged once")
     return f"; {'; '.join(parts)}" if parts else ""

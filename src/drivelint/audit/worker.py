@@ -108,8 +108,8 @@ class Judge:
         try:
             path, options = self._at_hand(drive)
             identity = identify(path)
-            # the name is in it because the id of a drive, and of its findings, begins with it
-            key = digest([run_id, drive.options_id, identity.sha256, identity.file_name])
+            # the name is in it because the id of a drive, and of its findings, begins with it; the tags, because its row has them
+            key = digest([run_id, drive.options_id, identity.sha256, identity.file_name, drive.tags])
             if (content := results.read(receipt_name(key))) is not None:
                 return key, replace(Receipt.from_json(content), reused=True)
             trace = read_trace(path, options.ingest_options())

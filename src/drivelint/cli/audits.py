@@ -179,7 +179,14 @@ def merge(
 
 def sql(
     dest: Annotated[str, argument("DEST", "What audit --out or check --out wrote.")],
-    query: Annotated[str, argument("QUERY", "One SELECT over verdicts, findings, drives, rules and receipts.")],
+    query: Annotated[
+        str,
+        argument(
+            "QUERY",
+            "One SELECT over verdicts, findings, drives, rules and receipts; of an audit also over counted_verdicts, counted_findings "
+            "and counted_drives, in which copies count once.",
+        ),
+    ],
     format_: Annotated[options.SqlFormat, option("--format", None, "What is printed on stdout.")] = "text",
 ) -> None:
     """Ask the tables of an audit or a check in SQL. Nothing is changed."""

@@ -62,7 +62,9 @@ def compare(
     new: str = "other_",
     tools: tuple[str | None, str | None] = (None, None),
 ) -> Comparison:
-    """Return the difference of two audits; `base`, `new`: what the names of their views begin with.
+    """Return the difference of two audits. `base`, `new`: what the names of their views begin with.
+
+    A log that is there twice counts once in the views of `drivelint.fleet.counted`.
 
     Errors: `UsageError` for an audit whose tables do not say when actors were recorded.
     `tools`: the versions of drivelint that made them; None: not known. Makes the temporary table `difference`: the columns of

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag, value_of
+from drivelint.fleet.counted import subject
+from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
     Failures of one rule by situation are `rates(con, by=SITUATION)`.
     """
-    parts = {"subject": statement("fleet/subject", of=of, value=value_of(None), without="")}
+    parts = {"subject": subject(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
     rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
     situations = [each for name, values in SITUATIONS.items() for each in _situation(con, of, name, values)]
@@ -92,9 +93,8 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
 def _situation(con: duckdb.DuckDBPyConnection, of: str, name: str, values: tuple[str, ...]) -> list[SituationCoverage]:
     """Return one row per value that is known or occurred, in the order of `values`; last that of drives of which it is not known."""
-    subject = statement("fleet/subject", of=of, value=value_of(name), without="")
     rows: list[tuple[Any, ...]] = con.execute(
-        statement("fleet/situation", of=of, subject=subject), bound_tag(name)
+        statement("fleet/situation", of=of, subject=subject(of, name)), bound_tag(name)
     ).fetchall()
     told = {row[0]: SituationCoverage(name, *row) for row in rows}
     order = dict.fromkeys([*values, *(value for value in told if value is not None)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from drivelint.fleet.situations import value_of
+from drivelint.fleet.counted import subject
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -58,9 +58,9 @@ class Missing:
 
 def missing(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
     """Return what the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
-    subject = statement("fleet/subject", of=of, value=value_of(None), without="")
-    signals = con.execute(statement("fleet/missing", of=of, subject=subject)).fetchall()
-    others = con.execute(statement("fleet/undecided", of=of, subject=subject)).fetchall()
+    egos = subject(of)
+    signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
+    others = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
     return Missing(
         tuple(MissingSignal(*row) for row in signals),
         tuple(Undecided(*row) for row in others),

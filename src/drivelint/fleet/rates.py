@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.fleet import intervals
+from drivelint.fleet.counted import subject
 from drivelint.fleet.situations import SITUATIONS, bound_tag, value_of
 from drivelint.phrases import hint
 from drivelint.result.certainty import LEAST_SHARE
@@ -112,13 +113,10 @@ def rates(
     another audit; logs that are in it, too, are left out. Errors: `UsageError` if no drive has that tag.
     """
     check_tag(con, by, of)
-    fragments = {
-        "of": of,
-        "value": value_of(by),
-        "without": "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256",
-        "least_share": str(LEAST_SHARE),
-    }
-    parts = {name: statement(f"fleet/{name}", **fragments) for name in ("subject", "profiled", "event")}
+    left_out = "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256"
+    fragments = {"of": of, "value": value_of(by), "without": left_out, "least_share": str(LEAST_SHARE)}
+    parts = {name: statement(f"fleet/{name}", **fragments) for name in ("profiled", "event")}
+    parts["subject"] = subject(of, by, left_out)
     rows = con.execute(statement("fleet/rates", **fragments, **parts), bound_tag(by))
     names = [column[0] for column in rows.description or ()]
     return [Rate(**dict(zip(names, row, strict=True))) for row in rows.fetchall()]

@@ -10,7 +10,8 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.errors import UsageError
-from drivelint.fleet.situations import bound_tag, value_of
+from drivelint.fleet.counted import subject
+from drivelint.fleet.situations import bound_tag
 from drivelint.phrases import hint
 from drivelint.sql.statements import statement
 
@@ -72,7 +73,6 @@ def what_if(
     """
     if why := needs_check(rule, param):
         return WhatIf(rule.id, param, value, why)
-    subject = statement("fleet/subject", of=of, value=value_of(by), without="")
     # as an evaluation rounds them
     required = round(value, 9) if rule.sense in {">=", "<="} else value
     bound = {
@@ -82,7 +82,7 @@ def what_if(
         "is_bound": rule.has_column("at_least"),
     }
     bound["proven"] = "pass" if rule.sense.startswith(">") else "fail"
-    con.execute(statement("fleet/what_if", of=of, subject=subject, sense=rule.sense), bound | bound_tag(by))
+    con.execute(statement("fleet/what_if", of=of, subject=subject(of, by), sense=rule.sense), bound | bound_tag(by))
     rows = con.execute(statement("fleet/flips")).fetchall()
     return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
 

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT
-from drivelint.fleet.counted import COUNTED, create_counted_views
+from drivelint.fleet.counted import COUNTED, create_counted_views, subject
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.missing import Missing, missing
 from drivelint.fleet.rates import Rate, rates
-from drivelint.fleet.situations import value_of
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
 from drivelint.fleet_report.difference import AuditDifference, difference, verdict_counts
 from drivelint.fleet_report.drive_command import check_command
@@ -42,7 +41,7 @@ MAX_CHANGES: Final = 50
 class FleetContent:
     """An audit as the fleet page tells it.
 
-    `totals`: the row of `drives.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
+    `totals`: the row of `totals.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
     drives. `contacts`: in how many drives an ego touched something, in how many others it may have. `worst_value`: the value of a tag
     whose rate differs most from the others. Logs of one content are one drive; `n_without_rate`: findings of such a log that another one
@@ -127,7 +126,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
     share = str(LEAST_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED, least_share=share)
-    (totals,) = rows(con, "drives")
+    (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
     worst = rows(
         con,
@@ -144,8 +143,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         row["tags"] = dict(row["tags"] or ())
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
     found = sorted(rates(con), key=lambda rate: _gravest_first(rate, rules))
-    subject = statement("fleet/subject", of="", value=value_of(None), without="")
-    (with_findings,) = rows(con, "with_findings", subject=subject)
+    (with_findings,) = rows(con, "with_findings", subject=subject())
     return FleetContent(
         audit=audit,
         totals=totals,

@@ -10,6 +10,7 @@ import duckdb
 
 from drivelint.errors import UsageError
 from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
+from drivelint.fleet.counted import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.opened import BASE
 from drivelint.fleet_report.rows import rows
@@ -152,9 +153,9 @@ def _at_or_above(counted: dict[str, int], least: str) -> int:
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: int) -> AuditDifference:
     """Return the difference of the audits of `opened`, with at most `most` findings of each standing."""
-    found = compare(con, base=BASE, new="", tools=(base.version, new.version))
-    sides = {"base": BASE, "new": ""}
-    (gating,) = rows(con, "gating", base=BASE, new="")
+    sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
+    found = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
+    (gating,) = rows(con, "gating", None, **sides)
     only = [rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
@@ -172,14 +173,14 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         fixed=(gating["passes"], gating["not_applicable"]),
         gating={severity: gating[severity] for severity in SEVERITIES},
         gone={severity: gating[f"gone_{severity}"] for severity in SEVERITIES},
-        verdicts=(verdict_counts(con, BASE), verdict_counts(con, "")),
-        entries={standing: _entries(con, standing, most) for standing in DIFF_STATUS_TITLES},
+        verdicts=(verdict_counts(con, sides["base"]), verdict_counts(con, sides["new"])),
+        entries={standing: _entries(con, sides, standing, most) for standing in DIFF_STATUS_TITLES},
         causes=dict(sorted(causes.items(), key=lambda item: (-item[1].total(), item[0]))),
         causes_not_known=not_known,
         comparison=found,
         base_only=[row["log"] for row in only[0]],
         new_only=[row["log"] for row in only[1]],
-        opened=[Opened(**row) for row in rows(con, "opened", base=BASE, new="")],
+        opened=[Opened(**row) for row in rows(con, "opened", None, **sides)],
         rates=compare_rates(con, base=BASE, new=""),
     )
 
@@ -199,8 +200,8 @@ def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
         raise UsageError(f"--rows {path}: cannot be written: {' '.join(str(error).split())[:200]}") from error
 
 
-def _entries(con: duckdb.DuckDBPyConnection, standing: str, most: int) -> list[Entry]:
-    found = rows(con, "entries", {"standing": standing, "most": most}, base=BASE, new="")
+def _entries(con: duckdb.DuckDBPyConnection, sides: dict[str, str], standing: str, most: int) -> list[Entry]:
+    found = rows(con, "entries", {"standing": standing, "most": most}, **sides)
     return [
         Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"])
         for row in found

@@ -14,6 +14,7 @@ from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sent
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import code, escaped
 from drivelint.result.counts import VERDICTS
+from drivelint.result.gate import NOT_FIXED
 from drivelint.result.text import finite
 from drivelint.result.text_templates import text_template
 
@@ -97,6 +98,7 @@ def to_text(found: AuditDifference, fail_on: str | None, *, markdown: bool = Fal
         diff=found,
         verdicts=VERDICTS,
         titles=DIFF_STATUS_TITLES,
+        words={standing: NOT_FIXED.get(standing, standing) for standing in DIFF_STATUS_TITLES},
         most=MAX_LINES,
         exit=_exit(found, fail_on),
     )

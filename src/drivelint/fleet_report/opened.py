@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit.bucket import as_url
 from drivelint.audit.compact import database
 from drivelint.audit.run import AUDIT_FILE
+from drivelint.audit.sealed import require_unchanged
 from drivelint.audit.store import open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
@@ -77,7 +78,10 @@ def is_audit(dest: str) -> bool:
 
 @contextmanager
 def opened(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit | None]]:
-    """Open an audit, and an earlier one under the names that begin with `BASE`. Errors: `UsageError` where none is."""
+    """Open an audit, and an earlier one under the names that begin with `BASE`.
+
+    Errors: `UsageError` where there is none, or one whose files were changed since.
+    """
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         found = _open(con, dest, Path(home) / "new", "")
         yield con, found, None if base is None else _open(con, base, Path(home) / "base", BASE)
@@ -85,7 +89,7 @@ def opened(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPy
 
 @contextmanager
 def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
-    """Open two audits, the earlier one under the names that begin with `BASE`. Errors: `UsageError` where none is."""
+    """Open two audits, the earlier one under the names that begin with `BASE`. Errors: as `opened`."""
     with opened(new, base) as (con, later, earlier):
         if earlier is None:
             raise UsageError(f"{base}: no audit is here")
@@ -98,4 +102,5 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str) ->
     content = results.read(AUDIT_FILE)
     if content is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
+    require_unchanged(results, home, dest)
     return Audit(dest, results, json.loads(content), views_of_all(con, results, home, prefix))

@@ -100,11 +100,11 @@ def replace(
     present = _present(out, patterns) - {MANIFEST}
     before = present if overwrite else present & _written(out)
     # should the machine fail halfway, the next run knows both the old and the new files
-    publish(out, {MANIFEST: _manifest(before | names)}, {})
+    publish(out, {MANIFEST: manifest(before | names)}, {})
     gone: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
     hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
     hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
-    publish(out, {MANIFEST: _manifest(names, hashes), **contents}, {**gone, **moved}, mark)
+    publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**gone, **moved}, mark)
     for folder in {(out / name).parent for name in gone} - {out}:
         with suppress(OSError):  # somebody's file is there
             folder.rmdir()
@@ -112,7 +112,7 @@ def replace(
 
 def add(out: Path, name: str, content: bytes) -> None:
     """Write one more file into the folder of a result. Errors: `OutputError`."""
-    publish(out, {MANIFEST: _manifest({*_written(out), name}, _hashes(out)), name: content}, {})
+    publish(out, {MANIFEST: manifest({*_written(out), name}, _hashes(out)), name: content}, {})
 
 
 def changed(out: Path) -> list[str]:
@@ -141,11 +141,20 @@ def _written(out: Path) -> set[str]:
 
 def _hashes(out: Path) -> dict[str, str]:
     try:
-        return {str(name): str(said) for name, said in json.loads((out / MANIFEST).read_bytes())[_HASHES].items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return {}  # of an older version, or copied without it
+        return hashes_in((out / MANIFEST).read_bytes())
+    except OSError:
+        return {}  # copied without it
 
 
-def _manifest(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
+def hashes_in(content: bytes) -> dict[str, str]:
+    """Return name -> sha256 of what `files.json` holds; nothing for one of an older version, or a damaged one."""
+    try:
+        return {str(name): str(said) for name, said in json.loads(content)[_HASHES].items()}
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}
+
+
+def manifest(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
+    """Return the content of `files.json` for the files of these names."""
     said = {_KEY: sorted(names), **({_HASHES: hashes} if hashes else {})}
     return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()

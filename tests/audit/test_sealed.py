@@ -1,0 +1,126 @@
+"""An audit whose files were changed after its end is refused by `report`, `diff` and `what-if`, as a changed result of `check` is."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+import pyarrow.parquet as pq
+import pytest
+
+from drivelint.audit.run import merge
+from drivelint.errors import UsageError
+from drivelint.fleet_report.opened import opened, opened_both
+from drivelint.report.progress import Silent
+from drivelint.result.folder import MANIFEST
+from tests.audit import fleet
+from tests.audit.here import InThisProcess, judged
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+    return fleet.write(tmp_path_factory.mktemp("fleet"), 8)
+
+
+@pytest.fixture(scope="module")
+def ended(few: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("ended") / "out"
+    judged(few, out)
+    return out
+
+
+@pytest.fixture
+def copy(ended: Path, tmp_path: Path) -> Path:
+    return tmp_path / shutil.copytree(ended, tmp_path / "out").name
+
+
+def only_file(out: Path, table: str) -> Path:
+    (file,) = (out / "tables" / table).iterdir()
+    return file
+
+
+def without_a_row(out: Path) -> str:
+    file = only_file(out, "findings")
+    pq.write_table(pq.read_table(file, partitioning=None).slice(1), file)
+    return file.name
+
+
+def of_another_severity(out: Path) -> str:
+    rules = pq.read_table(out / "rules.parquet")
+    column = rules.column_names.index("severity")
+    other = rules.set_column(column, rules.schema.field(column), [["minor"] * rules.num_rows])
+    pq.write_table(other, out / "rules.parquet")
+    return "rules.parquet"
+
+
+def by_other_settings(out: Path) -> str:
+    file = out / "audit.json"
+    file.write_text(json.dumps(json.loads(file.read_text(encoding="utf-8")) | {"fail_on": "never"}), encoding="utf-8")
+    return file.name
+
+
+def with_a_file_more(out: Path) -> str:
+    file = only_file(out, "findings")
+    shutil.copy(file, file.with_name("0.parquet"))
+    return "0.parquet"
+
+
+def without_a_file(out: Path) -> str:
+    file = only_file(out, "verdicts")
+    file.unlink()
+    return file.name
+
+
+@pytest.mark.parametrize(
+    "change", [without_a_row, of_another_severity, by_other_settings, with_a_file_more, without_a_file]
+)
+def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path], str]) -> None:
+    name = change(copy)
+    for sides in ((ended, copy), (copy, ended)):
+        with (
+            pytest.raises(UsageError, match=f"{name}: is not as drivelint audit wrote it"),
+            opened_both(*map(str, sides)),
+        ):
+            pass
+    with pytest.raises(UsageError, match=name), opened(str(copy)):
+        pass
+
+
+def test_an_audit_that_is_copied_elsewhere_is_whole(copy: Path) -> None:
+    with opened(str(copy)) as (_, audit, _):
+        assert audit.digest
+
+
+def test_an_audit_that_goes_on_is_no_changed_one(few: fleet.Fleet, copy: Path, tmp_path: Path) -> None:
+    """Neither after it has got more drives, nor while it has not come to its end."""
+    more = fleet.write(tmp_path / "more", 9)
+    judged(few, copy, sources=str(more.manifest.parent / "logs"))
+    with opened(str(copy)) as (con, audit, _):
+        assert (audit.digest is not None, con.sql("SELECT count(*) FROM drives").fetchall()) == (True, [(17,)])
+    with pytest.raises(ZeroDivisionError):
+        judged(few, copy, Dying(), sources=str(fleet.write(tmp_path / "other", 2, seed=1).manifest))
+    assert not (copy / MANIFEST).exists()
+    with opened(str(copy)) as (_, audit, _):
+        assert audit.warning
+
+
+def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
+    for part in (1, 2):
+        judged(few, tmp_path / "out", shard=(part, 2))
+    assert not (tmp_path / "out" / MANIFEST).exists()
+    merge(str(tmp_path / "out"), Silent())
+    name = without_a_row(tmp_path / "out")
+    with pytest.raises(UsageError, match=name), opened(str(tmp_path / "out")):
+        pass
+
+
+class Dying(InThisProcess):
+    """An executor that fails before anything is judged."""
+
+    def submit(self, task: object) -> None:
+        raise ZeroDivisionError(task)
