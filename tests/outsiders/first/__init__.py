@@ -2,7 +2,9 @@
 
 Roads are OpenDRIVE, written here; movement is smooth: speeds are given at a few times and blurred, ways at a few places and
 joined without kinks. `n` is the distance to the near side of a road's reference line (left in Britain, right in Germany), seen
-by whoever drives with growing s: one's own lane has n > 0, the oncoming one n < 0.
+by whoever drives with growing s: one's own lane has n > 0, the oncoming one n < 0. What is expected was written down before the
+first run, but for one expectation in which the outsider was wrong: r126.ds-av-out-of-ov of `overtake_last_moment`, where the ego's
+outline stays 3 cm out of the danger space.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def overtaking() -> Iterator[Spec]:
     yield scene(
         "overtake_last_moment",
         "The ego overtakes a lorry and is back half a second before it would meet an oncoming car.",
-        f"fail {safe} overtake-zone r126.ds-disjoint r126.ds-av-out-of-ov rss.opposite | pass no-collision",
+        f"fail {safe} overtake-zone r126.ds-disjoint rss.opposite | pass no-collision",
         RURAL,
         [ego(), lorry(), car(against(RURAL, 1058), 24.0)],
         28,
