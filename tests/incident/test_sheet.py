@@ -10,10 +10,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow.compute as pc
 import pytest
+from markupsafe import escape
 
 from drivelint import catalogue, cli
-from drivelint.drive.trace import EgoSize
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, render, write_incident
 from drivelint.incident.command import commands
@@ -185,10 +188,14 @@ def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -
 
 
 def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
-    asked = case_of("no-collision@collision").asked
-    assert "carla-testbench" in size_source(replace(asked, mapping="carla-testbench"), ego=False)
-    assert "--ego-size" in size_source(replace(asked, ego_size=EgoSize(4.0, 1.8)), ego=True)
-    assert size_source(replace(asked, mapping=None, ego_size=EgoSize(4.0, 1.8)), ego=False) == ""
+    case = case_of("no-collision@collision")
+    trace, said = case.drive.trace, "size as the mapping 'mapping' says, not recorded"
+    assert [size_source(trace, who) for who in case.finding.parties] == [said] * 2
+    assert render(case).decode().count(str(escape(said))) == 2
+    tables = trace.tables["quality"]
+    recorded = replace(trace, tables={**trace.tables, "quality": tables.filter(pc.field("check_id") != ASSUMED_SIZE)})
+    by_user = with_quality_finding(recorded, QualityFinding(ASSUMED_SIZE, "info", "said", actor_id="ego"))
+    assert [size_source(by_user, who) for who in ("ego", "other")] == ["said", ""]
 
 
 def test_a_clip_says_so(case_of: CaseOf) -> None:

@@ -45,7 +45,7 @@ def party(
         "id": actor_id,
         "ego": number == 0,
         "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
-        "size_source": size_source(case.asked, ego=number == 0),
+        "size_source": size_source(case.drive.trace, actor_id),
         "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
         "lane": _lane(case, number, at),
         "speed": "not known" if at is None else speed(float(v[at])),

@@ -290,7 +290,7 @@ def _rests_on(case: Case, motion: Motion) -> str:
     boxes = (
         "the boxes do not touch at that time" if 0 < known.size == gaps.size else "nobody knows whether the boxes touch"
     )
-    assumed = any(size_source(case.asked, ego=number == 0) for number in range(len(case.finding.parties)))
+    assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
     return f"It rests on a sudden change of speed: {boxes} ({told}{sizes})."
 
