@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
 import shutil
@@ -293,6 +294,17 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert told["when"] == f"{impact:.2f} s"
     for party in told["parties"]:
         assert numbers(party["speed"])[0] == pytest.approx(recorded[party["id"]][before].speed, abs=0.051)
+    for party in told["parties"]:
+        mine = recorded[party["id"]]
+        # magnitudes alone would hide that both were thrown back
+        changes = {t: math.hypot(s.vx - mine[before].vx, s.vy - mine[before].vy) for t, s in mine.items()}
+        most = max((t for t in changes if before < t < impact + 0.31), key=lambda t: changes[t])
+        assert numbers(party["delta_v"])[0] == pytest.approx(changes[most], abs=0.051)
+        assert party["delta_v"].endswith(
+            f"from \u22120.10 s to {'0 s' if most == impact else f'+{most - impact:.2f} s'}"
+        )
+        assert changes[impact] > abs(mine[before].speed - mine[impact].speed) + 1
+    assert "of the speed alone" in told["what"]
     by_places = closing_by_places(recorded["1"], recorded["3"], round(before - 0.1, 3), before)
     assert numbers(told["closing"])[0] == pytest.approx(by_places, abs=0.3)
     least = min((gap(recorded["1"][t], recorded["3"][t]), t) for t in recorded["1"] if t in recorded["3"])
