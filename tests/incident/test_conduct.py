@@ -70,6 +70,8 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
     part = row("limit", observed=5.9, required=18.3, t_end_ns=7 * S)
     assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s)"]
     assert told([part], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    bound = {**part, "cause_code": "lower_bound"}
+    assert told([bound], [])["kept"].shown == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
     assert told([{**part, "near_miss": True}], [])["kept"].shown[0].endswith("; narrowly)")
 
 
