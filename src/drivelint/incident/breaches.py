@@ -8,7 +8,7 @@ from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue.header import EXCUSES
-from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile
+from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile, required
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
 from drivelint.result.text import seconds
@@ -57,7 +57,7 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
         least = "at least " if row["cause_code"] == LOWER_BOUND else ""
         said = minus(f"{rule['observes']}{whom} {least}{amount(row['observed'], row['unit'])}")
-        about.insert(0, f"{SENSE.get(rule['sense'], '')}{amount(row['required'], row['unit'])}")
+        about.insert(0, f"{SENSE.get(rule['sense'], '')}{required(row, rule)}")
     if any(each["near_miss"] for each in rows):
         about.append("narrowly")
     told = "; ".join(each for each in about if each)
