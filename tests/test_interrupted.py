@@ -183,7 +183,7 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack:
 
 @pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
 @pytest.mark.parametrize("earlier", [True, False])
-def test_ctrl_c_before_anything_is_judged_says_so_and_changes_nothing(
+def test_ctrl_c_before_anything_is_judged_says_so_and_keeps_an_earlier_result_aside(
     pack: Path, tmp_path: Path, *, earlier: bool
 ) -> None:
     out = tmp_path / "out"
@@ -204,10 +204,13 @@ def test_ctrl_c_before_anything_is_judged_says_so_and_changes_nothing(
         finally:
             process.kill()
     assert (process.returncode, said) == (130, ""), err
-    holds = "is unchanged: it still holds the result of an earlier run" if earlier else "holds no result"
-    assert f"drivelint: nothing was judged yet; {out} {holds}" in err.splitlines()
+    assert f"drivelint: nothing was judged yet; {out} holds no result" in err.splitlines()
+    told = f"drivelint: the result of an earlier run is now in {out / 'earlier'}"
+    assert (told in err.splitlines()) is earlier
     assert not [line for line in err.splitlines() if line.startswith("drivelint: kept")]
-    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    aside = out / "earlier"
+    assert [path.name for path in out.iterdir()] == (["earlier"] if earlier else [])
+    assert {path.name: path.read_bytes() for path in aside.glob("*")} == before
 
 
 @pytest.fixture

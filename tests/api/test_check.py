@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import traceback
 from contextlib import suppress
 from datetime import date
 from pathlib import Path
@@ -305,12 +306,20 @@ def test_reports_are_texts_or_files(checked: drivelint.CheckResult, tmp_path: Pa
         checked.report(to="htm")  # type: ignore[call-overload]
 
 
+def test_a_query_that_fails_is_one_error(checked: drivelint.CheckResult) -> None:
+    with pytest.raises(drivelint.DriveLintError, match="the query failed: Parser Error") as raised:
+        checked.sql("selec nonsense")
+    shown = "".join(traceback.format_exception(raised.value))
+    assert shown.count("Traceback") == 1, shown
+
+
 @pytest.mark.parametrize(
     ("given", "says"),
     [
         ({"traces": []}, "no traces"),
         ({"traces": "nowhere.mcap"}, r"nowhere\.mcap: no such file"),
         ({"map": "nowhere.xodr"}, r"nowhere\.xodr does not exist"),
+        ({"mpa": "road.xodr"}, r"check\(\) has no argument 'mpa': did you mean 'map'\?"),
         ({"fail_on": "critcal"}, "fail_on='critcal': did you mean 'critical'"),
         ({"handedness": "left"}, "handedness='left'"),
         ({"visibility": "all"}, "visibility='all'"),

@@ -29,7 +29,7 @@ def test_case_study(run: str) -> None:
     times = [row["t_ns"] for row in states(trace, "1")]
     assert times == [i * 100_000_000 for i in range(len(times))]
     assert trace.map_offset == (2.618, 3.113)
-    assert set(quality(trace)) == {"no_indicator", "no_brake_light", "unprotected"}
+    assert set(quality(trace)) == {"assumed_size", "turned_frame", "no_indicator", "no_brake_light", "unprotected"}
 
 
 def test_case_study_frame_and_speeds() -> None:

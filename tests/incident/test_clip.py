@@ -16,10 +16,12 @@ import pytest
 from drivelint import cli, demo
 from drivelint.convert import ConvertRequest, summary_text
 from drivelint.drive.cut import cut_trace
-from drivelint.drive.trace import IngestOptions
+from drivelint.drive.trace import ASSUMED_SIZE, IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
-from drivelint.incident import clip
+from drivelint.incident import IncidentRequest, clip, open_case
+from drivelint.incident.sheet import content
+from drivelint.report.inputs import input_notes
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions
@@ -172,6 +174,28 @@ def test_a_clip_names_the_log_that_it_was_cut_from(
     digest = hashlib.sha256(log.read_bytes()).hexdigest()
     assert re.fullmatch(rf"cut from collision\.csv, SHA-256 {digest}: [\d.]+ s to [\d.]+ s of it", said["message"])
     assert "--profile relaxed --profile nominal --out results" in summary_text(written)  # as that check had them
+    (sizes,) = [row for row in rows if row["check_id"] == ASSUMED_SIZE]
+    assert sizes["message"] == "size as the mapping 'mapping' says, not recorded"
+
+
+@pytest.mark.slow
+def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_frame(tmp_path: Path) -> None:
+    log = shared("overtake_case_study/collision.csv")
+    result = checked(tmp_path / "log", log, map=shared("overtake_case_study/t_junction.xodr"))
+    row = next(row for row in findings(result) if row["unit"] == "m/s2")
+    again = checked(tmp_path / "alone", cut(log, tmp_path / "log", tmp_path / "clip", row))
+    (own,) = [each for each in findings(again) if each["unit"] == "m/s2"]
+    told = [
+        content(open_case(IncidentRequest(name["finding_id"], tmp_path / folder)))
+        for name, folder in ((row, "log"), (own, "alone"))
+    ]
+    assert "sizes are assumed, not recorded" in told[0]["rests"] == told[1]["rests"]
+    assert [[party["size_source"] for party in each["parties"]] for each in told] == [
+        ["size as the mapping 'carla-testbench' says, not recorded"] * 2
+    ] * 2
+    lines = [next(note.words for note in input_notes(each) if note.label == "log") for each in (result, again)]
+    assert "size as the mapping 'carla-testbench' says" in lines[0] == lines[1]
+    assert "y and heading turned, as the mapping 'carla-testbench' says: the log's frame is left-handed" in lines[0]
 
 
 def test_the_same_clip_has_the_same_bytes(folder: Path, tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ S = 1_000_000_000
 SPAN = (0, 20 * S)
 RULES: dict[str, dict[str, Any]] = {
     name: {"rule_id": name, "title": title, "clause": "R1: do", "hypothesis": f"Did it {name}?", "severity": "major", "kind": kind,
-           "sense": sense, "unit": unit, "observes": observes, "tags": tags}
+           "sense": sense, "unit": unit, "observes": observes, "tags": tags, "params": []}
     for name, title, kind, sense, unit, observes, tags in (
         ("boxes", "No collision", "invariant", ">", "m", "distance between the two", ["contact"]),
         ("impact", "No impact", "invariant", "<", "m/s2", "change of speed", ["contact"]),
@@ -70,6 +70,14 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
     part = row("limit", observed=5.9, required=18.3, t_end_ns=7 * S)
     assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s)"]
     assert told([part], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    limit = {
+        **RULES["limit"],
+        "params": [{"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}],
+    }
+    (line,) = conduct([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
+    assert line == "speed 5.90 m/s (at most 18.30 m/s, 0.45 m/s of it tolerance; 0.00 to 7.00 s)"
+    bound = {**part, "cause_code": "lower_bound"}
+    assert told([bound], [])["kept"].shown == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
     assert told([{**part, "near_miss": True}], [])["kept"].shown[0].endswith("; narrowly)")
 
 

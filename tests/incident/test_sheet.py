@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
 import shutil
@@ -10,10 +11,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow.compute as pc
 import pytest
+from markupsafe import escape
 
 from drivelint import catalogue, cli
-from drivelint.drive.trace import EgoSize
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, render, write_incident
 from drivelint.incident.command import commands
@@ -185,10 +189,14 @@ def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -
 
 
 def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
-    asked = case_of("no-collision@collision").asked
-    assert "carla-testbench" in size_source(replace(asked, mapping="carla-testbench"), ego=False)
-    assert "--ego-size" in size_source(replace(asked, ego_size=EgoSize(4.0, 1.8)), ego=True)
-    assert size_source(replace(asked, mapping=None, ego_size=EgoSize(4.0, 1.8)), ego=False) == ""
+    case = case_of("no-collision@collision")
+    trace, said = case.drive.trace, "size as the mapping 'mapping' says, not recorded"
+    assert [size_source(trace, who) for who in case.finding.parties] == [said] * 2
+    assert render(case).decode().count(str(escape(said))) == 2
+    tables = trace.tables["quality"]
+    recorded = replace(trace, tables={**trace.tables, "quality": tables.filter(pc.field("check_id") != ASSUMED_SIZE)})
+    by_user = with_quality_finding(recorded, QualityFinding(ASSUMED_SIZE, "info", "said", actor_id="ego"))
+    assert [size_source(by_user, who) for who in ("ego", "other")] == ["said", ""]
 
 
 def test_a_clip_says_so(case_of: CaseOf) -> None:
@@ -286,6 +294,17 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert told["when"] == f"{impact:.2f} s"
     for party in told["parties"]:
         assert numbers(party["speed"])[0] == pytest.approx(recorded[party["id"]][before].speed, abs=0.051)
+    for party in told["parties"]:
+        mine = recorded[party["id"]]
+        # magnitudes alone would hide that both were thrown back
+        changes = {t: math.hypot(s.vx - mine[before].vx, s.vy - mine[before].vy) for t, s in mine.items()}
+        most = max((t for t in changes if before < t < impact + 0.31), key=lambda t: changes[t])
+        assert numbers(party["delta_v"])[0] == pytest.approx(changes[most], abs=0.051)
+        assert party["delta_v"].endswith(
+            f"from \u22120.10 s to {'0 s' if most == impact else f'+{most - impact:.2f} s'}"
+        )
+        assert changes[impact] > abs(mine[before].speed - mine[impact].speed) + 1
+    assert "of the speed alone" in told["what"]
     by_places = closing_by_places(recorded["1"], recorded["3"], round(before - 0.1, 3), before)
     assert numbers(told["closing"])[0] == pytest.approx(by_places, abs=0.3)
     least = min((gap(recorded["1"][t], recorded["3"][t]), t) for t in recorded["1"] if t in recorded["3"])

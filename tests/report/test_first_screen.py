@@ -31,6 +31,12 @@ ASSUMED = {
     "check_id": "assumed_motion", "severity": "warning", "actor_id": None, "n": 1, "t_first_ns": None,
     "message": "mapping 'film' assumes speeds; only distances are measured",
 }  # fmt: skip
+SIZES = {
+    **ASSUMED,
+    "check_id": "assumed_size",
+    "severity": "info",
+    "message": "size as the mapping 'm' says, not recorded",
+}
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
 
@@ -56,6 +62,10 @@ def section(text: str, name: str) -> str:
                 drives=[drive(lossy=True, quality=[ASSUMED], map_name=None), drive("d2", status="not_judged", status_reason="x")],
             ),
             "map: none | log: parts lost in d1; mapping 'film' assumes speeds; 1 warning (assumed motion) | not judged: 1 drive; 1 verdict",
+        ),
+        (
+            result([verdict("pass")], drives=[drive(quality=[SIZES]), drive("d2", quality=[SIZES])]),
+            "map: road.xodr fits 2 of 2 drives | log: complete; size as the mapping 'm' says, not recorded | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),

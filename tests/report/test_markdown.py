@@ -155,7 +155,7 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     late = finding(finding_id="late", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND)
     gone = finding(finding_id="gone", object_id="6")
     text = told(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
-    assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known, 1 waived." in text
+    assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known (1 critical), 1 waived (1 critical)." in text
     assert "Of the baseline's findings: 0 changed (0 worse), 1 unchanged, 0 fixed" in text
     assert "gone but not fixed: 1 unknown now, 0 not looked at" in text
     assert "### New findings (1)" in text

@@ -77,19 +77,23 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[:1]), run(MIXED)),
-            "FAIL 3 findings in 2 of 3 drives: 2 new (1 critical, 1 minor; 1 gates), 1 known; CONTACT in 1 drive",
+            "FAIL 3 findings in 2 of 3 drives: 2 new (1 critical, 1 minor; 1 gates), 1 known (1 critical); CONTACT in 1 drive",
         ),
         (
             against(run(MIXED[1:]), run(MIXED), WAIVER),
-            "PASS no new finding; 2 known, 1 waived in 2 of 3 drives; CONTACT in 1 drive (known)",
+            "PASS no new finding; 2 known (1 critical, 1 minor), 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             against(run([crash(drive_id="d2")]), run([crash(drive_id="d2"), crash()])),
-            "FAIL 2 findings in 2 of 3 drives: 1 new (1 critical), 1 known; CONTACT in 2 drives (1 new)",
+            "FAIL 2 findings in 2 of 3 drives: 1 new (1 critical), 1 known (1 critical); CONTACT in 2 drives (1 new)",
         ),
         (
             against(run(MIXED[1:]), run([finding(n_copies=100, n_stays=53), *MIXED[1:]]), confidence=0.95),
-            "PASS no new finding; 2 known, 1 only possible in 2 of 3 drives; CONTACT in 1 drive (known)",
+            "PASS no new finding; 2 known (1 critical, 1 minor), 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+        ),
+        (
+            GateInputs(TODAY, confidence=0.95).apply_to(run([finding(n_copies=100, n_stays=53), *MIXED[1:]])),
+            "FAIL 3 findings in 2 of 3 drives: 2 counted (1 critical, 1 minor; 1 gates), 1 only possible (1 critical); CONTACT in 1 drive",
         ),
         (
             run([finding(n_copies=100, n_stays=53), *MIXED[1:]]),
@@ -124,7 +128,7 @@ def test_a_drive_whose_findings_are_all_known_is_not_said_to_have_none() -> None
 def test_a_waived_contact_is_told_with_the_waiver() -> None:
     waiver = replace(WAIVER, rule="*")
     lines = screen(GateInputs(TODAY, waivers=(waiver,)).apply_to(run([crash()])))
-    assert "PASS  1 finding in 1 of 3 drives: 1 waived; CONTACT in 1 drive (waived)" in lines
+    assert "PASS  1 finding in 1 of 3 drives: 1 waived (1 critical); CONTACT in 1 drive (waived)" in lines
     assert any(re.match(r"d1 +waived: +8.00 s CONTACT", line) for line in lines)
 
 
@@ -176,8 +180,8 @@ def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_repor
     base = run([crash(drive_id="d2")], verdict("pass"))
     now = [crash(drive_id="d2") | {"margin": -0.5}]
     head = (
-        "pass no new finding; 1 known in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); judged less than the "
-        "baseline: 1 verdict unknown that had been pass or fail (1 critical), 1 drive of it not checked, 1 rule of it not selected"
+        "pass no new finding; 1 known (1 critical) in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); judged less "
+        "than the baseline: 1 verdict unknown that had been pass or fail (1 critical), 1 drive of it not checked, 1 rule of it not selected"
     )
     less = run(now, verdict("unknown"), drives=[drive(), drive("d2")], rules=[rule(), CONTACT])
     assert heads(against(base, less)) == [head] * 3

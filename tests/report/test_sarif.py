@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.gate import GateInputs, Waiver
+from drivelint.gate import Gate, GateInputs, Waiver
 from drivelint.report import sarif
 from drivelint.result import request
 from drivelint.result.request import RunRequest
@@ -205,6 +205,7 @@ def test_a_waived_finding_is_suppressed_with_its_reason() -> None:
     ]
     assert other["suppressions"] == []
     assert [each["properties"]["gates"] for each in (waived, other)] == [False, True]
+    assert [each["level"] for each in (waived, other)] == ["note", "error"]
     region = waived["locations"][0]["physicalLocation"]["region"]
     assert region == {"startLine": 1}
     notices = run["invocations"][0]["toolExecutionNotifications"]
@@ -219,6 +220,20 @@ def test_a_baseline_gives_each_result_its_state() -> None:
     odd = finding(object_id="4", finding_id="odd", margin=-9.0)
     run = log(gated(finding(), odd, late, base=[finding(), odd | {"margin": -1.0}]))
     assert [found["baselineState"] for found in run["results"]] == ["unchanged", "updated", "new"]
+    free = finding(
+        finding_id="free", object_id="5", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND
+    )
+    run = log(gated(odd, free, base=[odd]))
+    states = [(found["baselineState"], found["level"]) for found in run["results"]]
+    assert states == [("unchanged", "note"), ("new", "error")]  # what is known does not gate
+
+
+def test_a_finding_that_is_only_possible_under_the_asked_confidence_is_a_note() -> None:
+    found = [finding(finding_id="sure"), finding(finding_id="possible", object_id="4")]
+    run = log(replace(result([verdict("fail")], found), gate=Gate(confidence=0.95, possible=("possible",))))
+    levels = {each["partialFingerprints"]["findingId/v1"]: each["level"] for each in run["results"]}
+    assert levels == {"sure": "error", "possible": "note"}
+    assert {each["level"] for each in log(result([verdict("fail")], found))["results"]} == {"error"}
 
 
 def test_the_same_result_gives_the_same_bytes() -> None:

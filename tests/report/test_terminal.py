@@ -140,6 +140,17 @@ def test_what_must_be_less_is_not_said_to_need_as_much() -> None:
     assert any("CONTACT 43.21 m/s2, at most 12.00 m/s2" in line for line in lines)
 
 
+def test_a_limit_with_a_tolerance_says_so() -> None:
+    param = {"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}
+    found = finding(rule_id="ukhc.limit", profile=None, observed=20.0, required=18.33, margin=-1.67, unit="m/s")
+    for params, words in (
+        ([param], "20.00 m/s, at most 18.33 m/s with tolerance;"),
+        ([], "20.00 m/s, at most 18.33 m/s;"),
+    ):
+        limit = rule("ukhc.limit", sense="<=", unit="m/s", params=params)
+        assert any(words in line for line in summary(result([verdict("fail")], [found], rules=[rule(), limit])))
+
+
 def test_a_contact_is_told_by_how_fast_both_came_nearer() -> None:
     found = finding(rule_id="ukhc.no-collision", observed=-0.1, required=0.0, closing_mps=10.44)
     lines = summary(result([verdict("fail")], [found], rules=[rule(), COLLISION]))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from drivelint.errors import UsageError
+from drivelint.errors import TraceError, UsageError
 from drivelint.report.outputs import working_folder, write
 from drivelint.result import folder
 from drivelint.result.files import OutputError
@@ -78,14 +78,44 @@ def test_a_list_of_files_elsewhere_removes_nothing(tmp_path: Path) -> None:
     assert other.read_text() == "mine"
 
 
-def test_a_run_that_ends_early_leaves_the_earlier_result_whole(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
-    before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path)}
-    with suppress(KeyboardInterrupt), working_folder(tmp_path) as work:
+REPORTS = {"report.html", "junit.xml", "report.md"}
+
+
+def interrupted(out: Path) -> None:
+    with suppress(KeyboardInterrupt), working_folder(out) as work:
         assert work is not None
+        assert not names(out) & REPORTS, "a run that is killed must leave no older report"
         (work / "drivelint.duckdb").write_bytes(b"half")
         raise KeyboardInterrupt
-    assert {name: (tmp_path / name).read_bytes() for name in names(tmp_path)} == before
+
+
+def test_an_earlier_result_is_whole_elsewhere_after_a_run_that_ends_early(tmp_path: Path) -> None:
+    checked(tmp_path, "a")
+    folder.add(tmp_path, "report.md", b"of the first run")
+    (tmp_path / "notes.txt").write_text("mine")
+    before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path) - REPORTS - {"notes.txt"}}
+    interrupted(tmp_path)
+    assert names(tmp_path) == {"notes.txt", *(f"{folder.EARLIER}/{name}" for name in before)}
+    earlier = tmp_path / folder.EARLIER
+    assert {name: (earlier / name).read_bytes() for name in names(earlier)} == before
+    assert load_result(earlier).drives["drive_id"].to_pylist() == ["a"]
+    interrupted(tmp_path)  # once more: the last result stays
+    assert load_result(earlier).drives["drive_id"].to_pylist() == ["a"]
+    checked(tmp_path, "b")
+    interrupted(tmp_path)
+    assert load_result(earlier).drives["drive_id"].to_pylist() == ["b"]
+    (earlier / "notes.txt").write_text("mine")
+    checked(tmp_path, "c")
+    assert {name for name in names(tmp_path) if name.startswith(folder.EARLIER)} == {f"{folder.EARLIER}/notes.txt"}
+
+
+def test_a_result_that_the_failed_run_wrote_itself_stays(tmp_path: Path) -> None:
+    checked(tmp_path, "a")
+    with suppress(TraceError), working_folder(tmp_path) as work:
+        write(result([verdict("pass", drive_id="b")], drives=[drive("b")]), tmp_path, work)
+        raise TraceError("no drive could be judged")
+    assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["b"]
+    assert not (tmp_path / folder.EARLIER).exists()
 
 
 def test_what_a_killed_run_left_goes_with_the_next(tmp_path: Path) -> None:

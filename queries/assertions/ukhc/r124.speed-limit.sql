@@ -47,7 +47,8 @@ WITH limit_range AS (
 )
 SELECT drive_id, ego_id, t_ns, speed_mps AS observed,
     CASE WHEN speed_mps > most_mps THEN most_mps WHEN peak_mps <= least_mps THEN least_mps END AS required,
-    CASE WHEN required IS NOT NULL THEN NULL
+    CASE WHEN observed > required AND $tolerance_mps > 0 THEN why('with_tolerance', {'tolerance_mps': $tolerance_mps})
+        WHEN required IS NOT NULL THEN NULL
         WHEN speed_mps IS NULL THEN why('speed_unknown_or_contradicted')
         WHEN lanelet_id IS NULL THEN why('ego_on_no_lane')
         WHEN limit_mps IS NULL THEN limit_doubt(limit_source, lanelet_id)

@@ -68,7 +68,9 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
     CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')
         WHEN too_small.is_known THEN CASE WHEN o.status = 'truncated' THEN why('may_pass_next', {'gap_m': h.vehicle_gap_m}) END
         WHEN free_gap.unseen_m < required_gap.size_m THEN why('actor_may_be_there', {'object_id': d.o.object_id, 'lack': d.o.lack})
-        WHEN h.gap_m < required_gap.size_m THEN why('class_there_unknown') END AS reason
+        WHEN h.gap_m < required_gap.size_m THEN why('class_there_unknown')
+        WHEN coalesce(free_gap.unseen_m < h.gap_m, h.gap_m IS NULL) AND coalesce(h.gap_m, free_gap.seen_m) >= required_gap.size_m THEN why('lower_bound')
+    END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 CROSS JOIN LATERAL (SELECT o.l_av_m + thinking_distance_m(o.v_vbp_mps) + thinking_distance_m(o.v_av_mps) AS size_m) required_gap

@@ -14,6 +14,7 @@ from typing import Any, Final, ParamSpec, TypeVar
 import numpy as np
 
 from drivelint.errors import UsageError
+from drivelint.phrases import hint
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -56,13 +57,22 @@ _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
 
 
 def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Raise `UsageError` for an argument of another type than its annotation, which is a text: its module postpones annotations."""
+    """Raise `UsageError` for a keyword that there is not, and for an argument of another type than its annotation.
+
+    An annotation is a text: its module postpones annotations.
+    """
     signature = inspect.signature(function)
     kinds = {name: str(parameter.annotation).split(" | ") for name, parameter in signature.parameters.items()}
+    names = [
+        name for name, each in signature.parameters.items() if name != "self" and each.kind != each.POSITIONAL_ONLY
+    ]
     asked = {name: parts for name, parts in kinds.items() if set(parts) <= _KINDS.keys()}
 
     @wraps(function)
     def checked(*args: _P.args, **keywords: _P.kwargs) -> _R:
+        if unknown := keywords.keys() - set(names):
+            word = min(unknown)
+            raise UsageError(f"{function.__name__}() has no argument {word!r}: {hint(word, names)}")
         for name, given in signature.bind(*args, **keywords).arguments.items():
             if name in asked and not any(_KINDS[part][0](given) for part in asked[name]):
                 said = [_KINDS[part][1] for part in asked[name] if part != "None"]

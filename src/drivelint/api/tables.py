@@ -145,7 +145,7 @@ class TableSet:
                     raise UsageError("the query returns nothing: give a SELECT or FROM")
                 return Table(answer.to_arrow_table())
             except duckdb.Error as error:
-                raise UsageError(f"the query failed: {error}") from error
+                raise UsageError(f"the query failed: {error}") from None  # DuckDB's error says nothing else
 
     def _queried(self) -> dict[str, Any]:
         return {name: table.arrow() for name, table in self.tables.items()}

@@ -18,7 +18,7 @@ import typer
 from drivelint import __version__, temporary
 from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values, watching
 from drivelint.cli import docs as docs_
-from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept
+from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
 from drivelint.cli.console import progress as bar
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
@@ -150,7 +150,7 @@ def check(
     from drivelint import run
     from drivelint.engine.interruption import Interruption, NothingJudgedError
     from drivelint.engine.memory import format_bytes, peak_bytes
-    from drivelint.gate import GateInputs
+    from drivelint.gate import GateInputs, refuse_own_baseline
     from drivelint.report import summary, terminal
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import Result, exit_status
@@ -159,9 +159,8 @@ def check(
 
     values.check_confidence(confidence, robustness)
     pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
-    gate_inputs = GateInputs.from_files(
-        baseline, waivers, Path(SETTINGS_FILE), values.parse_today(today), out, confidence=confidence
-    )
+    day = values.parse_today(today)
+    refuse_own_baseline(baseline, out)
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
@@ -181,8 +180,9 @@ def check(
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()
-    with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         settings = replace(settings, out=work)
+        gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), day, out, confidence=confidence)
         deaf = Restart.if_possible(progress, work)
 
         def kept(result: Result) -> Result:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
+from drivelint.errors import DriveLintError
 from drivelint.phrases import inert, inert_line, plural
 
 if TYPE_CHECKING:
@@ -48,10 +49,20 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
 def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
     """Tell a person that an interrupted check has no result, and what its folder holds."""
     why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
-    if out is not None:
-        earlier = (out / "summary.json").is_file()
-        why += f"; {inert_line(str(out))} {'is unchanged: it still holds the result of an earlier run' if earlier else 'holds no result'}"
-    typer.echo(f"drivelint: {why}", err=True)
+    typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} holds no result'}", err=True)
+
+
+@contextmanager
+def tells_of_earlier(out: Path | None) -> Iterator[None]:
+    """Tell a person where an earlier result is after a run that ended without one."""
+    from drivelint.result.folder import EARLIER
+
+    try:
+        yield
+    except (DriveLintError, KeyboardInterrupt):
+        if out is not None and (out / EARLIER / "summary.json").is_file() and not (out / "summary.json").is_file():
+            typer.echo(f"drivelint: the result of an earlier run is now in {inert_line(str(out / EARLIER))}", err=True)
+        raise
 
 
 def say_kept(statuses: Sequence[str], out: Path | None) -> None:

@@ -10,7 +10,7 @@ import typer
 
 from drivelint.cli import options, values
 from drivelint.cli.console import progress as bar
-from drivelint.cli.console import run_interruptible, say_nothing_kept
+from drivelint.cli.console import run_interruptible, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import inert_json
@@ -151,7 +151,7 @@ def watch(
         serve=serve,
     )
     emit, interruption = _Printer(), WatchInterruption()
-    with working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         try:
             code = run_interruptible(
                 lambda: _watch_and_check(settings, work, emit, interruption, progress, overwrite=overwrite),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isnan
 from typing import TYPE_CHECKING, Final
 
-from drivelint.drive.trace import MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.trace import ASSUMED_SIZE, MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.phrases import listed
 
@@ -52,12 +52,15 @@ def choose(
 
 
 def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[QualityFinding]:
-    """Give egos without a size the user's size, in place; where the log has another size, keep it and return a finding."""
+    """Give egos without a size the user's size, in place, and keep another size that the log has; findings tell of both."""
     if size is None:
         return []
     findings = []
     for i in (actors.ids.index(name) for name in egos):
         known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
+        if any(map(isnan, known)):
+            message = "size as --ego-size says, not recorded"
+            findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=actors.ids[i]))
         for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given

@@ -18,6 +18,7 @@ from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
 from drivelint.drive.trace import (
+    ASSUMED_MOTION,
     BRAKE_LIGHTS,
     INDICATORS,
     LEAST_UTC_NS,
@@ -54,7 +55,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     states, restarts = unknown_at_restarts(recording.hand_over_states())
     states, repeated = without_duplicates(sorted_states(states))
     findings = [*recording.findings, *lost, *restarts, *repeated]
-    assumed = any(f.check_id == "assumed_motion" for f in recording.findings)
+    assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
     named = recording.ego_ids if options.ego is None else [options.ego]
     step = steps(states)
     split = jumps.NO_SPLIT

@@ -54,6 +54,12 @@ class EgoSize(NamedTuple):
     forward_m: float = 0.0
 
 
+ASSUMED_MOTION = "assumed_motion"
+"""The check of a log whose mapping gives speeds and lanes that nobody measured."""
+ASSUMED_SIZE = "assumed_size"
+"""The check, information only, of a size that the log does not record; a converted log carries it, and so does a clip."""
+TURNED_FRAME = "turned_frame"
+"""The check, information only, of a log whose mapping turns it, as its own frame is left-handed."""
 OWN_MAP_UNUSABLE = "own_map_unusable"
 """The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-__all__ = ["ComparedFinding", "Difference", "Gate", "GateInputs", "Waiver", "compare_results"]
+__all__ = ["ComparedFinding", "Difference", "Gate", "GateInputs", "Waiver", "compare_results", "refuse_own_baseline"]
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,7 @@ class GateInputs:
             said += waivers.read(settings_file, only_waivers=False)
         if baseline is None and not said and confidence is None:
             return None
-        if baseline is not None and out is not None and baseline.resolve() == out.resolve():
-            raise UsageError(
-                f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
-            )
+        refuse_own_baseline(baseline, out)
         if baseline is None:
             return cls(today, waivers=tuple(said), confidence=confidence)
         return cls(today, load_result(baseline), baseline.resolve().name, tuple(said), confidence)
@@ -75,6 +72,14 @@ class GateInputs:
             rows = result.findings.select(["finding_id", "n_copies", "n_stays"]).to_pylist()
             possible = sorted(row["finding_id"] for row in rows if certainty(row, self.confidence) == POSSIBLE)
         return replace(result, gate=Gate(today, difference, stated, waived, self.confidence, tuple(possible)))
+
+
+def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
+    """Refuse a baseline that the run would replace. Errors: `UsageError`."""
+    if baseline is not None and out is not None and baseline.resolve() == out.resolve():
+        raise UsageError(
+            f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
+        )
 
 
 def compare_results(

@@ -8,7 +8,7 @@ from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue.header import EXCUSES
-from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile
+from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile, required
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
 from drivelint.result.text import seconds
@@ -22,6 +22,8 @@ ADVICE: Final = ("begin", "choose", "correct", "give", "make", "record", "see")
 """First words of what a reason advises."""
 _ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
 _MOST_STRETCHES: Final = 2
+LOWER_BOUND: Final = "lower_bound"
+"""The cause of a verdict whose measure is limited only by the end of what is known."""
 
 
 def quoted(rule: Row) -> str:
@@ -53,8 +55,9 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
     said, about = quoted(rule), [_stretches(rows, span, start_ns)]
     if EXCUSES not in rule["tags"] and rule["observes"] and row["observed"] is not None:
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
-        said = minus(f"{rule['observes']}{whom} {amount(row['observed'], row['unit'])}")
-        about.insert(0, f"{SENSE.get(rule['sense'], '')}{amount(row['required'], row['unit'])}")
+        least = "at least " if row["cause_code"] == LOWER_BOUND else ""
+        said = minus(f"{rule['observes']}{whom} {least}{amount(row['observed'], row['unit'])}")
+        about.insert(0, f"{SENSE.get(rule['sense'], '')}{required(row, rule)}")
     if any(each["near_miss"] for each in rows):
         about.append("narrowly")
     told = "; ".join(each for each in about if each)

@@ -36,14 +36,15 @@ _MERGE_S: Final = 0.5
 class Motion:
     """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
 
-    `t`: seconds from the moment; `backwards`: whether it moves against its heading; `gap`: box to box in m, negative: depth of
-    overlap; `closing`: speed at which the line between the box centres shortens; `relative`: speed of the one as seen from the other;
-    `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as the ego drives; `out_since`: when the
-    ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
+    `t`: seconds from the moment; `velocity`: along x and y (2, n) in m/s; `backwards`: whether it moves against its heading; `gap`: box to
+    box in m, negative: depth of overlap; `closing`: speed at which the line between the box centres shortens; `relative`: speed of the
+    one as seen from the other; `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as the ego
+    drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
     """
 
     t: Floats
     speed: tuple[Floats, Floats]
+    velocity: tuple[Floats, Floats]
     backwards: tuple[Mask, Mask]
     lane_offset: tuple[Floats, Floats]
     gap: Floats
@@ -69,6 +70,10 @@ class Motion:
         return cls(
             t=(steps["t_ns"].to_numpy() - moment_ns) / 1e9,
             speed=(c["speed_mps"], c["object_speed_mps"]),
+            velocity=(
+                np.stack([c["vx_mps"], c["vy_mps"]]),
+                np.stack([c["object_vx_mps"], c["object_vy_mps"]]),
+            ),
             backwards=(_is_backwards(c, ""), _is_backwards(c, "object_")),
             lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
             gap=np.where(np.isnan(exact), _apart(c), exact),

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from drivelint.incident.case import LETTERS
+from drivelint.incident.delta_v import told_delta_v
 from drivelint.incident.judge import Judged
 from drivelint.incident.motion import BEFORE_S, slowing_known
 from drivelint.incident.sizes import size_source
@@ -45,10 +46,11 @@ def party(
         "id": actor_id,
         "ego": number == 0,
         "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
-        "size_source": size_source(case.asked, ego=number == 0),
+        "size_source": size_source(case.drive.trace, actor_id),
         "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
         "lane": _lane(case, number, at),
         "speed": "not known" if at is None else speed(float(v[at])),
+        "delta_v": told_delta_v(motion, number, None if before_s is None else at, case.drive.trace, actor_id),
         "fastest": "not known" if math.isinf(fastest) else f"{speed(float(fastest))}{gaps}",
         "slowed": _slowed(slowed, before_s),
         "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),

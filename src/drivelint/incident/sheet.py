@@ -16,6 +16,7 @@ from drivelint.engine.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct
+from drivelint.incident.delta_v import WINDOW_S
 from drivelint.incident.fitting import SHARED_HEAD, Fitting, first_fitting, fit, shared_reasons
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
@@ -82,6 +83,7 @@ def content(case: Case) -> dict[str, Any]:
         "utc": utc_at(finding.moment_ns, finding.drive),
         "road_id": _road_of(case),
         "contact": finding.is_contact,
+        "delta_v_s": WINDOW_S,
         "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
         "parties": [party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
@@ -133,7 +135,7 @@ def _what(finding: NamedFinding) -> str:
     if said and row["margin"] is not None:
         said = f"{rule['observes'] or 'measured'}: {said}; missed by {amount(-row['margin'], row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
-        said += " (from one step to the next)"
+        said += " (of the speed alone, not of its direction; from one step to the next)"
     reason = "" if row["reason_measures"] and said else row["reason"]
     text = "; ".join(part for part in (reason, said) if part)
     return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
@@ -290,7 +292,7 @@ def _rests_on(case: Case, motion: Motion) -> str:
     boxes = (
         "the boxes do not touch at that time" if 0 < known.size == gaps.size else "nobody knows whether the boxes touch"
     )
-    assumed = any(size_source(case.asked, ego=number == 0) for number in range(len(case.finding.parties)))
+    assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
     return f"It rests on a sudden change of speed: {boxes} ({told}{sizes})."
 

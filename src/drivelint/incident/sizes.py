@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.formats.tables import mapping
+from drivelint.drive.trace import ASSUMED_SIZE
 
 if TYPE_CHECKING:
-    from drivelint.result.request import RunRequest
+    from drivelint.drive.trace import Trace
 
 
-def size_source(asked: RunRequest, *, ego: bool) -> str:
-    """Return, in words, what gave a party its size; '' where the log did."""
-    if ego and asked.ego_size is not None:
-        return "size as --ego-size says, not the log"
-    if asked.mapping is not None:
-        name, found = mapping.load(asked.mapping)
-        given = mapping.fields(found)
-        if any(side in given and given[side].value is not None for side in ("length", "width")):
-            return f"size as the mapping {name} says, not the log"
-    return ""
+def size_source(trace: Trace, actor_id: str) -> str:
+    """Return, in words, what gave an actor its size; '' where the log did. A clip says what its log said."""
+    rows = trace.tables["quality"].to_pylist()
+    mine = [row for row in rows if row["check_id"] == ASSUMED_SIZE and row["actor_id"] in {None, actor_id}]
+    return "; ".join(row["message"] for row in mine)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.catalogue.header import CONTACT
 from drivelint.incident.motion import slowing_known
 from drivelint.result.certainty import certainty
-from drivelint.result.text import number
+from drivelint.result.text import number, tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,7 +64,13 @@ def measured(row: Row, rule: Row) -> str:
     if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
         return f"boxes overlap by {amount(-row['observed'], 'm')} and must not"
     must = SENSE.get(rule["sense"], "")
-    return minus(f"{amount(row['observed'], row['unit'])}, must be {must}{amount(row['required'], row['unit'])}")
+    return minus(f"{amount(row['observed'], row['unit'])}, must be {must}{required(row, rule)}")
+
+
+def required(row: Row, rule: Row) -> str:
+    """Return what was required, and of a limit how much of it is tolerance."""
+    said, given = amount(row["required"], row["unit"]), tolerance(row, rule)
+    return said if given is None else f"{said}, {amount(given, row['unit'])} of it tolerance"
 
 
 def profile(name: str | None) -> str:

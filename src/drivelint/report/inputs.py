@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
+from drivelint.drive.trace import ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, off_map_reason
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_ASSUMED: Final = "assumed_motion"
-"""Id of the quality note on a log whose mapping assumes values that it does not have."""
+_ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _NAMED: Final = 2
 _MISSING: Final = "missing_"
 _NO_MAP: Final = "missing_map"
@@ -65,15 +65,17 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: what was lost of them, what their mappings assume, the number of warnings, and copies."""
+    """Return whether the logs are complete: what was lost of them, what is assumed, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"]]
-    assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == _ASSUMED})
+    assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
+    given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMED_INFO})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
     parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
     parts += assumed
     if not parts:
         parts = ["complete"] if drives else ["none"]
+    parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
         parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _NAMED)})")

@@ -35,6 +35,8 @@ _MOSTLY: Final = "MOSTLY UNKNOWN"
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
+_COUNTED: Final = "counted"
+"""Findings that the asked confidence does not let through."""
 
 
 class Part(NamedTuple):
@@ -169,9 +171,13 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
         if name not in LET_THROUGH:
             n, gating = len(mine), gating_findings(result).num_rows
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
-            label = {"new": "new", "open": "not waived" if gate.waivers else "not let through"}[name]
+            label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED}[name]
             said.append(f"{n} {label} ({by_severity(mine)}{some})")
-    said += [f"{len(groups[name])} {words}" for name, words in LET_THROUGH.items() if name in groups]
+    said += [
+        f"{len(groups[name])} {words} ({by_severity(groups[name])})"
+        for name, words in LET_THROUGH.items()
+        if name in groups
+    ]
     if gate.baseline is not None and "new" not in groups:
         return f"no new finding; {', '.join(said)}{where}"
     return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
@@ -204,7 +210,7 @@ def _let_through(gate: Gate | None, contacts: Sequence[Row]) -> str:
         return ""
     new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH}
     if new:
-        label = "new" if gate.baseline is not None else "not let through"
+        label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED
         return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
     why = {gate.standing(row["finding_id"]) for row in contacts}
     return f" ({' or '.join(words for name, words in LET_THROUGH.items() if name in why)})"

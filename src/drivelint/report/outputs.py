@@ -44,12 +44,15 @@ RESULT_FILES: Final = (
 def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Path | None]:
     """Prepare the folder `out` for a result and yield one within for the files that grow during a run; None: nothing is written.
 
+    Reports of an earlier result go now; if the run ends without a result, the rest of that one moves to `earlier/`.
+
     Errors: `UsageError` where it has files of such names that drivelint did not write, and may not overwrite them; `OutputError`.
     """
     if out is None:
         yield None
     else:
-        with folder.working_folder(out, RESULT_FILES, overwrite=overwrite) as work:
+        reports = [name for name, _ in REPORT_FORMATS.values()]
+        with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
             yield work
 
 

@@ -13,6 +13,7 @@ from urllib.parse import quote
 
 from drivelint import __version__
 from drivelint.gate import descriptions
+from drivelint.report.outcome import LET_THROUGH, standing
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
-"""Severity -> level. A draft's findings are notes, whatever their severity: they do not gate."""
+"""Severity -> level. Findings of drafts, and those that baseline, waivers or confidence let through, are notes: they do not gate."""
 
 ROOT: Final = "%SRCROOT%"
 """Base of the paths of logs: the folder in which the check ran, which for code scanning is that of the repository."""
@@ -103,7 +104,9 @@ class _Run:
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
             "kind": "fail",
-            "level": _level(row["severity"], rule["status"]),
+            "level": "note"
+            if standing(gate, row["finding_id"]) in LET_THROUGH
+            else _level(row["severity"], rule["status"]),
             "message": {"text": " ".join(part for part in said if part)},
             "locations": [self._location(drive, row)],
             "partialFingerprints": {"findingId/v1": row["finding_id"]},

@@ -21,7 +21,7 @@ from drivelint.report.worst_first import is_contact, moment_ns, worst_first, wor
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
-from drivelint.result.text import closing, number, seconds
+from drivelint.result.text import closing, number, seconds, tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -185,7 +185,10 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
         limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
-        parts.append(f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{profile}")
+        of_it = "" if tolerance(row, rules[row["rule_id"]]) is None else " with tolerance"
+        parts.append(
+            f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{of_it}{profile}"
+        )
     if not contact:
         # a title says what is so when the rule is kept: alone it would say the opposite
         parts.append(rules[row["rule_id"]]["title"] if parts else f"not kept: {rules[row['rule_id']]['title']}")

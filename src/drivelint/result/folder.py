@@ -1,7 +1,7 @@
 """The folder that `check --out` writes, replaced as one by a later run. What drivelint did not write there is never touched.
 
-`files.json` lists what drivelint wrote, and the sha256 of tables and summary. A run works in a folder of its own within, so that one that
-ends early changes nothing.
+`files.json` lists what drivelint wrote, and the sha256 of tables and summary. A run works in a folder of its own within. An earlier result
+must not pass for that of a run that ended without one: its reports go when the run begins, the rest moves to `earlier/` when it fails.
 """
 
 from __future__ import annotations
@@ -15,23 +15,28 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import listed
-from drivelint.result.files import prepare_folder, publish
+from drivelint.result.files import OutputError, prepare_folder, publish
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
 MANIFEST: Final = "files.json"
 _KEY: Final = "written_by_drivelint"
 _HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"
+EARLIER: Final = "earlier"
+"""The folder, within that of results, of an earlier result after a run that ended without one; the next result replaces it."""
 
 
 @contextmanager
-def working_folder(out: Path, patterns: Sequence[str], *, overwrite: bool = False) -> Iterator[Path]:
+def working_folder(
+    out: Path, patterns: Sequence[str], reports: Sequence[str], mark: str, *, overwrite: bool = False
+) -> Iterator[Path]:
     """Make the folder `out` and yield an empty one within for the files of a run, which goes afterwards.
 
-    `patterns`: globs of the names that a result may have. Errors: `UsageError` where `out` is a file, or has such names that drivelint
+    `patterns`: globs of the names that a result may have; `reports`: names of those that the tables give again, which a build server
+    shows; `mark`: as in `replace`. Errors: `UsageError` where `out` is a file, or has such names that drivelint
     did not write, unless they may be overwritten; `OutputError`.
     """
     prepare_folder(out)
@@ -45,12 +50,57 @@ def working_folder(out: Path, patterns: Sequence[str], *, overwrite: bool = Fals
     with _locked(out) as is_ours:
         for left in out.glob(f"{_WORK}.*") if is_ours else ():
             shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
-        work = out / f"{_WORK}.{os.getpid()}"
+        work, before = out / f"{_WORK}.{os.getpid()}", _identity(out / mark)
         try:
             work.mkdir()
+            _remove(out, sorted(_ours(out, patterns, overwrite=overwrite).intersection(reports)))
             yield work
+        except BaseException:
+            if before is not None and _identity(out / mark) == before:
+                _set_aside(out, patterns, mark, overwrite=overwrite)
+            raise
         finally:
             shutil.rmtree(work, ignore_errors=True)
+
+
+def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool) -> None:
+    """Move an earlier result into its folder within `out`; without its mark there is no result in `out` from the first move on."""
+    earlier = out / EARLIER
+    _remove(earlier, sorted(_ours(earlier, patterns, overwrite=False)))
+    names = _ours(out, patterns, overwrite=overwrite)
+    try:
+        for name in (mark, *sorted(names - {mark}), MANIFEST):
+            if (out / name).exists():
+                (earlier / name).parent.mkdir(parents=True, exist_ok=True)
+                (out / name).replace(earlier / name)
+    except OSError:
+        _remove(out, [mark])  # what cannot be moved is no result
+    _remove_empty(out, names)
+
+
+def _remove(out: Path, names: Sequence[str]) -> None:
+    """Remove these files of a folder, and the folders that they leave empty. Errors: `OutputError`."""
+    try:
+        for name in names:
+            (out / name).unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"{out}: an earlier result cannot be removed: {error.strerror or error}") from error
+    _remove_empty(out, names)
+
+
+def _remove_empty(out: Path, names: Iterable[str]) -> None:
+    for folder in {(out / name).parent for name in names} - {out}:
+        with suppress(OSError):  # somebody's file is there
+            folder.rmdir()
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Return what tells a file from the one that replaces it; None: there is none."""
+    try:
+        said = path.stat()
+    except OSError:
+        return None
+    return said.st_ino, said.st_mtime_ns
 
 
 @contextmanager
@@ -97,17 +147,18 @@ def replace(
     Errors: `OutputError`.
     """
     names = {*contents, *moved}
-    present = _present(out, patterns) - {MANIFEST}
-    before = present if overwrite else present & _written(out)
+    before = _ours(out, patterns, overwrite=overwrite)
     # should the machine fail halfway, the next run knows both the old and the new files
     publish(out, {MANIFEST: manifest(before | names)}, {})
     gone: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
     hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
     hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
     publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**gone, **moved}, mark)
-    for folder in {(out / name).parent for name in gone} - {out}:
-        with suppress(OSError):  # somebody's file is there
-            folder.rmdir()
+    _remove_empty(out, gone)
+    earlier = out / EARLIER
+    _remove(earlier, [*sorted(_ours(earlier, patterns, overwrite=False)), *([MANIFEST] if _written(earlier) else [])])
+    with suppress(OSError):  # somebody's file is there, or there is none
+        earlier.rmdir()
 
 
 def add(out: Path, name: str, content: bytes) -> None:
@@ -130,6 +181,12 @@ def _sha256(path: Path) -> str | None:
 
 def _present(out: Path, patterns: Sequence[str]) -> set[str]:
     return {path.relative_to(out).as_posix() for pattern in patterns for path in out.glob(pattern)}
+
+
+def _ours(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
+    """Return the names of an earlier result's files, without their list: those that are listed, or all that may be overwritten."""
+    present = _present(out, patterns) - {MANIFEST}
+    return present if overwrite else present & _written(out)
 
 
 def _written(out: Path) -> set[str]:

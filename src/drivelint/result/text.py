@@ -79,6 +79,13 @@ def comparison(row: Row) -> str:
     return text if row["margin"] is None else f"{text}, margin {number(row['margin'], unit)}"
 
 
+def tolerance(row: Row, rule: Row) -> float | None:
+    """Return how much of what was required is the rule's tolerance, in the row's unit; None: nothing, or all of it."""
+    told = [p for p in rule["params"] if p["name"].startswith("tolerance_") and p["unit"] == row["unit"]]
+    given = float(told[0]["value"]) if told else 0.0
+    return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
+
+
 def line(row: Row, when: str) -> str:
     """Return a verdict or finding in one line: `when`, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
     measured = "" if row["reason_measures"] else comparison(row)

@@ -216,6 +216,7 @@ def test_ego_size(tmp_path: Path) -> None:
     assert math.hypot(state["x_m"], state["y_m"]) == pytest.approx(math.hypot(20, 1.4))
     assert math.hypot(state["vx_mps"], state["vy_mps"]) == pytest.approx(rate * math.hypot(20, 1.4))
     assert {"no_size", "velocity_mismatch", "reference_point", "twist_frame"}.isdisjoint(quality(trace))
+    assert quality(trace)["assumed_size"]["message"] == "size as --ego-size says, not recorded"
 
 
 @pytest.mark.parametrize("text", ["4.9", "4.9,0", "-4.9,1.9", "4.9,x", "nan,1.9", "4.9,1.9,1.4,2", ""])
@@ -238,3 +239,4 @@ def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:
     trace = seen(tmp_path, others(), ego="9", ego_size=EgoSize(4.9, 1.82))
     assert (actors(trace)["9"]["length_m"], actors(trace)["9"]["width_m"]) == (4.5, 1.8)
     assert "length of 4.9 m, the log 4.5 m" in quality(trace)["ego_size"]["message"]
+    assert "assumed_size" not in quality(trace)

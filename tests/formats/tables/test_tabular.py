@@ -50,7 +50,7 @@ def test_long_table(tmp_path: Path) -> None:
     row = at(trace, "b", 1.9)
     assert (row["x_m"], row["y_m"], row["z_m"], row["vx_mps"], row["ax_mps2"]) == (19.0, 4.0, None, 10.0, None)
     assert {k: v["is_ego"] for k, v in actors(trace).items()} == {"a": True, "b": False}
-    assert set(quality(trace)) == {"no_indicator", "no_brake_light", "unprotected"}
+    assert set(quality(trace)) == {"assumed_size", "no_indicator", "no_brake_light", "unprotected"}
 
 
 def test_tables_are_those_of_the_schema(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_padded_and_blank_rows_are_no_loss(tmp_path: Path) -> None:
     padded = read(table(tmp_path / "d.csv", [*lines, "", "   ", " , , , , , , ", ""]), mapping=mapping(tmp_path))
     plain = read(table(tmp_path / "d.csv", cars()), mapping=mapping(tmp_path))
     assert padded.tables["actor_state"].drop_columns("drive_id") == plain.tables["actor_state"].drop_columns("drive_id")
-    assert set(quality(padded)) == {"no_indicator", "no_brake_light", "unprotected"}
+    assert set(quality(padded)) == {"assumed_size", "no_indicator", "no_brake_light", "unprotected"}
 
 
 def test_comma_at_the_end_of_every_row_but_the_header(tmp_path: Path) -> None:

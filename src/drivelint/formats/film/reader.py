@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
+from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_MOTION, ASSUMED_SIZE, QualityFinding, Recording, States
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
@@ -79,9 +79,9 @@ def read(probe: Probe) -> Recording:
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in seen.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
     message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
-    recording = Recording(
-        stem, states, ego_ids=[film.ego.id], findings=[*findings, QualityFinding("assumed_motion", "warning", message)]
-    )
+    findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
+    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {stem!r} says, not recorded"))
+    recording = Recording(stem, states, ego_ids=[film.ego.id], findings=findings)
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
     recording.notes = [f"read through the mapping {stem!r}: {assumed} are assumed"]

@@ -14,8 +14,10 @@ from drivelint.arrays import coded
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
+    ASSUMED_SIZE,
     LOSS_CHECKS,
     MOTOR_VEHICLES,
+    TURNED_FRAME,
     LostTime,
     QualityFinding,
     Recording,
@@ -65,11 +67,25 @@ def read(probe: Probe) -> Recording:
     recording = _Body(path, mapping, sheet, _groups(path, name, mapping, sheet)).read()
     _refuse_misread(path, name, recording)
     recording.format = name
+    recording.findings += _assumptions(name, mapping)
     recording.notes = said
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
         recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
     return recording
+
+
+def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
+    """Return what the mapping says in place of the log: sizes, and that the log's frame is left-handed."""
+    found = []
+    given = mappings.fields(mapping)
+    if any(side in given and given[side].value is not None for side in ("length", "width")):
+        found.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
+    turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
+    if turned := [what for what, is_turned in turns.items() if is_turned]:
+        message = f"{' and '.join(turned)} turned, as the mapping {name!r} says: the log's frame is left-handed"
+        found.append(QualityFinding(TURNED_FRAME, "info", message))
+    return found
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:

@@ -1,0 +1,62 @@
+"""The change of velocity (delta-v) of a party over a contact: how far apart its velocity vectors before and after are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.incident.words import minus, speed
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import Trace
+    from drivelint.incident.motion import Motion
+
+WINDOW_S: Final = 0.3
+"""Crash recorders take the greatest change of velocity in the first 0.3 s of an impact (49 CFR 563.7): an impact is over by then."""
+_MOST_STEPS: Final = 2.5
+"""Samples further apart, in usual steps, are not continuous: as the rules have it (`max_gap`)."""
+
+
+class DeltaV(NamedTuple):
+    """The greatest change of velocity in m/s, when it is reached in seconds from the moment, and whether the recording ends too early."""
+
+    mps: float
+    at_s: float
+    is_least: bool
+
+
+def delta_v(motion: Motion, party: int, before: int) -> DeltaV | None:
+    """Return the greatest change of a party's velocity vector since the step `before`, up to 0.3 s after the moment.
+
+    The step after `before` counts in any case, however long it is. None: a velocity in that time is not known, or nothing is recorded.
+    """
+    t, v = motion.t, motion.velocity[party]
+    window = np.flatnonzero((t <= WINDOW_S + 1e-9) & (np.arange(len(t)) > before))
+    window = window if window.size else np.arange(before + 1, min(before + 2, len(t)))
+    change = np.hypot(*(v[:, window] - v[:, [before]]))
+    steps = np.diff(t[before : before + 1 + window.size])
+    if not window.size or np.isnan(change).any() or (steps > _MOST_STEPS * motion.step_s + 1e-9).any():
+        return None
+    i = int(change.argmax())
+    return DeltaV(float(change[i]), float(t[window[i]]), bool(t[-1] + motion.step_s <= WINDOW_S + 1e-9))
+
+
+def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, actor_id: str) -> str:
+    """Return the change of velocity over a contact with its interval, in words, or why it is not known; '' where there is no contact."""
+    if before is None:
+        return ""
+    rows = trace.tables["quality"].to_pylist()
+    checks = {row["check_id"] for row in rows if row["actor_id"] in {None, actor_id}}
+    if "velocity_filtered" in checks:
+        return "not known: a mean over time stands for its velocity, which hides an impact"
+    found = delta_v(motion, party, before)
+    if found is None:
+        return f"not known: its velocity is missing in part, from {_at(motion.t[before])} to {_at(WINDOW_S)}"
+    least = "at least " if found.is_least else ""
+    derived = "; velocities computed from positions" if "velocity_derived" in checks else ""
+    return f"{least}{speed(found.mps)}, from {_at(motion.t[before])} to {_at(found.at_s)}{derived}"
+
+
+def _at(s: float) -> str:
+    return minus(f"{s:+.2f} s") if abs(s) >= 5e-3 else "0 s"
