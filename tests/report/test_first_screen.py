@@ -37,6 +37,7 @@ SIZES = {
     "severity": "info",
     "message": "size as the mapping 'm' says, not recorded",
 }
+WHOLE = "complete as far as can be told (no end mark in .csv)"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
 
@@ -51,10 +52,18 @@ def section(text: str, name: str) -> str:
 @pytest.mark.parametrize(
     ("run", "line"),
     [
-        (result([verdict("pass")]), "map: road.xodr fits 1 of 1 drive | log: complete | not judged: nothing"),
+        (
+            result([verdict("pass")], drives=[drive(file_name="a.mcap"), drive("d2", file_name="b.parquet")]),
+            "map: road.xodr fits 2 of 2 drives | log: complete | not judged: nothing",
+        ),
+        (result([verdict("pass")]), f"map: road.xodr fits 1 of 1 drive | log: {WHOLE} | not judged: nothing"),
+        (
+            result([verdict("pass")], drives=[drive(file_name="A.OSI"), drive("d2"), drive("d3", file_name="c.mcap")]),
+            "map: road.xodr fits 3 of 3 drives | log: complete as far as can be told (no end mark in .csv, .osi) | not judged: nothing",
+        ),
         (
             result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),
-            "map: road.xodr fits 0 of 1 drive (27 of 181 steps on a lane) | log: complete | not judged: registration (1 rule)",
+            f"map: road.xodr fits 0 of 1 drive (27 of 181 steps on a lane) | log: {WHOLE} | not judged: registration (1 rule)",
         ),
         (
             result(
@@ -65,15 +74,15 @@ def section(text: str, name: str) -> str:
         ),
         (
             result([verdict("pass")], drives=[drive(quality=[SIZES]), drive("d2", quality=[SIZES])]),
-            "map: road.xodr fits 2 of 2 drives | log: complete; size as the mapping 'm' says, not recorded | not judged: nothing",
+            f"map: road.xodr fits 2 of 2 drives | log: {WHOLE}; size as the mapping 'm' says, not recorded | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
-            "map: road.xodr fits 1 of 1 drive, but not 1 of 2 egos | log: complete | not judged: nothing",
+            f"map: road.xodr fits 1 of 1 drive, but not 1 of 2 egos | log: {WHOLE} | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),
-            "map: road.xodr fits 4 of 4 drives | log: complete; copies, counted again: b of a, c of a | not judged: nothing",
+            f"map: road.xodr fits 4 of 4 drives | log: {WHOLE}; copies, counted again: b of a, c of a | not judged: nothing",
         ),
     ],
 )  # fmt: skip

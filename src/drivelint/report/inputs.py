@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
+_WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
+"""Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
 _NAMED: Final = 2
 _MISSING: Final = "missing_"
 _NO_MAP: Final = "missing_map"
@@ -74,13 +76,20 @@ def _log(drives: Sequence[Row]) -> InputNote:
     parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
     parts += assumed
     if not parts:
-        parts = ["complete"] if drives else ["none"]
+        parts = [_whole(drives)] if drives else ["none"]
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
         parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _NAMED)})")
     parts += (copied := _copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
+
+
+def _whole(drives: Sequence[Row]) -> str:
+    """Say that nothing is missing, as far as the files tell."""
+    names = [drive["file_name"].lower() for drive in drives]
+    without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
+    return f"complete as far as can be told (no end mark in {listed(without)})" if without else "complete"
 
 
 def _copies(drives: Sequence[Row]) -> list[str]:
