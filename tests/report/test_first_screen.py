@@ -37,7 +37,7 @@ SIZES = {
     "severity": "info",
     "message": "size as the mapping 'm' says, not recorded",
 }
-WHOLE = "complete as far as can be told (no end mark in .csv)"
+WHOLE = "complete as far as .csv tells"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
 
@@ -59,7 +59,7 @@ def section(text: str, name: str) -> str:
         (result([verdict("pass")]), f"map: road.xodr fits 1 of 1 drive | log: {WHOLE} | not judged: nothing"),
         (
             result([verdict("pass")], drives=[drive(file_name="A.OSI"), drive("d2"), drive("d3", file_name="c.mcap")]),
-            "map: road.xodr fits 3 of 3 drives | log: complete as far as can be told (no end mark in .csv, .osi) | not judged: nothing",
+            "map: road.xodr fits 3 of 3 drives | log: complete as far as .csv, .osi tells | not judged: nothing",
         ),
         (
             result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),

@@ -69,7 +69,7 @@ def test_a_finding_is_a_row_that_links_to_the_report() -> None:
         "## drivelint: FAIL, exit 1\n\n1 critical finding in 1 of 1 drive.\n\nexit 1: 1 finding at or above"
     )
     assert (
-        "map: road.xodr fits 1 of 1 drive / log: complete as far as can be told (no end mark in .csv) / not judged: "
+        "map: road.xodr fits 1 of 1 drive / log: complete as far as .csv tells / not judged: "
         in text.partition("| pack |")[0]
     )
 

@@ -68,6 +68,8 @@ def required_rules(
             raise UsageError(f"--require {selector!r}: is no stable rule, and others do not gate")
         # a selector of many rules is about those of the run: a severity has rules of every pack
         lacking = sorted(stable - chosen - (left_out - {selector}))
+        if not stable & chosen and not lacking:
+            raise UsageError(f"--require {selector!r}: --ignore leaves out all of it")
         if lacking and (selector in rules or not stable & chosen):
             raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
         found |= stable & chosen

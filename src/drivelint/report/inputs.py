@@ -89,7 +89,7 @@ def _whole(drives: Sequence[Row]) -> str:
     """Say that nothing is missing, as far as the files tell."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
-    return f"complete as far as can be told (no end mark in {listed(without)})" if without else "complete"
+    return f"complete as far as {listed(without)} tells" if without else "complete"
 
 
 def _copies(drives: Sequence[Row]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
@@ -57,7 +58,7 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     drives = _drives(result, found, every, rules, width)
     parts: list[RenderableType] = [_head(result), Text(), _verdict(result), Text(), drives, Text()]
     if found:
-        parts += [_broken(found), Text()]
+        parts += [_broken(found, _let_through(result, every)), Text()]
     return Group(*parts, *_lines(result), Text(), *_end(result, found or every, out))
 
 
@@ -202,11 +203,21 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
 
 
-def _broken(found: list[Row]) -> Table:
-    """Return one row a broken rule, the worst first; with how many findings are only possible, where some are."""
+def _let_through(result: Result, every: list[Row]) -> str:
+    """Return how many findings a gate lets through, by why it does; '' for none."""
+    counted = Counter(standing(result.gate, row["finding_id"]) for row in every)
+    return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH.items() if counted[name])
+
+
+def _broken(found: list[Row], without: str) -> Table:
+    """Return one row a broken rule, the worst first; with how many findings are only possible, where some are.
+
+    `without`: the findings that are not among them.
+    """
     some_possible = any(doubt(row) for row in found)
-    columns = ("broken rule", "findings", *(["possible"] if some_possible else []), "drives", "worst margin")
-    table = _table(columns, {"broken rule": 60})
+    first = f"broken rule (without {without})" if without else "broken rule"
+    columns = (first, "findings", *(["possible"] if some_possible else []), "drives", "worst margin")
+    table = _table(columns, {first: 60})
     of_rule = counts.grouped(found, lambda row: row["rule_id"])
     for rule_id, rows in list(of_rule.items())[:MOST_RULES]:
         margins = [row["margin"] for row in rows if row["margin"] is not None]
