@@ -125,6 +125,23 @@ def test_what_a_killed_run_left_goes_with_the_next(tmp_path: Path) -> None:
     assert not [name for name in names(tmp_path) if name.startswith(".")]
 
 
+def test_a_result_that_a_killed_run_was_to_replace_is_not_read(tmp_path: Path) -> None:
+    checked(tmp_path, "a")
+    left = tmp_path / ".drivelint.work.1"
+    left.mkdir()
+    with pytest.raises(UsageError, match="of an earlier run") as refused:
+        load_result(tmp_path)
+    assert str(left) in str(refused.value)
+    checked(tmp_path, "b")
+    assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["b"]
+
+
+def test_while_a_run_goes_on_the_result_before_it_can_be_read(tmp_path: Path) -> None:
+    checked(tmp_path, "a")
+    with working_folder(tmp_path):
+        assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["a"]
+
+
 def test_two_runs_at_a_time_into_one_folder_are_refused(tmp_path: Path) -> None:
     with working_folder(tmp_path) as work:
         assert work is not None

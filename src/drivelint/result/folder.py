@@ -171,6 +171,18 @@ def changed(out: Path) -> list[str]:
     return [name for name, said in _hashes(out).items() if _sha256(out / name) != said]
 
 
+def left_by_killed_run(out: Path) -> Path | None:
+    """Return the working folder of a run that was killed, so that the result in `out` is an earlier one; None where a run goes on."""
+    left = sorted(out.glob(f"{_WORK}.*"))
+    if not left:
+        return None
+    try:
+        with _locked(out) as is_ours:
+            return left[0] if is_ours else None
+    except UsageError:
+        return None
+
+
 def _sha256(path: Path) -> str | None:
     """Return the hash of a file; None where none can be read: its name may come from a damaged list."""
     try:

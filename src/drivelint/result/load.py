@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate as gates
-from drivelint.result.folder import changed
+from drivelint.result.folder import changed, left_by_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
 from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
@@ -22,9 +22,13 @@ if TYPE_CHECKING:
 def load_result(folder: Path) -> Result:
     """Return the result that `check --out` wrote into a folder.
 
-    Errors: `UsageError` for a folder without a whole result, or one of another version.
+    Errors: `UsageError` for a folder without a whole result, one of another version, or one that a run was to replace which was killed.
     """
     summary = _summary(folder)
+    if left := left_by_killed_run(folder):
+        raise UsageError(
+            f"{folder}: of an earlier run: the one that was to replace it was killed: check the drives again, or remove {left} to read it"
+        )
     if summary.get("output_schema") != OUTPUT_VERSION:
         raise UsageError(
             f"{folder}: written with output schema {summary.get('output_schema')}, this drivelint reads {OUTPUT_VERSION}: "
