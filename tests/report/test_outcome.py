@@ -284,3 +284,15 @@ def test_the_worst_moment_of_a_passing_page_says_that_it_is_let_through() -> Non
     new = page(against(NONE, run(MIXED)))
     assert 'id="worst">The worst moment <' in new
     assert "k-fail k-through" not in new
+
+
+def test_findings_do_not_hide_that_most_could_not_be_judged() -> None:
+    rules = [rule(f"ukhc.{name}") for name in "abc"]
+    rows = [
+        verdict("fail", rule_id="ukhc.a"),
+        *(verdict("unknown", rule_id=f"ukhc.{name}", t_start_ns=None) for name in "bc"),
+    ]
+    minor = [finding(rule_id="ukhc.a", severity="minor")]
+    told = headline(result(rows, minor, rules=rules))
+    assert (told.label, told.parts[-1]) == ("FINDINGS", ("most rules could not be judged", "warning"))
+    assert "most rules" not in headline(result(rows[:2], minor, rules=rules)).sentence

@@ -92,6 +92,8 @@ def headline(result: Result) -> Headline:
         if doubtful and (result.gate is None or result.gate.confidence is None):
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
             parts.append(Part(f"{some}only possible"))
+        if _is_mostly_open(result):
+            parts.append(Part("most rules could not be judged", "warning"))
     if less:
         parts.append(Part(less, "warning"))
     if n := rules_without_map(result):
