@@ -17,7 +17,15 @@ from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct
 from drivelint.incident.delta_v import WINDOW_S
-from drivelint.incident.fitting import SHARED_HEAD, Fitting, first_fitting, fit, shared_reasons
+from drivelint.incident.fitting import (
+    SHARED_HEAD,
+    Fitting,
+    check_room,
+    first_fitting,
+    fit,
+    is_crowded,
+    shared_reasons,
+)
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, others_drawn, overtaking, party
@@ -50,6 +58,8 @@ _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
 """Characters of the columns that warnings on the log take, or what a clip was cut from."""
 _WARNING_ROOM: Final = 300
+_RECORDS_ROOM: Final = 1300
+"""Characters of the columns that the lists of what is not recorded take, where page 1 has no room for them."""
 _MOST_CONTACTS: Final = 2
 
 
@@ -65,8 +75,9 @@ def content(case: Case) -> dict[str, Any]:
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
     rows = second_by_second(motion, before_s)
     span = _span(finding)
-    return {
+    told = {
         "row": row,
+        "coordinates": "",
         "rule": finding.rule,
         "drive": finding.drive,
         "what": _what(finding),
@@ -91,13 +102,12 @@ def content(case: Case) -> dict[str, Any]:
         "against": None if at is None else against_each_other(float(motion.relative[at]), row["closing_mps"]),
         "gap": None if at is None else _metres(float(motion.gap[at])),
         "least": _least_gap(motion, finding),
-        "contacts": Fitting((told := _told_contacts(case))[:_MOST_CONTACTS], max(len(told) - _MOST_CONTACTS, 0)),
+        "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
         **_plan(case),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
-        **_conduct(case, span, MOST_ROWS - len(rows)),
         "span": {
             "of": span,
             "before": figure((finding.moment_ns - span[0]) / 1e9, 1),
@@ -113,9 +123,13 @@ def content(case: Case) -> dict[str, Any]:
         "again": same_finding(case.again.findings, row),
         "source": case.source,
         "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
+        "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
     }
+    told["crowded"] = is_crowded(told)
+    taken = check_room([f"{told['log']} {'0' * 64}", *told["commands"]]) + _RECORDS_ROOM * told["crowded"]
+    return {**told, **_conduct(case, span, MOST_ROWS - len(rows), taken)}
 
 
 def figure(value: float | None, digits: int = 2) -> str:
@@ -228,7 +242,7 @@ def _span(finding: NamedFinding) -> tuple[int, int]:
     return max(first, finding.start_ns), min(last, end_ns)
 
 
-def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> dict[str, Any]:
+def _conduct(case: Case, span: tuple[int, int], seconds_left: int, taken: int) -> dict[str, Any]:
     """Return what each party did, by the verdicts on it as ego, and why rules are not decided of both."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
@@ -252,7 +266,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> dict[str, 
         found.append(told)
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both = {**shared_reasons(found), "in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
-    lines = beside + SHARED_HEAD * bool(of_both["reasons"])
+    lines = taken + beside + SHARED_HEAD * bool(of_both["reasons"])
     fit([*found, of_both], seconds_left, lines + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
     return {"conduct": found, "of_both": of_both}
 
