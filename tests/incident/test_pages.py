@@ -49,6 +49,16 @@ def fits(page: Page) -> None:
             assert beside <= 1
 
 
+def labels_are_legible(page: Page) -> None:
+    """Check that labels of the plan view are 6 pt (8 px) or more and call the parties A and B."""
+    shown = page.value(
+        "[...document.querySelectorAll('.view .name')].map(e =>"
+        " [e.textContent, parseFloat(getComputedStyle(e).fontSize) * e.getScreenCTM().a])"
+    )
+    assert {"A", "B"} <= {text for text, _ in shown}
+    assert all(8 <= px < 20 for _, px in shown), shown
+
+
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) -> None:
@@ -56,6 +66,7 @@ def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) 
     html.write_bytes(render(case_of(name)))
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
+        labels_are_legible(page)
         assert page.complaints() == []
         assert page.requests() == [html.as_uri()]
 
@@ -84,6 +95,7 @@ def test_a_crowded_case_fits(case_of: CaseOf, tmp_path: Path) -> None:
     assert re.search(rb"and \d+ more reasons", page_bytes)
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
+        labels_are_legible(page)
 
 
 def crowded_first_page(case: Case) -> Case:
@@ -134,6 +146,7 @@ def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html.write_bytes(page_bytes)
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
+        labels_are_legible(page)
 
 
 def test_pdf_has_two_pages_and_no_clock(case_of: CaseOf) -> None:

@@ -14,7 +14,7 @@ _ROOM: Final = {"broken": 820, "kept": 300, "excused": 80, "reasons": 350}
 """Characters that each part has on the page at least; the number of what is left out is told."""
 _WASTE: Final = {"broken": 30}
 """Characters that the end of a text's last line leaves empty, where each text begins a line."""
-_ALL_ROOM: Final = 3020
+_ALL_ROOM: Final = 3300
 """Characters of all parts of both parties: what one does not use, the others may."""
 _SECOND_ROOM: Final = 110
 """Characters that fit where the table second by second has a row less than its most."""
@@ -65,7 +65,11 @@ def is_crowded(told: dict[str, Any]) -> bool:
     """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
     sure, rests, drive = told["sure"], told["rests"], told["drive"]
     facts = [
-        7 + _lines(f"{drive['map_name']} {told['road_id']} {told['row']['lanelet_id']}", _FACT),
+        7
+        + _lines(
+            f"{drive['map_name']} {told['road_id']} {told['row']['lanelet_id']} {told['coordinates']} {told['hand']}",
+            _FACT,
+        ),
         10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
     ]
     parties = told["parties"]
