@@ -297,7 +297,7 @@ def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_sta
         found = explain(ExplainRequest(name, tmp_path))
         assert found.sensitivity is not None
         assert (found.sensitivity.counts, found.sensitivity.samples) == ({"fail": n_stays}, 100)
-        assert f"{told} of 100 copies of the drive with errors like the recording's" in flat(said(found))
+        assert f"{told} of 100 copies of the drive with assumed errors" in flat(said(found))
         assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place" in flat(said(found))
     other = explain(ExplainRequest("no-collision", tmp_path, errors=MeasurementErrors(samples=2))).sensitivity
     assert other is not None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from drivelint.incident.motion import Motion, second_by_second, slowing_known, slowings
@@ -108,3 +109,13 @@ def test_relative_speed_of_ways_that_cross() -> None:
     assert "near at 3.8 m/s" in against_each_other(10.0, 3.8)
     assert "near" not in against_each_other(10.0, 9.9)
     assert against_each_other(math.nan, 3.8) == "relative speed not known"
+
+
+def test_acceleration_is_the_change_of_the_signed_speed() -> None:
+    """Who rolls back ever slower accelerates forwards."""
+    v = np.minimum(-4.0 + np.arange(101) * STEP_S, 0.0)
+    table = steps(v, np.cumsum(v) * STEP_S, 300.0)
+    table = table.set_column(table.column_names.index("speed_mps"), "speed_mps", pa.array(np.abs(v)))
+    rows = {row["t"]: row for row in second_by_second(Motion.of_steps(table, 0), None)}
+    assert rows[2.0]["speed"][0] == pytest.approx(-2.0)
+    assert rows[2.0]["accel"][0] == pytest.approx(1.0)

@@ -6,8 +6,13 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
 import pytest
 
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.incident import pdf, render
 from tests.report.browser import CHROMIUM, Page
 
@@ -20,21 +25,38 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 A4_PX = (794, 1123)
 NAMES = ("no-collision@collision", "safe-distance-ahead@collision")
+S = 1_000_000_000
 
 
 def fits(page: Page) -> None:
-    """Check that both pages are A4, and that nothing on one runs into its foot or over its edge."""
+    """Check that both pages are A4 on screen and in print, and that all of a page but its foot stands within its margins."""
+    for media in ("screen", "print"):
+        page.call("Emulation.setEmulatedMedia", media=media)
+        shown = page.value(
+            "[...document.querySelectorAll('.page')].map(p => { const q = p.getBoundingClientRect(), s = getComputedStyle(p),"
+            " all = [...p.querySelectorAll(':not(svg *)')].filter(e => !e.closest('.foot')).map(e => e.getBoundingClientRect());"
+            " return [p.offsetWidth, p.offsetHeight, p.scrollWidth, p.scrollHeight,"
+            " Math.max(...all.map(e => e.bottom)) - q.bottom + parseFloat(s.paddingBottom),"
+            " Math.max(...all.map(e => e.right)) - q.right + parseFloat(s.paddingRight),"
+            " p.querySelector('.foot').getBoundingClientRect().top - q.bottom + parseFloat(s.paddingBottom)]})"
+        )
+        assert len(shown) == 2
+        for width, height, inner_width, inner_height, below, beside, foot in shown:
+            assert (width, height) == pytest.approx(A4_PX, abs=1)
+            assert inner_width <= width
+            assert inner_height <= height
+            assert below <= 1 < foot
+            assert beside <= 1
+
+
+def labels_are_legible(page: Page) -> None:
+    """Check that labels of the plan view are 6 pt (8 px) or more and call the parties A and B."""
     shown = page.value(
-        "[...document.querySelectorAll('.page')].map(p => [p.offsetWidth, p.offsetHeight, p.scrollWidth, p.scrollHeight,"
-        " Math.max(...[...p.children].filter(c => c.className != 'foot').map(c => c.getBoundingClientRect().bottom))"
-        " - p.querySelector('.foot').getBoundingClientRect().top])"
+        "[...document.querySelectorAll('.view .name')].map(e =>"
+        " [e.textContent, parseFloat(getComputedStyle(e).fontSize) * e.getScreenCTM().a])"
     )
-    assert len(shown) == 2
-    for width, height, inner_width, inner_height, beyond in shown:
-        assert (width, height) == pytest.approx(A4_PX, abs=1)
-        assert inner_width <= width
-        assert inner_height <= height
-        assert beyond < 0
+    assert {"A", "B"} <= {text for text, _ in shown}
+    assert all(8 <= px < 20 for _, px in shown), shown
 
 
 @pytest.mark.sample(1)
@@ -44,6 +66,7 @@ def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) 
     html.write_bytes(render(case_of(name)))
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
+        labels_are_legible(page)
         assert page.complaints() == []
         assert page.requests() == [html.as_uri()]
 
@@ -72,6 +95,58 @@ def test_a_crowded_case_fits(case_of: CaseOf, tmp_path: Path) -> None:
     assert re.search(rb"and \d+ more reasons", page_bytes)
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
+        labels_are_legible(page)
+
+
+def crowded_first_page(case: Case) -> Case:
+    """Return a case of a contact shown by the speeds alone, with as much to say of it on page 1 as a log may give."""
+    finding, steps = case.finding, case.again.steps
+    saw = pa.array(10.0 + np.abs(np.arange(steps.num_rows) % 20 - 10.0))
+    for name, column in (
+        ("clearance_m", pa.array(np.full(steps.num_rows, 0.19))),
+        ("speed_mps", saw),
+        ("object_speed_mps", saw),
+    ):
+        steps = steps.set_column(steps.column_names.index(name), name, column)
+    row = {
+        **finding.row,
+        "lat": 52.946849,
+        "lon": 2.907433,
+        "n_copies": 100,
+        "n_stays": 53,
+        "t_start_ns": finding.row["t_start_ns"] - 2 * S,
+    }
+    drive = {**finding.drive, "file_name": f"{'a-long-name-of-a-log-' * 4}-clip-0123abcd.csv", "map_name": "a-long-name-of-a-map.xodr" * 2,
+             "utc_start_ns": 1_700_000_000 * S}  # fmt: skip
+    rows = case.result.findings
+    touched = rows.filter(pc.equal(rows["rule_id"], "ukhc.no-collision"))
+    for name in ("n_copies", "n_stays"):
+        n = pa.array([100] * touched.num_rows, touched[name].type)
+        touched = touched.set_column(touched.column_names.index(name), touched.schema.field(name), n)
+    result = replace(case.result, findings=pa.concat_tables([rows, touched, touched, touched]))
+    again = replace(case.again, steps=steps)
+    said = QualityFinding(ASSUMED_SIZE, "info", f"size by the option {'of the user ' * 5}, not recorded")
+    trace = with_quality_finding(case.drive.trace, said)
+    again_drive = replace(case.drive, trace=trace)
+    return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
+
+
+def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
+    html = tmp_path / "sheet.html"
+    page_bytes = render(crowded_first_page(case_of("contact-signature@collision")))
+    for said in (
+        b"It rests on",
+        b"earlier<br>",
+        b"Contact also",
+        b"more contacts",
+        b"this finding is <b>possible",
+        b"UTC",
+    ):
+        assert said in page_bytes
+    html.write_bytes(page_bytes)
+    with Page(tmp_path / "profile", html.as_uri()) as page:
+        fits(page)
+        labels_are_legible(page)
 
 
 def test_pdf_has_two_pages_and_no_clock(case_of: CaseOf) -> None:

@@ -156,7 +156,10 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
 def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -> None:
     at = round(first_contact(recorded) - 0.1, 3)
     ego, other = recorded["ego"][at], recorded["oncoming"][at]
-    assert f"A at {ego.speed:.1f} m/s; B at {other.speed:.1f} m/s; head-on, closing at" in collision["story"]
+    assert (
+        f"A, a car, at {ego.speed:.1f} m/s; B, a car, at {other.speed:.1f} m/s; head-on, closing at"
+        in collision["story"]
+    )
     left = re.search(r"A left its lane at ([\d.]+) s with ([\d.]+) m between the boxes", collision["story"])
     assert left is not None
     t, free = (float(n) for n in left.groups())

@@ -11,8 +11,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
+from drivelint.drive.trace import TURNED_FRAME
 from drivelint.incident import render
+from drivelint.incident.conduct import name_party
 from drivelint.incident.judge import Judged
+from drivelint.incident.place import coordinates, inferred_side
 from drivelint.incident.sheet import content
 
 if TYPE_CHECKING:
@@ -135,3 +138,49 @@ def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
     page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
     assert said in page
     assert "Warnings on the log" not in page  # it is none
+
+
+def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    assert coordinates(case).startswith("the recording's coordinates")
+    assert "turned" not in coordinates(case)
+    check = {"check_id": TURNED_FRAME, "severity": "info", "message": "turned"}
+    drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
+    turned = replace(case, finding=replace(case.finding, drive=drive))
+    assert coordinates(turned) == "the recording's coordinates with the sign of y turned, as its frame is left-handed"
+    assert coordinates(turned) in html.unescape(render(turned).decode())
+    drive = {**drive, "quality": [*drive["quality"], {**check, "check_id": "clip"}]}
+    assert coordinates(replace(case, finding=replace(case.finding, drive=drive))) == "the clip's coordinates"
+
+
+def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
+    case = case_of("no-collision@collision")
+    assert case.drive.environment is not None
+    tables = case.drive.environment.tables
+    place = tables["environment"]
+    for name, by in (("offset_x_m", 2.618), ("offset_y_m", -3.113)):
+        place = place.set_column(place.column_names.index(name), name, pa.array([by]))
+    road = replace(case.drive.environment, tables={**tables, "environment": place})
+    moved = coordinates(replace(case, drive=replace(case.drive, environment=road)))
+    assert moved.endswith("(the map was moved by +2.618 m, \u22123.113 m)")
+
+
+@pytest.mark.parametrize(
+    ("source", "said"), [("junctions", True), ("default", True), ("option", False), ("attribute", False)]
+)
+def test_side_of_the_road_that_nobody_gave(source: str, *, said: bool) -> None:
+    told = inferred_side({"handedness": "lht", "handedness_source": source})
+    assert told.startswith("Left-hand traffic: ") is said
+
+
+def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dict[str, Any], text: str) -> None:
+    for party in collision["conduct"]:
+        n = sum(party["n"].values()) + len(party["beside"]) + party["elsewhere"] + party["never"]
+        assert n == collision["n_rules"]
+        if party["beside"]:
+            assert f"{len(party['beside'])} neither, " in text
+    told = text.partition("What each party did")[2].partition("To check it")[0]
+    assert "the ego" not in re.sub("\u201c[^\u201d]*\u201d", "", told).lower()
+    assert name_party({"kept": ["\u201cOut of the ego's space\u201d: the ego's own"]}, "B")["kept"] == [
+        "\u201cOut of the ego's space\u201d: B's own"
+    ]

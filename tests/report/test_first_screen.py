@@ -321,7 +321,4 @@ def test_parties_that_draw_apart_are_said_to() -> None:
 
 def test_the_page_says_how_large_the_errors_are() -> None:
     text = plain(page(one_contact_by_two_rules()))
-    assert (
-        "errors like the recording's (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place)"
-        in text
-    )
+    assert "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place)" in text

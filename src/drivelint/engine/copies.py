@@ -1,4 +1,4 @@
-"""Makes copies of a drive, or of a part of it, with errors like those of a recording.
+"""Makes copies of a drive, or of a part of it, with assumed errors of a recording.
 
 Every copy has, drawn once for the whole drive (such errors drift slowly, they do not jump from step to step):
 for each actor an offset of its position (x and y alike) and one of its clock, which moves it along its velocity;

@@ -57,7 +57,7 @@ class Change(NamedTuple):
 class Sensitivity:
     """How often each verdict came out over copies of the drive with random errors.
 
-    `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with errors like the recording's; all that is known
+    `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with assumed errors; all that is known
     of their verdicts is how many are `fail`. None: these copies were judged with the errors given here.
     """
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT, EXCUSES
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
+_QUOTED: Final = re.compile("(\u201c[^\u201d]*\u201d)")
+_EGO: Final = re.compile(r"\b[Tt]he ego\b")
 _UNDECIDED: Final = frozenset({"unknown", "error"})
 
 
@@ -73,6 +76,21 @@ def conduct(
         "elsewhere": len(elsewhere - undecided.keys()),
         "never": len(rules) - len(broken) - len(undecided) - len(passed) - len(elsewhere - undecided.keys()),
     }
+
+
+def name_party(told: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Return what is told of a party with its name where rules call it the ego; titles, in quotes, stay as they are."""
+    named = dict(told)
+    for part in ("broken", "kept", "excused", "beside"):
+        if part in told:
+            named[part] = [_named(line, name) for line in told[part]]
+    if "reasons" in told:
+        named["reasons"] = [reason._replace(why=_named(reason.why, name)) for reason in told["reasons"]]
+    return named
+
+
+def _named(text: str, name: str) -> str:
+    return "".join(part if part.startswith("\u201c") else _EGO.sub(name, part) for part in _QUOTED.split(text))
 
 
 def _within(row: Row, span: tuple[int, int]) -> bool:

@@ -1,7 +1,8 @@
-"""Fits what is told of both parties into the room of page 2: a reason loses its rules' titles before any reason is left out."""
+"""Fits what is told into the room of two pages: a reason loses its rules' titles before any reason is left out."""
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.phrases import plural
@@ -23,6 +24,16 @@ SHARED_HEAD: Final = 100
 """Characters of the head of the reasons that both parties share, with the end of the line before it."""
 _COUNTED: Final = 80
 """Characters of the sentence that says where the titles are that were left out."""
+_WIDE, _CELL, _FACT, _CHECK = 92, 43, 41, 98
+"""Characters of a line in the widest font that may print the sheet: across page 1, in a column of the parties or the facts, in a row of
+the hashes."""
+_LINE_PX, _TEXT_PX = 13.7, 15.7
+"""Heights of a line in the tables of page 1, and of its first sentences."""
+_FIRST_PX: Final = 465
+"""Height of what page 1 tells of the finding and the parties, with which the lists of what is not recorded still fit below it."""
+_CHECK_LINE: Final = 125
+"""Characters of the columns of page 2 that a line of the hashes takes."""
+_CELLS: Final = ("delta_v", "fastest", "lane", "lights")
 
 
 class Reason(NamedTuple):
@@ -50,6 +61,37 @@ class Fitting(NamedTuple):
     is_short: bool = False
 
 
+def is_crowded(told: dict[str, Any]) -> bool:
+    """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
+    sure, rests, drive = told["sure"], told["rests"], told["drive"]
+    facts = [
+        7
+        + _lines(
+            f"{drive['map_name']} {told['road_id']} {told['row']['lanelet_id']} {told['coordinates']} {told['hand']}",
+            _FACT,
+        ),
+        10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
+    ]
+    parties = told["parties"]
+    rows = [[_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
+    rows += [[_lines(p[name], _CELL) for p in parties] for name in _CELLS]
+    rows += [[sum(_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
+    against = [told["against"] or "", told["least"] or "", *(f"contact also {each}" for each in told["contacts"].shown)]
+    across = [told["story"], told["what"]]
+    lines = max(facts) + sum(max(row) for row in rows) + _lines(" ".join(against), 2 * _CELL)
+    lines += _lines(", ".join(told["drawn"]), _WIDE)
+    return lines * _LINE_PX + sum(_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
+
+
+def check_room(texts: Sequence[str]) -> int:
+    """Return the characters that the lines of the hashes take, from the columns, beyond one line each."""
+    return _CHECK_LINE * sum(_lines(text, _CHECK) - 1 for text in texts)
+
+
+def _lines(text: str, width: int) -> int:
+    return len(wrap(text, width))
+
+
 def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Take the reasons that all parties share, with the same rules, out of each; return them as a part of their own."""
     given = [told["reasons"] for told in parties if "reasons" in told]
@@ -63,8 +105,8 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
     """Cut the lists of what both parties did to what fits into two columns that share their room.
 
-    What the lists leave goes first to the reasons, until all are told. `seconds_left`: rows that the table second by second does not
-    fill; `taken`: characters of other lines.
+    What the lists leave goes first to the reasons, until all are told; where other lines take more, each list loses its share.
+    `seconds_left`: rows that the table second by second does not fill; `taken`: characters of other lines.
     """
     parts = [
         (told, name, min(_least(told[name], name), room))
@@ -73,6 +115,9 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> Non
         if name in told
     ]
     spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken - sum(room for *_, room in parts)
+    if spare < 0:
+        held = sum(room for *_, room in parts)
+        parts = [(told, name, max(room + spare * room // held, 0)) for told, name, room in parts]
     rooms = []
     for told, name, room in parts:
         more = min(_least(told[name], name) - room, max(spare, 0)) if name == "reasons" else 0

@@ -98,9 +98,16 @@ class Motion:
         i = int(np.searchsorted(self.t, t - 1e-9)) - 1
         return i if i >= 0 else None
 
-    def acceleration(self, party: int, i: int, over_s: float) -> float:
-        """Return the mean acceleration of a party over the time before a step; NaN: not known over all of it."""
-        t, v = self.t, self.speed[party]
+    def signed_speed(self, party: int) -> Floats:
+        """Return the speed of a party in m/s, below 0 where it moves backwards."""
+        return np.where(self.backwards[party], -self.speed[party], self.speed[party])
+
+    def acceleration(self, party: int, i: int, over_s: float, v: Floats | None = None) -> float:
+        """Return the mean change, in m/s2, of `v` over the time before a step; NaN: not known over all of it.
+
+        `v`: speeds in m/s at the steps; None: those of the party, without sign.
+        """
+        t, v = self.t, self.speed[party] if v is None else v
         start = t[i] - over_s
         within = (t >= start - 1.5 * self.step_s) & (t <= t[i])
         if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_S).any():
@@ -201,13 +208,14 @@ def _wanted(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float
 
 
 def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[str, Any]:
+    signed = [motion.signed_speed(party) for party in (0, 1)]
     return {
         "i": i,
         "t": t,
         "last_before": t == last_before_s,
         "moment": t == 0,
-        "speed": [float(-v[i] if back[i] else v[i]) for v, back in zip(motion.speed, motion.backwards, strict=True)],
-        "accel": [motion.acceleration(party, i, 1.0) for party in (0, 1)],
+        "speed": [float(v[i]) for v in signed],
+        "accel": [motion.acceleration(party, i, 1.0, signed[party]) for party in (0, 1)],
         "hardest": [motion.hardest_braking(party, i) for party in (0, 1)],
         "impact": [motion.is_sudden(party, i, 1.0) for party in (0, 1)],
         "offset": [float(v[i]) for v in motion.lane_offset],

@@ -58,6 +58,12 @@ def party(
     }
 
 
+def kinds(case: Case) -> list[str | None]:
+    """Return the class of each party, in words; None: not recorded."""
+    classes = {row["actor_id"]: row["actor_class"] for row in case.drive.trace.tables["actor"].to_pylist()}
+    return [(classes.get(who) or "").replace("_", " ") or None for who in case.finding.parties]
+
+
 def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
     """Return the last stretches of slowing in words, and how many there were before them."""
     told = [f"{len(found) - 2} earlier"] if len(found) > 2 else []

@@ -15,12 +15,21 @@ from drivelint.convert import CLIP
 from drivelint.engine.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
-from drivelint.incident.conduct import conduct
+from drivelint.incident.conduct import conduct, name_party
 from drivelint.incident.delta_v import WINDOW_S
-from drivelint.incident.fitting import SHARED_HEAD, Fitting, first_fitting, fit, shared_reasons
+from drivelint.incident.fitting import (
+    SHARED_HEAD,
+    Fitting,
+    check_room,
+    first_fitting,
+    fit,
+    is_crowded,
+    shared_reasons,
+)
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
-from drivelint.incident.parties import against_each_other, others_drawn, overtaking, party
+from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party
+from drivelint.incident.place import coordinates, inferred_side, road_of
 from drivelint.incident.record import held_elements
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
@@ -31,8 +40,6 @@ from drivelint.result.certainty import LEAST_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import pyarrow as pa
 
     from drivelint.incident.case import Case
@@ -45,11 +52,16 @@ SPAN_S: Final = (15, 7)
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""
+_CLIP_NOTE: Final = "; numbers that depend on what is before or after it differ from the log's"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
 """Characters of the columns that warnings on the log take, or what a clip was cut from."""
 _WARNING_ROOM: Final = 300
+_LABEL_SHARE: Final = 0.1
+"""Size of the plan view's labels, of its height: at its least height on the page (`sheet.css`) they are 6 pt or more."""
+_RECORDS_ROOM: Final = 1300
+"""Characters of the columns that the lists of what is not recorded take, where page 1 has no room for them."""
 _MOST_CONTACTS: Final = 2
 
 
@@ -65,12 +77,20 @@ def content(case: Case) -> dict[str, Any]:
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
     rows = second_by_second(motion, before_s)
     span = _span(finding)
-    return {
+    told = {
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
         "what": _what(finding),
-        "story": story(motion, at, slowed, did=overtaking(case, at), closing_mps=row["closing_mps"], offset_s=offset_s),
+        "story": story(
+            motion,
+            at,
+            slowed,
+            kinds=kinds(case),
+            did=overtaking(case, at),
+            closing_mps=row["closing_mps"],
+            offset_s=offset_s,
+        ),
         "clip_of": _clip_of(finding.drive["file_name"]),
         "cut_from": _cut_from(case),
         "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
@@ -81,7 +101,9 @@ def content(case: Case) -> dict[str, Any]:
         if row["t_start_ns"] == row["t_end_ns"]
         else [seconds(row[key], finding.start_ns) for key in ("t_start_ns", "t_end_ns")],
         "utc": utc_at(finding.moment_ns, finding.drive),
-        "road_id": _road_of(case),
+        "road_id": road_of(case),
+        "coordinates": coordinates(case),
+        "hand": inferred_side(finding.drive),
         "contact": finding.is_contact,
         "delta_v_s": WINDOW_S,
         "peak": "deepest" if row["unit"] == "m" else "hardest",
@@ -91,13 +113,12 @@ def content(case: Case) -> dict[str, Any]:
         "against": None if at is None else against_each_other(float(motion.relative[at]), row["closing_mps"]),
         "gap": None if at is None else _metres(float(motion.gap[at])),
         "least": _least_gap(motion, finding),
-        "contacts": Fitting((told := _told_contacts(case))[:_MOST_CONTACTS], max(len(told) - _MOST_CONTACTS, 0)),
+        "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
         **_plan(case),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
-        **_conduct(case, span, MOST_ROWS - len(rows)),
         "span": {
             "of": span,
             "before": figure((finding.moment_ns - span[0]) / 1e9, 1),
@@ -113,9 +134,16 @@ def content(case: Case) -> dict[str, Any]:
         "again": same_finding(case.again.findings, row),
         "source": case.source,
         "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
+        "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
     }
+    told["crowded"] = is_crowded(told)
+    taken = (
+        check_room([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
+        + _RECORDS_ROOM * told["crowded"]
+    )
+    return {**told, **_conduct(case, span, MOST_ROWS - len(rows), taken)}
 
 
 def figure(value: float | None, digits: int = 2) -> str:
@@ -211,7 +239,7 @@ def _told_warnings(case: Case) -> Fitting:
 
 
 def _cut_from(case: Case) -> list[str]:
-    return [check["message"] for check in case.finding.drive["quality"] if check["check_id"] == CLIP]
+    return [f"{check['message']}{_CLIP_NOTE}" for check in case.finding.drive["quality"] if check["check_id"] == CLIP]
 
 
 def _recording(finding: NamedFinding) -> dict[str, str]:
@@ -228,7 +256,7 @@ def _span(finding: NamedFinding) -> tuple[int, int]:
     return max(first, finding.start_ns), min(last, end_ns)
 
 
-def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> dict[str, Any]:
+def _conduct(case: Case, span: tuple[int, int], seconds_left: int, taken: int) -> dict[str, Any]:
     """Return what each party did, by the verdicts on it as ego, and why rules are not decided of both."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
@@ -250,9 +278,12 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int) -> dict[str, 
             findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
             told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, touched=finding.is_contact)
         found.append(told)
+    of_both = shared_reasons(found)
+    found = [name_party(told, told["letter"]) for told in found]
+    of_both = name_party(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
-    of_both = {**shared_reasons(found), "in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
-    lines = beside + SHARED_HEAD * bool(of_both["reasons"])
+    of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
+    lines = taken + beside + SHARED_HEAD * bool(of_both["reasons"])
     fit([*found, of_both], seconds_left, lines + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
     return {"conduct": found, "of_both": of_both}
 
@@ -309,6 +340,9 @@ def _plan(case: Case) -> dict[str, Any]:
     plan = plan_view(scene, road, set(finding.parties[1:]), spaces)
     tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
     drawn = others_drawn(plan, scene)
+    letters = dict(zip(finding.parties, LETTERS, strict=False))
+    plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
+    plan["font"] = f"{_LABEL_SHARE * float(plan['height']):.1f}"
     return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([scene]), "drawn": drawn}
 
 
@@ -336,16 +370,6 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
         elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):
             own = {**row, "title": f"{rule['observes'] or title}, {told_unit(unit)}"}
     return gaps, own if own and any(value is not None for value in own["observed"]) else None
-
-
-def _road_of(case: Case) -> str | None:
-    """Return the map's road of the finding's lanelet; None: there is none, or it is called as the lanelet."""
-    lanelet, environment = case.finding.row["lanelet_id"], case.drive.environment
-    if lanelet is None or environment is None:
-        return None
-    rows: Mapping[str, Any] = environment.tables["lanelet"].select(["lanelet_id", "road_id"]).to_pydict()
-    roads = dict(zip(rows["lanelet_id"], rows["road_id"], strict=True))
-    return roads.get(lanelet)
 
 
 def _rules_hash(result: Result) -> str:

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 WIDTH: Final = 700
-HEIGHT: Final = 70
-_LEFT, _RIGHT, _TOP, _BOTTOM = 46.0, WIDTH - 8.0, 6.0, HEIGHT - 16.0
+_LEFT, _RIGHT = 46.0, WIDTH - 8.0
+_TOP, _BOTTOM = 8.0, 97.0
+"""Places from the top in percent of a chart's height: the page gives each chart what it has left."""
 _FROM_S, _TO_S = -15.0, 7.0
 _HOLE_STEPS: Final = 3
 _MOST_REQUIRED: Final = 3
@@ -95,7 +96,6 @@ def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = Fal
     ]
     return {
         "title": title,
-        "height": HEIGHT,
         "lines": drawn,
         "x_ticks": x.ticks(12),
         "y_ticks": y.ticks(4),

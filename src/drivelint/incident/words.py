@@ -92,7 +92,7 @@ def contact(row: Row, rule: Row) -> str:
         return ""
     said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"
     if row["n_copies"] is not None and row["n_stays"] < row["n_copies"]:
-        said += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with its errors they do not"
+        said += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with assumed errors they do not"
     return said
 
 
@@ -101,14 +101,15 @@ def story(
     at: int | None,
     slowed: Sequence[list[Slowing]],
     *,
+    kinds: Sequence[str | None],
     did: str,
     closing_mps: float | None,
     offset_s: float,
 ) -> str:
     """Return in one sentence what is known to have happened up to the step `at`; '' for one party, or where that step is not known.
 
-    `slowed`: of each party, see `slowings`; `did`: what the first was doing; `closing_mps`: of the finding; `offset_s`: the moment in
-    seconds of the drive.
+    `slowed`: of each party, see `slowings`; `kinds`: the class of each, None: not recorded; `did`: what the first was doing;
+    `closing_mps`: of the finding; `offset_s`: the moment in seconds of the drive.
     """
     if at is None or len(slowed) < 2:
         return ""
@@ -131,8 +132,7 @@ def story(
                 parts.append(f"{letter} {how} from {from_s:.2f} s to {to_s:.2f} s{then}")
             elif still:
                 parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
-    v = [float(each[at]) for each in motion.speed]
-    parts += [f"{letter} at {mps:.1f} m/s" for letter, mps in zip("AB", v, strict=True) if not math.isnan(mps)]
+    parts += [_who(letter, kind, float(each[at])) for letter, kind, each in zip("AB", kinds, motion.speed, strict=True)]
     turn = float(motion.turn[at])
     how = "" if math.isnan(turn) else _angle(turn)
     relative = float(motion.relative[at])
@@ -144,6 +144,15 @@ def story(
     parts.append(how)
     text = "; ".join(part for part in parts if part)
     return f"{text[:1].upper()}{text[1:]}."
+
+
+def _who(letter: str, kind: str | None, mps: float) -> str:
+    """Return a party with its class and speed, as far as they are known; '' where neither is."""
+    article = "an" if kind and kind[0] in "aeiou" else "a"
+    named = [letter, f"{article} {kind}"] if kind else [letter]
+    known = [] if math.isnan(mps) else [f"at {mps:.1f} m/s"]
+    parts = [*named, *known]
+    return ", ".join(parts) if kind else " ".join(parts) if known else ""
 
 
 def _angle(turn_rad: float) -> str:

@@ -1,0 +1,60 @@
+"""Says where the finding was: in which coordinates, and how the side of the road that is driven on is known."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.convert import CLIP
+from drivelint.drive.trace import TURNED_FRAME
+from drivelint.incident.words import minus
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.incident.case import Case
+    from drivelint.result.text import Row
+
+_INFERRED: Final = {
+    "junctions": "inferred from how the map's junctions are linked",
+    "lanes": "inferred from how the map's lanes lie",
+    "traces": "inferred from how the log's traffic drives",
+    "default": "assumed: neither map nor user says it",
+}
+"""Source of the side that is driven on, where nobody gave it, in words."""
+
+
+def coordinates(case: Case) -> str:
+    """Return in words whose coordinates x and y are: the log's, turned if its frame was, and how the map's differ from them."""
+    checks = {check["check_id"] for check in case.finding.drive["quality"]}
+    said = "the recording's coordinates"
+    if CLIP in checks:
+        said = "the clip's coordinates"  # a clip is written as it was judged
+    elif TURNED_FRAME in checks:
+        said += " with the sign of y turned, as its frame is left-handed"
+    dx, dy = _map_offset(case)
+    return f"{said}{minus(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
+
+
+def inferred_side(drive: Row) -> str:
+    """Return the side of the road that is driven on, and how it was inferred; '' where map or user gave it, or there is no map."""
+    side = {"lht": "Left", "rht": "Right"}.get(drive["handedness"])
+    how = _INFERRED.get(drive["handedness_source"])
+    return f"{side}-hand traffic: {how}." if side and how else ""
+
+
+def road_of(case: Case) -> str | None:
+    """Return the map's road of the finding's lanelet; None: there is none, or it is called as the lanelet."""
+    lanelet, environment = case.finding.row["lanelet_id"], case.drive.environment
+    if lanelet is None or environment is None:
+        return None
+    rows: Mapping[str, Any] = environment.tables["lanelet"].select(["lanelet_id", "road_id"]).to_pydict()
+    roads = dict(zip(rows["lanelet_id"], rows["road_id"], strict=True))
+    return roads.get(lanelet)
+
+
+def _map_offset(case: Case) -> tuple[float, float]:
+    """Return by how many metres the map was moved onto the log, along x and y."""
+    if case.drive.environment is None:
+        return 0.0, 0.0
+    (row,) = case.drive.environment.tables["environment"].select(["offset_x_m", "offset_y_m"]).to_pylist()
+    return row["offset_x_m"] or 0.0, row["offset_y_m"] or 0.0
