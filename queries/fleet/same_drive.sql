@@ -27,5 +27,6 @@ WITH base_drive AS (
 )
 -- What differs between the two, NULL where it is not known: the log, the map, and the software that drove.
 SELECT m.base_key, m.new_key, n.sha256 IS NOT DISTINCT FROM b.sha256 AS same_log, n.sha256 <> b.sha256 AS data,
-    n.map_sha256 IS DISTINCT FROM b.map_sha256 AS map, n.tags['release'] <> b.tags['release'] AS software
+    CASE WHEN (b.map_sha256 IS NULL AND b.status <> 'judged') OR (n.map_sha256 IS NULL AND n.status <> 'judged') THEN NULL
+        ELSE n.map_sha256 IS DISTINCT FROM b.map_sha256 END AS map, n.tags['release'] <> b.tags['release'] AS software
 FROM matched m JOIN {base}drives b ON b.key = m.base_key JOIN {new}drives n ON n.key = m.new_key
