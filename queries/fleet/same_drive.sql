@@ -1,12 +1,13 @@
--- The drives that two audits share: by the content of the log, else by an id, else by a file stem that only one drive of each audit has.
+-- The drives that two audits share: by the content of the log, judged ones first, else by an id, else by a file stem that only one drive of each
+-- audit has.
 CREATE OR REPLACE TEMP TABLE same_drive AS
 WITH base_drive AS (
     SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
-        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+        row_number() OVER (PARTITION BY sha256 ORDER BY status = 'judged' DESC, drive_id, log, map_sha256 NULLS FIRST, key) AS nth
     FROM {base}drives
 ), new_drive AS (
     SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
-        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+        row_number() OVER (PARTITION BY sha256 ORDER BY status = 'judged' DESC, drive_id, log, map_sha256 NULLS FIRST, key) AS nth
     FROM {new}drives
 ), by_content AS (
     SELECT b.key AS base_key, n.key AS new_key FROM base_drive b JOIN new_drive n ON n.sha256 = b.sha256 AND n.nth = b.nth

@@ -203,3 +203,35 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
         page = content(con, out, None, ())
     assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
+
+
+def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 4)
+    damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
+    for log in damaged:
+        log.write_bytes(b"PAR1")
+    counted = judged(few, tmp_path / "out")
+    lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
+    assert lines[0].startswith("3 drives of ")
+    assert lines[1] == "2 judged, 1 refused"
+    assert lines[2] == "1 more log has the content of another one: each content counts once"
+    assert [Path(name).name for name in lines[3].strip().split(": a copy of ")] == [damaged[1].name, damaged[0].name]
+    assert "not judged: 1 drive" in lines
+    with opened(str(tmp_path / "out")) as (con, out, _):
+        assert content(con, out, None, ()).n_not_judged == 1
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("site", "north", "listed again, with other tags"),
+        ("ego", "1", "judged again, with another ego or map, or under"),
+    ],
+)
+def test_a_log_that_is_listed_twice_says_what_differs(tmp_path: Path, column: str, value: str, words: str) -> None:
+    few = fleet.write(tmp_path / "fleet", 1)
+    rows = ["logs/drive-00000.parquet,south,0", "logs/drive-00000.parquet,south,0"]
+    rows[1] = rows[1].replace("south" if column == "site" else ",0", value if column == "site" else f",{value}")
+    few.manifest.write_text("\n".join(["log,site,ego", *rows, ""]), encoding="utf-8")
+    text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.OK)
+    assert f"drive-00000.parquet: {words}" in text

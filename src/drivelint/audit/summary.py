@@ -32,10 +32,10 @@ class AuditSummary:
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
     `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
-    their end. `copies`: judged drives whose logs have the content of another one's: of a whole audit, way, time, findings, contacts and
-    unknown verdicts are those of each content once, as on the fleet page. `contacts`: drives with a contact that is sure or was not
-    examined; `contacts_possible`: the others with one. In `findings`, a touch of two egos counts once; `possible`: those that are only
-    possible.
+    their end. `copies`: judged drives whose logs have the content of another judged one's; `copies_not_judged`: those of the drives that
+    were not judged. Of a whole audit, way, time, findings, contacts and unknown verdicts are those of each content once, as on the fleet
+    page. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one. In `findings`, a
+    touch of two egos counts once; `possible`: those that are only possible.
     """
 
     n_drives: int = 0
@@ -56,6 +56,7 @@ class AuditSummary:
     n_absent: int = 0
     missing_parts: list[str] = field(default_factory=list)
     copies: int = 0
+    copies_not_judged: int = 0
     findings: dict[str, int] = field(default_factory=dict)
     possible: int = 0
     contacts: int = 0
@@ -64,7 +65,8 @@ class AuditSummary:
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
     copied: list[dict[str, Any]] = field(default_factory=list)
-    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`)."""
+    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`,
+    `same_options`)."""
     n_broken: int = 0
     n_unknown_for: int = 0
     """How many rules were broken, and how many reasons for unknown verdicts there are."""
@@ -142,7 +144,8 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         summed_receipts(con, "receipts"),
         reused=n_reused,
         **contacts.to_pylist()[0],
-        copies=totals["copies"],
+        copies=totals["copies"] - totals["copies_not_judged"],
+        copies_not_judged=totals["copies_not_judged"],
         km=totals["km"],
         hours=totals["log_hours"],
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
