@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pyarrow.compute as pc
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 MOST_COPIES: Final = 3
+MOST_LOGS: Final = 3
 
 
 @dataclass
@@ -67,6 +68,9 @@ class AuditSummary:
     copied: list[dict[str, Any]] = field(default_factory=list)
     """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`,
     `same_options`)."""
+    lossy_logs: list[str] = field(default_factory=list)
+    off_map_logs: list[str] = field(default_factory=list)
+    """The first lossy logs, and of those that are off their map; logs of one content are one."""
     n_broken: int = 0
     n_unknown_for: int = 0
     """How many rules were broken, and how many reasons for unknown verdicts there are."""
@@ -130,6 +134,21 @@ def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
 
+class Named(NamedTuple):
+    """The number of some logs, and the first of them."""
+
+    n: int
+    logs: list[str]
+
+
+def logs_that_are(con: duckdb.DuckDBPyConnection, what: str) -> Named:
+    """Return the logs that are `lossy` or `off_map`, of one content one; those of an older audit may not say the latter."""
+    if what not in con.table("receipts").columns:
+        return Named(0, [])
+    rows = con.execute(statement("audit/logs_that_are", what=what)).fetchall()
+    return Named(len(rows), [log for (log,) in rows[:MOST_LOGS]])
+
+
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
     create_counted_views(con)
@@ -159,5 +178,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
         n_broken=broken.num_rows,
         n_unknown_for=unknown_for.num_rows,
+        lossy_logs=logs_that_are(con, "lossy").logs,
+        off_map_logs=logs_that_are(con, "off_map").logs,
         copied=con.execute(statement("audit/copied"), {"most": MOST_COPIES}).to_arrow_table().to_pylist(),
     )

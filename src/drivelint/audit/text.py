@@ -32,6 +32,8 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
         f"{counted.reused} had a result already" if counted.reused else "",
     )
     yield ", ".join(state for state in states if state)
+    yield from _named("lossy", counted.lossy_logs, counted.lossy)
+    yield from _named("off their map", counted.off_map_logs, counted.off_map)
     yield from _copies(counted, out)
     if counted.missing_parts:
         of = (
@@ -53,7 +55,7 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     yield from _not_judged(counted, out)
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
-    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY 2 DESC"'
+    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 
 
@@ -62,7 +64,7 @@ def _broken(counted: AuditSummary, out: str) -> Iterator[str]:
     for row in counted.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
     if (more := counted.n_broken - len(counted.broken)) > 0:
-        query = "SELECT severity, rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY ALL"
+        query = "SELECT severity, rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY ALL"
         yield f'  and {plural(more, "more rule")}: drivelint sql {out} "{query}"'
 
 
@@ -90,6 +92,12 @@ def _not_judged(counted: AuditSummary, out: str) -> Iterator[str]:
             yield f"  {row['status']}{which}: {row['reason']}"
         if more := left - sum(row["n"] for row in counted.not_judged):
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
+
+
+def _named(what: str, logs: list[str], n: int) -> Iterator[str]:
+    """Yield the first logs of which this is said, and how many more there are."""
+    if logs:
+        yield f"  {what}: {', '.join(logs)}{f' and {n - len(logs)} more' if n > len(logs) else ''}"
 
 
 def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
