@@ -1,12 +1,13 @@
--- The drives that two audits share: by the content of the log, else by an id, else by a file stem that only one drive of each audit has.
+-- The drives that two audits share: by the content of the log, judged ones first, else by an id, else by a file stem that only one drive of each
+-- audit has.
 CREATE OR REPLACE TEMP TABLE same_drive AS
 WITH base_drive AS (
     SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
-        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+        row_number() OVER (PARTITION BY sha256 ORDER BY status = 'judged' DESC, drive_id, log, map_sha256 NULLS FIRST, key) AS nth
     FROM {base}drives
 ), new_drive AS (
     SELECT *, regexp_replace(file_name, '^(.+)\.[^.]+$', '\1') AS stem,
-        row_number() OVER (PARTITION BY sha256 ORDER BY drive_id, log, map_sha256 NULLS FIRST, key) AS nth
+        row_number() OVER (PARTITION BY sha256 ORDER BY status = 'judged' DESC, drive_id, log, map_sha256 NULLS FIRST, key) AS nth
     FROM {new}drives
 ), by_content AS (
     SELECT b.key AS base_key, n.key AS new_key FROM base_drive b JOIN new_drive n ON n.sha256 = b.sha256 AND n.nth = b.nth
@@ -27,5 +28,6 @@ WITH base_drive AS (
 )
 -- What differs between the two, NULL where it is not known: the log, the map, and the software that drove.
 SELECT m.base_key, m.new_key, n.sha256 IS NOT DISTINCT FROM b.sha256 AS same_log, n.sha256 <> b.sha256 AS data,
-    n.map_sha256 IS DISTINCT FROM b.map_sha256 AS map, n.tags['release'] <> b.tags['release'] AS software
+    CASE WHEN (b.map_sha256 IS NULL AND b.status <> 'judged') OR (n.map_sha256 IS NULL AND n.status <> 'judged') THEN NULL
+        ELSE n.map_sha256 IS DISTINCT FROM b.map_sha256 END AS map, n.tags['release'] <> b.tags['release'] AS software
 FROM matched m JOIN {base}drives b ON b.key = m.base_key JOIN {new}drives n ON n.key = m.new_key

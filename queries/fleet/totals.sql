@@ -5,6 +5,7 @@ WITH way AS (
     FROM (SELECT unnest(exposure, recursive := true) FROM counted_drives WHERE status = 'judged')
 )
 SELECT count(*) AS drives, count(*) FILTER (status = 'judged') AS judged, count(*) FILTER (lossy) AS lossy,
-    (SELECT count(*) FROM drives) - count(*) AS copies, (SELECT egos FROM way) AS egos, (SELECT km FROM way) AS km,
+    (SELECT count(*) FROM drives) - count(*) AS copies,
+    (SELECT count(*) FROM drives WHERE status <> 'judged') - count(*) FILTER (status <> 'judged') AS copies_not_judged, (SELECT egos FROM way) AS egos, (SELECT km FROM way) AS km,
     (SELECT hours FROM way) AS hours, coalesce(sum(round(duration_s * 1e6)::HUGEINT), 0) / 3.6e9 AS log_hours
 FROM counted_drives

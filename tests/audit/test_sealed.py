@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import shutil
+from functools import partial
 from typing import TYPE_CHECKING
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -89,6 +91,72 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
             pass
     with pytest.raises(UsageError, match=name), opened(str(copy)):
         pass
+
+
+@pytest.mark.parametrize(
+    "change", [without_a_row, of_another_severity, by_other_settings, with_a_file_more, without_a_file]
+)
+def test_no_run_goes_on_from_a_changed_file(few: fleet.Fleet, copy: Path, change: Callable[[Path], str]) -> None:
+    """Else its end would list the changed file as whole."""
+    name = change(copy)
+    for shard in (None, (1, 2)):
+        with pytest.raises(UsageError, match=f"{name}: is not as drivelint audit wrote it.*into another --out"):
+            judged(few, copy, shard=shard)
+    with pytest.raises(UsageError, match=name):
+        merge(str(copy), Silent())
+    with pytest.raises(UsageError, match=name), opened(str(copy)):
+        pass
+
+
+def passed(file: Path) -> None:
+    rows = pq.read_table(file, partitioning=None)
+    column = rows.column_names.index("verdict")
+    pq.write_table(rows.set_column(column, rows.schema.field(column), [["pass"] * rows.num_rows]), file)
+
+
+def with_a_row_twice(file: Path) -> None:
+    rows = pq.read_table(file, partitioning=None)
+    pq.write_table(pa.concat_tables([rows, rows.slice(0, 1)]), file)
+
+
+def of_nobody(file: Path) -> None:
+    rows = pq.read_table(file, partitioning=None)
+    other = rows.slice(0, 1).set_column(0, rows.schema.field(0), [["0" * 64]])
+    pq.write_table(pa.concat_tables([other, rows]), file)
+
+
+def without_a_sense(file: Path) -> None:
+    file.write_bytes(b"PAR1")
+
+
+@pytest.mark.parametrize("change", [passed, with_a_row_twice, of_nobody, without_a_sense])
+def test_no_run_goes_on_from_changed_rows_without_the_list(
+    few: fleet.Fleet, copy: Path, change: Callable[[Path], None]
+) -> None:
+    (copy / MANIFEST).unlink()
+    change(only_file(copy, "verdicts"))
+    for again in (partial(judged, few, copy), partial(merge, str(copy), Silent())):
+        with pytest.raises(UsageError, match=r"as drivelint audit wrote|did not write.*into another --out"):
+            again()
+    assert not (copy / MANIFEST).exists()
+
+
+@pytest.mark.parametrize("change", [passed, without_a_sense])
+def test_no_run_goes_on_from_changed_rows_that_are_not_packed(
+    few: fleet.Fleet, tmp_path: Path, change: Callable[[Path], None]
+) -> None:
+    out = tmp_path / "out"
+    judged(few, out, shard=(1, 1))
+    change(next((out / "batches" / "verdicts").iterdir()))
+    for again in (partial(judged, few, out), partial(merge, str(out), Silent())):
+        with pytest.raises(UsageError, match="as drivelint audit wrote"):
+            again()
+
+
+def test_an_audit_without_the_list_goes_on_where_its_rows_are_as_written(few: fleet.Fleet, copy: Path) -> None:
+    (copy / MANIFEST).unlink()
+    assert judged(few, copy).reused == 8
+    assert (copy / MANIFEST).exists()
 
 
 def test_an_audit_that_is_copied_elsewhere_is_whole(copy: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,11 +12,13 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.audit import AuditRequest, AuditSummary, audit, summary
+from drivelint.audit.ask import ask
 from drivelint.audit.compact import create_views, database
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.summary import summed
 from drivelint.audit.text import summary_text
 from drivelint.errors import ExitCode
+from drivelint.fleet_report import page
 from drivelint.fleet_report.content import content
 from drivelint.fleet_report.opened import opened
 from drivelint.report.progress import Silent
@@ -203,3 +207,77 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
         page = content(con, out, None, ())
     assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
+
+
+def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 4)
+    damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
+    for log in damaged:
+        log.write_bytes(b"PAR1")
+    counted = judged(few, tmp_path / "out")
+    lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
+    assert lines[0].startswith("3 drives of ")
+    assert lines[1] == "2 judged, 1 refused"
+    assert lines[2] == "1 more log has the content of another one: each content counts once"
+    assert [Path(name).name for name in lines[3].strip().split(": a copy of ")] == [damaged[1].name, damaged[0].name]
+    assert "not judged: 1 drive" in lines
+    with opened(str(tmp_path / "out")) as (con, out, _):
+        assert content(con, out, None, ()).n_not_judged == 1
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("site", "north", "listed again, with other tags"),
+        ("ego", "1", "judged again, with another ego or map, or under"),
+    ],
+)
+def test_a_log_that_is_listed_twice_says_what_differs(tmp_path: Path, column: str, value: str, words: str) -> None:
+    few = fleet.write(tmp_path / "fleet", 1)
+    rows = ["logs/drive-00000.parquet,south,0", "logs/drive-00000.parquet,south,0"]
+    rows[1] = rows[1].replace("south" if column == "site" else ",0", value if column == "site" else f",{value}")
+    few.manifest.write_text("\n".join(["log,site,ego", *rows, ""]), encoding="utf-8")
+    text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.OK)
+    assert f"drive-00000.parquet: {words}" in text
+
+
+def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int]) -> None:
+    """On the terminal and on both fleet pages: the first three, of one content one."""
+    out, _ = audited
+    (file,) = (out / "tables" / "receipts").iterdir()
+    rows = pq.read_table(file, partitioning=None)
+    told_rows = sorted(rows.to_pylist(), key=lambda row: row["log"])
+    for n, row in enumerate(told_rows):
+        row |= {"lossy": n < 5, "off_map": n == 6}
+    told_rows[1]["log_sha256"] = told_rows[0]["log_sha256"]
+    pq.write_table(pa.Table.from_pylist(told_rows, schema=rows.schema), file)
+    lossy, off_map = [told_rows[n]["log"] for n in (0, 2, 3)], told_rows[6]["log"]
+    with database() as con:
+        create_views(con, LocalFolder(out), out)
+        lines = summary_text(summed(con, 0), "out", ExitCode.OK).splitlines()
+    assert f"  lossy: {', '.join(lossy)} and 1 more" in lines
+    assert f"  off their map: {off_map}" in lines
+    (out / "files.json").unlink()
+    for kind in ("markdown", "html"):
+        name, _ = page.write(str(out), kind, (), None)
+        text = (out / name).read_text(encoding="utf-8").replace("`", "").replace("&#45;", "-")
+        assert f"4 stand on logs of which parts were lost: {', '.join(lossy)} and 1 more." in text
+        assert f"1 off their map: {off_map}." in text
+
+
+def test_the_query_that_is_proposed_gives_the_numbers_that_are_printed(audited: tuple[Path, int]) -> None:
+    """A touch of two egos is one in both."""
+    out, n = audited
+    (file,) = (out / "tables" / "findings").iterdir()
+    table = pq.read_table(file)
+    first = table.slice(0, 1).to_pylist()[0]
+    other = first | {"ego_id": first["object_id"], "object_id": first["ego_id"], "finding_id": "other"}
+    pq.write_table(pa.concat_tables([table, pa.Table.from_pylist([other], schema=table.schema)]), file)
+    _, counted = told(out)
+    text = summary_text(replace(counted, n_broken=len(counted.broken) + 1), str(out), ExitCode.FAILED)
+    proposed = [re.search(r'"(SELECT .*)"', line) for line in text.splitlines() if " rule_id, count(" in line]
+    assert len(proposed) == 2
+    for found in proposed:
+        assert found is not None
+        (row,) = json.loads(ask(str(out), found[1], "json"))
+        assert (row["rule_id"], row["count_star()"]) == (fleet.RULE, n)

@@ -129,6 +129,12 @@ def test_a_copy_is_neither_new_nor_gone_for_diff(*, swapped: bool) -> None:
     assert not any(rate.egos_judged for each in told.rates for rate in (each.base, each.new) if rate)
 
 
+def test_a_judged_drive_is_compared_with_the_judged_one_of_its_content() -> None:
+    told = compared(ONCE, [result("0", status="not_judged"), result("a", ("1", 3.0))])
+    assert told.counts == {**dict.fromkeys(told.counts, 0), "unchanged": 1}
+    assert (told.no_more_judged, told.new_only) == ([], ["0.csv"])
+
+
 def test_lists_of_diff_say_how_many_more_there_are_and_use_words() -> None:
     others = [ego_drive(name, sha256=name) for name in "bcdefgh"]
     gone = to_text(compared([*ONCE, *others], ONCE), "minor")

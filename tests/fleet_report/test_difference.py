@@ -11,8 +11,10 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint.fleet_report import page
 from drivelint.result.folder import MANIFEST
 from tests.audit import fleet
+from tests.audit.here import judged
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
@@ -147,6 +149,34 @@ def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path)
         == sum(found["base_verdicts"].values())
     )
     assert "More is unknown than was" in ran("diff", audited.base, new).out
+
+
+def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_finding(tmp_path: Path) -> None:
+    """Of its map it is not known whether it differs; the exit code is that of two checks."""
+    drives = fleet.write(tmp_path / "fleet", 8)
+    judged(drives, tmp_path / "base")
+    for log in (drives.manifest.parent / "logs").iterdir():
+        log.write_bytes(log.read_bytes()[:100] + log.name.encode())  # each another content
+    judged(drives, tmp_path / "new")
+    base, new = tmp_path / "base", tmp_path / "new"
+    found = compared(base, new, "--fail-on", "never")
+    assert [each["base_log"] for each in found["no_more_judged"]] == sorted(
+        map(str, (drives.manifest.parent / "logs").iterdir())
+    )
+    assert all(each["reason"] for each in found["no_more_judged"])
+    assert {each["standing"] for each in found["differences"]} == {"unknown"}
+    for each in found["differences"]:
+        assert "map" not in each["causes"]
+        assert "map" in each["causes_not_known"]
+    done = ran("diff", base, new, "--fail-on", "never")
+    assert "Not judged, and judged in the base (8 drives)" in done.out
+    assert done.out.rstrip().endswith("; judged less than the baseline: 8 drives of it not judged")
+    assert done.code == 0
+    assert "### Not judged, and judged in the base (8)" in ran("diff", base, new, "--format", "markdown").out
+    assert compared(base, base)["no_more_judged"] == []
+    for kind in ("markdown", "html"):
+        name, _ = page.write(str(new), kind, (), str(base))
+        assert "udged in the baseline:" in (new / name).read_text(encoding="utf-8")
 
 
 def test_an_audit_and_a_check_are_not_compared(audited: Audited, checked: list[Path]) -> None:

@@ -15,10 +15,22 @@ from tests.guide.blocks import blocks
 pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
 
 
+LOG, RULES = '"demo/near-miss.mcap"', 'rules="ukhc.r162.safe-distance-ahead"'
+"""What the program checks, and by what."""
+
+
 @pytest.fixture
 def ran(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Return what the program about the room for an overtake has when it has run."""
+    return run(code_of_the_page(), tmp_path, monkeypatch)
+
+
+def code_of_the_page() -> str:
     (code,) = (block.body for block in blocks(FOLDER / "python.md") if block.argument == "room.py")
+    return code
+
+
+def run(code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     demo.write(tmp_path / "demo")
     (tmp_path / "room.py").write_text(code, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -35,3 +47,16 @@ def test_the_gap_around_a_moment_is_that_of_the_finding_at_it(ran: dict[str, Any
     assert len(at) == len(steps) > 50, "each time once, though there are two findings"
     assert (min(at), max(at)) == pytest.approx((2.7, 12.7), abs=0.2)
     assert Path("room.png").stat().st_size > 5000
+
+
+def test_the_gap_is_below_0_side_by_side_without_a_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the page says, of the demo's near miss at 25 mph."""
+    code = code_of_the_page()
+    assert LOG in code
+    assert RULES in code
+    both = 'rules=["ukhc.r162.safe-distance-ahead", "ukhc.no-collision"]'
+    ran = run(code.replace(LOG, '"demo/near-miss-25mph.mcap"').replace(RULES, both), tmp_path, monkeypatch)
+    assert min(ran["steps"]["gap_m"]) < -1
+    verdicts = [row["verdict"] for row in ran["checked"].verdicts if row["rule_id"] == "ukhc.no-collision"]
+    assert verdicts
+    assert set(verdicts) == {"pass"}

@@ -87,7 +87,8 @@ def test_the_statement_names_every_drive_and_what_became_of_it(packed: PackedAud
     for name, drive in drives.items():
         digest = hashlib.sha256(logs[name].read_bytes()).hexdigest()
         status = {REFUSED: "refused", QUARANTINED: "quarantined"}.get(name, "judged")
-        expected = (digest, road, status) if status == "judged" else (None, None, status)
+        hashes = {"judged": (digest, road), "refused": (digest, None), "quarantined": (None, None)}
+        expected = (*hashes[status], status)
         assert (drive["log_sha256"], drive["map_sha256"], drive["status"]) == expected
         assert drive["lossy"] == (name in {LOSSY, LOSSY_CONTACT})
         assert (drive["n_fail"] > 0) == (name in packed.drives.planted)

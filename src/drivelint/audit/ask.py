@@ -15,8 +15,10 @@ from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
-from drivelint.fleet.counted import create_counted_views
+from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.phrases import inert, inert_json
+from drivelint.result.certainty import LEAST_SHARE
+from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
 
 if TYPE_CHECKING:
@@ -68,6 +70,8 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
+        event = statement("fleet/event", of=COUNTED, least_share=str(LEAST_SHARE))
+        con.execute(f"CREATE TEMP VIEW {COUNTED}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
         if "verdicts.parquet" not in files:

@@ -93,24 +93,33 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
                 "--delta has tables that are packed: give drivelint merge --delta, when all parts have ended"
             )
         delta.ready(request.delta, request.out, id_)
-    _begin(request, results, id_)
+    was_whole = _begin(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune take results out: give them without --shard and --claim")
     part = parts.name_of(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
-        counted = _audited(request, results, progress, id_=id_, executor=executor)
+        counted = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
         parts.end(results, part)
     return counted
 
 
 def _audited(
-    request: AuditRequest, results: ResultStore, progress: Progress, *, id_: str, executor: Executor | None
+    request: AuditRequest,
+    results: ResultStore,
+    progress: Progress,
+    *,
+    id_: str,
+    executor: Executor | None,
+    was_whole: bool,
 ) -> AuditSummary:
+    """`was_whole`: what was packed before is known to be as it was written."""
     alone = request.shard is None and not request.claim
     if alone:
         if isinstance(results, LocalFolder):
             results.sweep()
+        progress.stage("looking at earlier results", None)
+        sealed.require_rows_unchanged(results, request.out, packed=not was_whole)
         compact(results)
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         progress.stage("listing", None)
@@ -271,6 +280,7 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     with locked(results, shared=False), database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         if isinstance(results, LocalFolder):
             results.sweep()
+        sealed.require_rows_unchanged(results, out, packed=not _is_whole(results, out))
         results.delete(list(results.names("claims")))
         counted = _close(con, results, Path(home), 0, parts.missing(results))
         if delta_dest is not None:
@@ -287,23 +297,32 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
     return len(absent)
 
 
-def _begin(request: AuditRequest, results: ResultStore, id_: str) -> None:
+def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
     """Write down what decides the results, or make sure that the audit that is there has the same.
 
-    Errors: `UsageError` for an audit by other rules, parameters or versions.
+    Return whether that audit had ended, and its files are as they were then. Errors: `UsageError` for an audit by other rules,
+    parameters or versions, and for one whose files were changed since it ended.
     """
     told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings), "fail_on": request.fail_on}
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
+    was_whole = False
     if not results.create(AUDIT_FILE, content):
         there = json.loads(results.read(AUDIT_FILE) or b"{}")
         if there.get("run_id") != id_:
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
+        was_whole = _is_whole(results, request.out)
         sealed.unseal(results)
         results.delete([SUMMARY_FILE])  # it is not of what is there from now on
     # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
+    return was_whole
+
+
+def _is_whole(results: ResultStore, dest: str) -> bool:
+    with TemporaryDirectory(prefix="drivelint-audit-") as home:
+        return sealed.require_unchanged(results, Path(home), dest)
 
 
 def _plain(settings: JudgeSettings) -> dict[str, Any]:

@@ -1,20 +1,34 @@
-"""`files.json` of an audit that has ended: the sha256 of tables and summary, which tells a later change, as in the folder of a check."""
+"""Tells whether an audit's files were changed after they were written.
+
+An audit that has ended has `files.json`, the sha256 of tables and summary, as in the folder of a check. One that has not ended has
+the receipts, each with the hash of its drive's rows.
+"""
 
 from __future__ import annotations
 
 from hashlib import file_digest, sha256
+from itertools import groupby
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from drivelint.audit.compact import chunk_name, chunks, loose_receipts
+from drivelint.audit.driver import empty_rows
+from drivelint.audit.worker import TABLES, batch_name, rows_sha256
 from drivelint.errors import UsageError
 from drivelint.result.folder import MANIFEST, hashes_in, manifest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from pathlib import Path
+    from collections.abc import Iterable, Iterator
 
     from drivelint.audit.store import ResultStore
 
 _TABLES: Final = "tables"
+_AGAIN: Final = "audit the drives again into another --out"
 
 
 def seal(results: ResultStore, names: Iterable[str]) -> None:
@@ -29,19 +43,83 @@ def unseal(results: ResultStore) -> None:
     results.delete([MANIFEST])
 
 
-def require_unchanged(results: ResultStore, home: Path, dest: str) -> None:
-    """Refuse an audit whose files are not as they were when it ended; one without a list has not ended, or is of an older version.
+def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
+    """Refuse an audit whose files are not as they were when it ended; return whether it has the list of them.
 
-    `home`: for copies. Errors: `UsageError`, which names the first of these files; `OutputError`.
+    One without a list has not ended, or is of an older version. `home`: for copies. Errors: `UsageError`, which names the first of
+    these files; `OutputError`.
     """
     said = hashes_in(results.read(MANIFEST) or b"")
     if not said:
-        return
+        return False
     for name in sorted({*results.names(_TABLES), *said}):
         if name not in said or _sha256(results, home, name) != said[name]:
+            if results.read(MANIFEST) is None:  # a shard has found the files as they were, and has begun to change them
+                return False
+            raise UsageError(f"{dest.rstrip('/')}/{name}: is not as drivelint audit wrote it with the others: {_AGAIN}")
+    return True
+
+
+def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> None:
+    """Refuse an audit in which a drive's rows are not those of its receipt. Not while anybody packs.
+
+    `packed`: look at packed results, too, besides those that are not packed yet. Errors: `UsageError`, which names the first such
+    log, or a file that cannot be read; `OutputError`.
+    """
+    for some in loose_receipts(results, whole_batches=False):
+        for batch, receipts in groupby(some, key=lambda receipt: receipt.batch):
+            if results.read(batch_name("drives", batch)) is None:
+                continue  # its drives are judged again
+            said = {each.key: (each.log, each.rows_sha256) for each in receipts}
+            _require_rows(results, dest, {table: batch_name(table, batch) for table in TABLES}, said)
+    for chunk in chunks(results) if packed else ():
+        names = {table: chunk_name(table, chunk) for table in (*TABLES, "receipts")}
+        with TemporaryDirectory(prefix="drivelint-audit-") as home:
+            receipts = _read(results, dest, names.pop("receipts"), Path(home)).to_pylist()
+        said = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
+        _require_rows(results, dest, names, said, nothing_else=True)
+
+
+def _require_rows(
+    results: ResultStore,
+    dest: str,
+    names: dict[str, str],
+    said: dict[str, tuple[str, str]],
+    *,
+    nothing_else: bool = False,
+) -> None:
+    """Compare rows with `said`: key -> log and hash. `names`: table -> its file; `nothing_else`: it has rows of no other drive."""
+    with TemporaryDirectory(prefix="drivelint-audit-") as home:
+        read = {
+            table: _read(results, dest, name, Path(home), empty_rows()[table].schema) for table, name in names.items()
+        }
+    by_key = {table: dict(_by_key(rows)) for table, rows in read.items()}
+    for key, (log, rows_hash) in said.items():
+        if rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in read.items()}) != rows_hash:
+            raise UsageError(f"{dest}: the rows of {log} are not as drivelint audit wrote them: {_AGAIN}")
+    for table, rows in by_key.items():
+        n_told = sum(of.num_rows for key, of in rows.items() if key in said or not nothing_else)
+        if n_told != read[table].num_rows:
             raise UsageError(
-                f"{dest.rstrip('/')}/{name}: is not as drivelint audit wrote it with the others: audit the drives again into another --out"
+                f"{dest.rstrip('/')}/{names[table]}: has rows that drivelint audit did not write: {_AGAIN}"
             )
+
+
+def _by_key(rows: pa.Table) -> Iterator[tuple[str, pa.Table]]:
+    """Yield each key with its rows, which stand together."""
+    ends = pc.run_end_encode(rows["key"].combine_chunks())
+    first = 0
+    for key, end in zip(ends.values.to_pylist(), ends.run_ends.to_pylist(), strict=True):
+        yield key, rows.slice(first, end - first)
+        first = end
+
+
+def _read(results: ResultStore, dest: str, name: str, home: Path, schema: pa.Schema | None = None) -> pa.Table:
+    try:
+        rows = pq.read_table(results.fetch(name, home), partitioning=None)
+        return rows if schema is None else rows.cast(schema)
+    except (OSError, ValueError) as error:  # those of pyarrow are among these
+        raise UsageError(f"{dest.rstrip('/')}/{name}: is not as drivelint audit wrote it: {_AGAIN}") from error
 
 
 def _sha256(results: ResultStore, home: Path, name: str) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import pyarrow.compute as pc
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 MOST_COPIES: Final = 3
+MOST_LOGS: Final = 3
 
 
 @dataclass
@@ -32,10 +33,10 @@ class AuditSummary:
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
     `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
-    their end. `copies`: judged drives whose logs have the content of another one's: of a whole audit, way, time, findings, contacts and
-    unknown verdicts are those of each content once, as on the fleet page. `contacts`: drives with a contact that is sure or was not
-    examined; `contacts_possible`: the others with one. In `findings`, a touch of two egos counts once; `possible`: those that are only
-    possible.
+    their end. `copies`: judged drives whose logs have the content of another judged one's; `copies_not_judged`: those of the drives that
+    were not judged. Of a whole audit, way, time, findings, contacts and unknown verdicts are those of each content once, as on the fleet
+    page. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one. In `findings`, a
+    touch of two egos counts once; `possible`: those that are only possible.
     """
 
     n_drives: int = 0
@@ -56,6 +57,7 @@ class AuditSummary:
     n_absent: int = 0
     missing_parts: list[str] = field(default_factory=list)
     copies: int = 0
+    copies_not_judged: int = 0
     findings: dict[str, int] = field(default_factory=dict)
     possible: int = 0
     contacts: int = 0
@@ -64,7 +66,11 @@ class AuditSummary:
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
     copied: list[dict[str, Any]] = field(default_factory=list)
-    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`)."""
+    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`,
+    `same_options`)."""
+    lossy_logs: list[str] = field(default_factory=list)
+    off_map_logs: list[str] = field(default_factory=list)
+    """The first lossy logs, and of those that are off their map; logs of one content are one."""
     n_broken: int = 0
     n_unknown_for: int = 0
     """How many rules were broken, and how many reasons for unknown verdicts there are."""
@@ -128,6 +134,21 @@ def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
 
+class Named(NamedTuple):
+    """The number of some logs, and the first of them."""
+
+    n: int
+    logs: list[str]
+
+
+def logs_that_are(con: duckdb.DuckDBPyConnection, what: str) -> Named:
+    """Return the logs that are `lossy` or `off_map`, of one content one; those of an older audit may not say the latter."""
+    if what not in con.table("receipts").columns:
+        return Named(0, [])
+    rows = con.execute(statement("audit/logs_that_are", what=what)).fetchall()
+    return Named(len(rows), [log for (log,) in rows[:MOST_LOGS]])
+
+
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
     create_counted_views(con)
@@ -142,7 +163,8 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         summed_receipts(con, "receipts"),
         reused=n_reused,
         **contacts.to_pylist()[0],
-        copies=totals["copies"],
+        copies=totals["copies"] - totals["copies_not_judged"],
+        copies_not_judged=totals["copies_not_judged"],
         km=totals["km"],
         hours=totals["log_hours"],
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
@@ -156,5 +178,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
         n_broken=broken.num_rows,
         n_unknown_for=unknown_for.num_rows,
+        lossy_logs=logs_that_are(con, "lossy").logs,
+        off_map_logs=logs_that_are(con, "off_map").logs,
         copied=con.execute(statement("audit/copied"), {"most": MOST_COPIES}).to_arrow_table().to_pylist(),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from drivelint.phrases import one_line, plural
 from drivelint.result.counts import SEVERITIES
@@ -20,16 +20,20 @@ def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
 
 
 def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
-    yield f"{plural(counted.n_drives - counted.copies, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
+    n_refused = counted.refused - counted.copies_not_judged
+    n_drives = counted.n_drives - counted.copies - counted.copies_not_judged
+    yield f"{plural(n_drives, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
     states = (
         f"{counted.judged - counted.copies} judged",
-        f"{counted.refused} refused" if counted.refused else "",
+        f"{n_refused} refused" if n_refused else "",
         f"{counted.quarantined} quarantined" if counted.quarantined else "",
         f"{counted.lossy} lossy" if counted.lossy else "",
         f"{counted.off_map} off their map" if counted.off_map else "",
         f"{counted.reused} had a result already" if counted.reused else "",
     )
     yield ", ".join(state for state in states if state)
+    yield from _named("lossy", counted.lossy_logs, counted.lossy)
+    yield from _named("off their map", counted.off_map_logs, counted.off_map)
     yield from _copies(counted, out)
     if counted.missing_parts:
         of = (
@@ -51,7 +55,7 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     yield from _not_judged(counted, out)
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
-    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY 2 DESC"'
+    yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 
 
@@ -60,7 +64,7 @@ def _broken(counted: AuditSummary, out: str) -> Iterator[str]:
     for row in counted.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
     if (more := counted.n_broken - len(counted.broken)) > 0:
-        query = "SELECT severity, rule_id, count(*) FROM counted_findings GROUP BY ALL ORDER BY ALL"
+        query = "SELECT severity, rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY ALL"
         yield f'  and {plural(more, "more rule")}: drivelint sql {out} "{query}"'
 
 
@@ -78,7 +82,7 @@ def _unknown(counted: AuditSummary, out: str) -> Iterator[str]:
 
 def _not_judged(counted: AuditSummary, out: str) -> Iterator[str]:
     """Yield drives that could not be judged, and why."""
-    if left := counted.refused + counted.quarantined:
+    if left := counted.refused + counted.quarantined - counted.copies_not_judged:
         yield f"not judged: {plural(left, 'drive')}"
         for row in counted.not_judged:
             parts = [plural(row["n"], "drive")] if row["n"] > 1 else []
@@ -90,19 +94,33 @@ def _not_judged(counted: AuditSummary, out: str) -> Iterator[str]:
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
 
 
+def _named(what: str, logs: list[str], n: int) -> Iterator[str]:
+    """Yield the first logs of which this is said, and how many more there are."""
+    if logs:
+        yield f"  {what}: {', '.join(logs)}{f' and {n - len(logs)} more' if n > len(logs) else ''}"
+
+
 def _copies(counted: AuditSummary, out: str) -> Iterator[str]:
     """Yield how many logs have the content of another one, and the first of them."""
-    if not counted.copies:
+    n = counted.copies + counted.copies_not_judged
+    if not n:
         return
-    has = "has" if counted.copies == 1 else "have"
-    yield f"{plural(counted.copies, 'more log')} {has} the content of another one: each content counts once"
+    has = "has" if n == 1 else "have"
+    yield f"{plural(n, 'more log')} {has} the content of another one: each content counts once"
     for row in counted.copied:
-        is_same = row["log"] == row["other"]
-        told = "judged again, with another ego or under other conditions" if is_same else f"a copy of {row['other']}"
-        yield f"  {row['log']}: {told}"
-    if counted.copied and (more := counted.copies - len(counted.copied)):
+        yield f"  {row['log']}: {_repeated(row)}"
+    if counted.copied and (more := n - len(counted.copied)):
         query = "SELECT sha256, list(log) FROM drives WHERE sha256 IS NOT NULL GROUP BY ALL HAVING count(*) > 1"
         yield f'  and {more} more: drivelint sql {out} "{query}"'
+
+
+def _repeated(row: dict[str, Any]) -> str:
+    """Return what a result is whose log has another one before."""
+    if row["log"] != row["other"]:
+        return f"a copy of {row['other']}"
+    if row["same_options"]:
+        return "listed again, with other tags"
+    return "judged again, with another ego or map, or under other conditions"
 
 
 def _contacts(counted: AuditSummary) -> str:

@@ -158,7 +158,7 @@ class Judge:
                 one = {
                     "verdicts": told["verdicts"].slice(0, 0),
                     "findings": told["findings"].slice(0, 0),
-                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error)),
+                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error), _sha256(path)),
                 }
             else:
                 name = found.trace.drive_id
@@ -284,6 +284,14 @@ def batch_name(table: str, batch: str) -> str:
 def receipt_name(key: str) -> str:
     """Return the name of a receipt."""
     return f"receipts/{key[:2]}/{key}.json"
+
+
+def _sha256(log: Path) -> str | None:
+    """Return the hash of a log that was refused, by which its copies are known; None where it cannot be read."""
+    try:
+        return identify(log).sha256
+    except TraceError:
+        return None
 
 
 def _require_unchanged(path: Path, identity: Identity) -> None:

@@ -184,7 +184,7 @@ def sql(
         argument(
             "QUERY",
             "One SELECT over verdicts, findings, drives, rules and receipts; of an audit also over counted_verdicts, counted_findings "
-            "and counted_drives, in which copies count once.",
+            "and counted_drives, in which copies count once, and counted_events, in which a touch of two egos does, too.",
         ),
     ],
     format_: Annotated[options.SqlFormat, option("--format", None, "What is printed on stdout.")] = "text",

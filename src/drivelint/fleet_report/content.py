@@ -6,6 +6,7 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.audit.summary import Named, logs_that_are
 from drivelint.catalogue.header import CONTACT
 from drivelint.fleet.counted import COUNTED, create_counted_views, subject
 from drivelint.fleet.coverage import Coverage, coverage
@@ -43,9 +44,10 @@ class FleetContent:
 
     `totals`: the row of `totals.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
-    drives. `contacts`: in how many drives an ego touched something, in how many others it may have. `worst_value`: the value of a tag
-    whose rate differs most from the others. Logs of one content are one drive; `n_without_rate`: findings of such a log that another one
-    stands for in the rates, as it was judged otherwise.
+    drives. `lossy`, `off_map`: the logs of which parts were lost, and those that their map does not fit. `contacts`: in how many drives an
+    ego touched something, in how many others it may have. `worst_value`: the value of a tag whose rate differs most from the others. Logs
+    of one content are one drive; `n_without_rate`: findings of such a log that another one stands for in the rates, as it was judged
+    otherwise.
     """
 
     audit: Audit
@@ -60,6 +62,8 @@ class FleetContent:
     n_without_rate: int
     contacts: tuple[int, int]
     not_judged: list[Row]
+    lossy: Named
+    off_map: Named
     worst_value: WorstValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
@@ -157,6 +161,8 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
         not_judged=rows(con, "not_judged", {"most": MAX_DRIVES}),
+        lossy=logs_that_are(con, "lossy"),
+        off_map=logs_that_are(con, "off_map"),
         worst_value=worst_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),

@@ -68,6 +68,20 @@ class Entry(NamedTuple):
     new_key: str | None
 
 
+class NoMoreJudged(NamedTuple):
+    """A drive that the base judged and the newer audit could not. `log`, `new_key`: there; `base_log`: the base's; `reason`: why not."""
+
+    log: str
+    new_key: str
+    base_log: str
+    reason: str
+
+    @property
+    def line(self) -> str:
+        """The log and the reason, which mostly begins with it."""
+        return self.reason if self.reason.startswith(self.log) else f"{self.log}: {self.reason}"
+
+
 class Opened(NamedTuple):
     """Verdicts that are unknown or errors now and were not, in drives that both audits have; `reason`: that of one of them."""
 
@@ -104,6 +118,7 @@ class AuditDifference:
     comparison: Comparison
     base_only: list[str]
     new_only: list[str]
+    no_more_judged: list[NoMoreJudged]
     opened: list[Opened]
     rates: list[RateChange]
 
@@ -180,6 +195,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         comparison=found,
         base_only=[row["log"] for row in only[0]],
         new_only=[row["log"] for row in only[1]],
+        no_more_judged=[NoMoreJudged(**row) for row in rows(con, "no_more_judged", None, **sides)],
         opened=[Opened(**row) for row in rows(con, "opened", None, **sides)],
         rates=compare_rates(con, base=BASE, new=""),
     )

@@ -53,7 +53,13 @@ def _warnings(found: AuditDifference) -> list[str]:
 
 
 def _exit(found: AuditDifference, fail_on: str | None) -> str:
-    """Return the exit code and its reason, in one line."""
+    """Return the exit code and its reason, and that fewer drives were judged, in one line."""
+    n = len(found.no_more_judged)
+    less = f"; judged less than the baseline: {plural(n, 'drive')} of it not judged" if n else ""
+    return f"{_code_and_reason(found, fail_on)}{less}"
+
+
+def _code_and_reason(found: AuditDifference, fail_on: str | None) -> str:
     if fail_on is None:
         return f"exit 4: {NOTHING_IN_COMMON}; --fail-on SEVERITY gates on all of the newer audit"
     if exit_code(found, fail_on) == ExitCode.NOT_JUDGED and _warnings(found):
@@ -137,6 +143,7 @@ def to_json(found: AuditDifference, fail_on: str | None) -> str:
             for each in entries
         ],
         "left_out": {standing: found.counts[standing] - len(entries) for standing, entries in found.entries.items()},
+        "no_more_judged": [each._asdict() for each in found.no_more_judged],
         "opened": [each._asdict() for each in found.opened],
         "rates": [
             _rate_change(each) for each in found.rates if each.p_value is not None or each.occasion_p_value is not None

@@ -30,7 +30,7 @@ def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     audit = evidence["audit"]
     content = {
         "_type": TYPE,
-        "subject": [named(drive["log"], drive["log_sha256"]) for drive in drives if drive["log_sha256"]],
+        "subject": [named(drive["log"], drive["log_sha256"]) for drive in drives if drive["status"] == "judged"],
         "predicateType": PREDICATE,
         "predicate": {
             "result": result_word(outcomes, is_clean=evidence["exit"]["code"] == ExitCode.OK),
