@@ -108,6 +108,8 @@ def test_a_result_that_is_lost_with_its_worker_is_made_again(sleepers: tuple[Das
 def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) -> None:
     cluster, executor = sleepers
     executor.submit(60.0)
+    # a task that no worker has yet is not lost with them, but waits for others
+    _until(lambda: any(executor._client.processing().values()), "a worker has the task")
     for worker in cluster.workers:
         worker.send_signal(signal.SIGKILL)
     (outcome,) = executor.wait()
