@@ -50,23 +50,23 @@ def working_folder(
     with _locked(out) as is_ours:
         for left in out.glob(f"{_WORK}.*") if is_ours else ():
             shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
-        work, before = out / f"{_WORK}.{os.getpid()}", _identity(out / mark)
+        work, before, is_done = out / f"{_WORK}.{os.getpid()}", _identity(out / mark), False
         try:
             work.mkdir()
             _remove(out, sorted(_ours(out, patterns, overwrite=overwrite).intersection(reports)))
             yield work
-        except BaseException:
-            if before is not None and _identity(out / mark) == before:
-                _set_aside(out, patterns, mark, overwrite=overwrite)
-            raise
+            is_done = True
         finally:
             shutil.rmtree(work, ignore_errors=True)
+            if not is_done and before is not None and _identity(out / mark) == before:
+                _set_aside(out, patterns, mark, overwrite=overwrite)
 
 
 def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool) -> None:
     """Move an earlier result into its folder within `out`; without its mark there is no result in `out` from the first move on."""
     earlier = out / EARLIER
-    _remove(earlier, sorted(_ours(earlier, patterns, overwrite=False)))
+    with suppress(OutputError):  # what stays there is replaced; why the run ended must not be hidden by it
+        _remove(earlier, sorted(_ours(earlier, patterns, overwrite=False)))
     names = _ours(out, patterns, overwrite=overwrite)
     try:
         for name in (mark, *sorted(names - {mark}), MANIFEST):

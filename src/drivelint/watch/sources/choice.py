@@ -30,20 +30,17 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
     Errors: `UsageError` for a name that means none, those of the source.
     """
     with nullcontext(options.out / RECORDED) if options.out is not None else temporary_folder() as home:
-        source = None
+        source, is_done = None, False
         try:
             source = _opened(options, home)
             yield source
-        except BaseException:
-            if source is not None:
-                source.close()
-            if options.out is None and any(home.iterdir()):
-                progress.note(f"what was recorded is kept: {home}")
-                keep(home)
-            raise
+            is_done = True
         finally:
             if source is not None:
                 source.close()
+            if not is_done and options.out is None and any(home.iterdir()):
+                progress.note(f"what was recorded is kept: {home}")
+                keep(home)
 
 
 def _opened(options: WatchOptions, folder: Path) -> Source:
