@@ -109,13 +109,25 @@ def test_distance_ahead_is_the_way_between_the_boxes(study: Study, run: str) -> 
 @pytest.mark.parametrize(("run", "least"), [("safe", 1.84), ("near_miss", 0.34), ("collision", 0.14)])
 def test_least_distances(study: Study, run: str, least: float) -> None:
     rows = study.rows("FROM verdict WHERE rule_id = 'ukhc.no-collision' AND drive_id LIKE $drive", run)
-    assert [row["verdict"] for row in rows] == ["pass", "pass"]
-    found = {row["object_id"]: row["observed"] for row in rows}
-    assert found["3"] == pytest.approx(least, abs=0.01)
+    # The speeds of the ego and the oncoming vehicle jump in these two runs while the boxes stay apart: their distances tell no more.
+    assert {row["object_id"]: row["verdict"] for row in rows} == {
+        "2": "pass",
+        "3": "pass" if run == "safe" else "unknown",
+    }
+    nearest = {
+        row["object_id"]: row["least_m"]
+        for row in study.rows(
+            "SELECT object_id, min(clearance_m) AS least_m FROM pair WHERE drive_id LIKE $drive GROUP BY ALL", run
+        )
+    }
+    assert nearest["3"] == pytest.approx(least, abs=0.01)
     for other in ("2", "3"):
         ours = [(t, ego.distance(o)) for (t, ego), (_, o) in zip(boxes(run)["1"], boxes(run)[other], strict=True)]
         t_least, distance = min(ours, key=lambda pair: (pair[1], pair[0]))
         (row,) = [row for row in rows if row["object_id"] == other]
+        assert nearest[other] == pytest.approx(distance, abs=1e-6)
+        if row["verdict"] == "unknown":
+            continue
         assert row["observed"] == pytest.approx(distance, abs=1e-6)
         if not math.isclose(ours[-1][1], distance, abs_tol=1e-9):  # where it comes to rest, every later step ties
             assert row["t_worst_ns"] / 1e9 == pytest.approx(t_least)

@@ -12,7 +12,7 @@
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
 -- tags = ["contact"]
--- reads = ["between_steps", "clearance_least", "ego_state", "pair"]
+-- reads = ["between_steps", "clearance_least", "ego_state", "impact", "pair"]
 -- requires = ["ego_size"]
 --
 -- [reasons.contact_between_steps]
@@ -20,6 +20,10 @@
 --
 -- [reasons.contact_not_ruled_out]
 -- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
+--
+-- [reasons.impact_beside_boxes]
+-- says = "the speeds show an impact here, though the boxes are {apart_m:.2f} m apart: the log's sizes or positions are not exact enough to tell"
+-- advice = "see the rule contact-signature"
 --
 -- [reasons.contact_standing]
 -- says = "contact, {depth_m:.2f} m deep, while the ego stood still: it was struck"
@@ -33,13 +37,16 @@
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
     -- An overlap between two steps is a contact only if it is deeper than the uncertainty of the ways between them (blur_m).
-    CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
-    (p.clearance_is_bound OR p.clearance_m IS NULL) AND b.least_m IS NULL AS at_least,
+    -- Boxes that stay apart do not show that there was no contact at a step at which the speeds show an impact.
+    CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL AND i.t_ns IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
+    (p.clearance_is_bound OR p.clearance_m IS NULL) AND b.least_m IS NULL AND i.t_ns IS NULL AS at_least,
     CASE WHEN b.least_m < -b.blur_m THEN why('contact_between_steps', {'depth_m': -b.least_m})
+        WHEN i.t_ns IS NOT NULL THEN why('impact_beside_boxes', {'apart_m': p.clearance_m})
         WHEN b.least_m IS NOT NULL THEN why('contact_not_ruled_out', {'step_s': (b.t_next_ns - b.t_ns) / 1e9}) END AS reason
 FROM pair p
 LEFT JOIN between_steps b USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN impact i USING (drive_id, ego_id, t_ns, object_id)
 WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- A contact at a step: the reason says whether the ego moved.
