@@ -313,6 +313,17 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     assert said == {"lht": [], "rht": ["warning"]}
 
 
+@pytest.mark.parametrize(("moved_m", "told"), [(0.0, None), (-0.6, None), (0.8, "0.80 m"), (-1.1, "1.10 m")])
+def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told: str | None) -> None:
+    """The ego of the fixture keeps to the middle of its lane."""
+    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, moved_m), rules=FEW), Silent())
+    (drive,) = result.drives.to_pylist()
+    found = [(q["severity"], q["message"]) for q in drive["quality"] if q["check_id"] == "aside_of_lane"]
+    assert len(found) == (told is not None)
+    assert all(severity == "warning" and f"ego ego keeps {told} beside the middle" in words for severity, words in found)
+    assert not drive["lossy"]
+
+
 def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
     result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 4.5)), Silent())
     rows = {row["rule_id"]: row for row in result.verdicts.to_pylist()}

@@ -37,6 +37,7 @@ SIZES = {
     "severity": "info",
     "message": "size as the mapping 'm' says, not recorded",
 }
+ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
 WHOLE = "complete as far as .csv tells"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
@@ -79,6 +80,15 @@ def section(text: str, name: str) -> str:
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),
             f"map: road.xodr fits 1 of 1 drive, but not 1 of 2 egos | log: {WHOLE} | not judged: nothing",
+        ),
+        (
+            result([verdict("pass")], drives=[drive(quality=[ASIDE]), drive("d2")]),
+            f"map: road.xodr fits 2 of 2 drives, but ego 1 keeps 1.10 m beside the middle | log: {WHOLE} | not judged: nothing",
+        ),
+        (
+            result([verdict("pass")], drives=[drive(quality=[ASIDE]), drive("d2", quality=[ASIDE])]),
+            "map: road.xodr fits 2 of 2 drives, but 2 egos keep far beside the middle of their lanes: is the map moved against the logs? "
+            f"--map-offset puts it right | log: {WHOLE} | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),

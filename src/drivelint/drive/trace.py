@@ -62,6 +62,8 @@ TURNED_FRAME = "turned_frame"
 """The check, information only, of a log whose mapping turns it, as its own frame is left-handed."""
 OWN_MAP_UNUSABLE = "own_map_unusable"
 """The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
+ASIDE_OF_LANE = "aside_of_lane"
+"""The check of a drive whose ego fits the map, but far from the middle of its lane."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
 

@@ -117,6 +117,7 @@ class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
     moving: Annotated[int, described("of those, in motion and not overtaking in an opposing lane")]
     with_direction: Annotated[int, described("of the moving ones, along the lane's direction")]
     lateral_median_m: Annotated[float | None, described("median distance from the lane's middle; null: never on one")]
+    aside: Annotated[bool, described("it is so far from the middle that the map may be moved against the log")]
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):

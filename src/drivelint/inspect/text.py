@@ -211,11 +211,11 @@ def _road(drive: model.Drive) -> Iterator[Line]:
     if len(fits) == 1:
         yield "fit", _fit(fits[0][1])
         return
-    bad = [(ego, fit) for ego, fit in fits if not fit.ok]
+    bad = [(ego, fit) for ego, fit in fits if not fit.ok or fit.aside]
     good = len(fits) - len(bad)
     share = "none" if not good else f"{good} of {len(fits)}" if bad else "all"
     yield "fit", Text(f"{share} of the egos lie well on the map", style="yellow" if bad else "green")
-    yield from _first_of("fit", [Text(f"ego {ego.actor.actor_id}: {fit.reason}", style="yellow") for ego, fit in bad])
+    yield from _first_of("fit", [Text(f"ego {ego.actor.actor_id}: ").append_text(_fit(fit)) for ego, fit in bad])
 
 
 def _map(road: model.Road) -> Text:
@@ -232,6 +232,8 @@ def _fit(fit: model.MapRegistration) -> Text:
     if not fit.ok:
         return Text(fit.reason, style="bold yellow")
     off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"
+    if fit.aside:
+        return Text(f"{fit.reason}{off}: is the map moved? --map-offset puts it right", style="bold yellow")
     return Text(f"{fit.reason}{off}", style="green")
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
+from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, off_map_reason
@@ -56,9 +56,14 @@ def _map(drives: Sequence[Row]) -> InputNote:
         words += f" ({reasons[0]})"
     elif off_egos:
         words += f", but not {off_egos} of {egos} egos"
+    aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
+    if len(aside) == 1:
+        words += f", but {aside[0]}"
+    elif aside:
+        words += f", but {len(aside)} egos keep far beside the middle of their lanes: is the map moved against the logs? --map-offset puts it right"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
-    return InputNote("map", words, is_warning=bool(off_egos or reasons or bare))
+    return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
 
 
 def _egos_off_the_map(drive: Row) -> int:
@@ -69,7 +74,7 @@ def _egos_off_the_map(drive: Row) -> int:
 def _log(drives: Sequence[Row]) -> InputNote:
     """Return whether the logs are complete: what was lost of them, what is assumed, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
-    checks = [check for drive in drives for check in drive["quality"]]
+    checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
     given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMED_INFO})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}

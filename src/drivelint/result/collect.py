@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 
-from drivelint.drive.trace import LOSS_CHECKS
+from drivelint.drive.trace import ASIDE_OF_LANE, LOSS_CHECKS
 from drivelint.reasons.reason_table import make_reason_table
 from drivelint.result.schemas import conform
 from drivelint.sql.statements import statement
@@ -42,7 +42,7 @@ def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> p
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
-    rows = con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS})
+    rows = con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE})
     return conform(rows.to_arrow_table(), "drive")
 
 
