@@ -320,7 +320,9 @@ def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told:
     (drive,) = result.drives.to_pylist()
     found = [(q["severity"], q["message"]) for q in drive["quality"] if q["check_id"] == "aside_of_lane"]
     assert len(found) == (told is not None)
-    assert all(severity == "warning" and f"ego ego keeps {told} beside the middle" in words for severity, words in found)
+    assert all(
+        severity == "warning" and f"ego ego keeps {told} beside the middle" in words for severity, words in found
+    )
     assert not drive["lossy"]
 
 

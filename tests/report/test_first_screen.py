@@ -87,8 +87,8 @@ def section(text: str, name: str) -> str:
         ),
         (
             result([verdict("pass")], drives=[drive(quality=[ASIDE]), drive("d2", quality=[ASIDE])]),
-            "map: road.xodr fits 2 of 2 drives, but 2 egos keep far beside the middle of their lanes: is the map moved against the logs? "
-            f"--map-offset puts it right | log: {WHOLE} | not judged: nothing",
+            "map: road.xodr fits 2 of 2 drives, but 2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
+            + f" | log: {WHOLE} | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),

@@ -60,7 +60,7 @@ def _map(drives: Sequence[Row]) -> InputNote:
     if len(aside) == 1:
         words += f", but {aside[0]}"
     elif aside:
-        words += f", but {len(aside)} egos keep far beside the middle of their lanes: is the map moved against the logs? --map-offset puts it right"
+        words += f", but {len(aside)} egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
     return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
