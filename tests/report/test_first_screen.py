@@ -38,6 +38,7 @@ SIZES = {
     "message": "size as the mapping 'm' says, not recorded",
 }
 ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
+TWO_ASIDE = "2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
 WHOLE = "complete as far as .csv tells"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
@@ -87,8 +88,7 @@ def section(text: str, name: str) -> str:
         ),
         (
             result([verdict("pass")], drives=[drive(quality=[ASIDE]), drive("d2", quality=[ASIDE])]),
-            "map: road.xodr fits 2 of 2 drives, but 2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
-            + f" | log: {WHOLE} | not judged: nothing",
+            f"map: road.xodr fits 2 of 2 drives, but {TWO_ASIDE} | log: {WHOLE} | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),
