@@ -43,6 +43,18 @@ def test_a_folder_of_sumo_has_its_logs_and_not_its_maps(tmp_path: Path) -> None:
     assert names(expand_traces([str(tmp_path)])) == ["a.fcd.xml"]
 
 
+def test_a_folder_of_commonroad_has_its_scenarios_and_not_its_maps(tmp_path: Path) -> None:
+    root = "<?xml version='1.0'?>\n<commonRoad timeStepSize='0.1'>\n<lanelet id='1'>\n</lanelet>\n{}</commonRoad>\n"
+    for name, inside in (
+        ("a", "<dynamicObstacle id='2'></dynamicObstacle>\n"),
+        ("b", "<staticObstacle id='2'></staticObstacle>\n"),
+        ("c", "<obstacle id='2'></obstacle>\n"),
+        ("map", ""),
+    ):
+        (tmp_path / f"{name}.xml").write_text(root.format(inside))
+    assert names(expand_traces([str(tmp_path)])) == ["a.xml", "b.xml", "c.xml"]
+
+
 def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     """Whoever keeps results beside the logs and checks the folder again must not judge the results."""
     written = [f"{name}.parquet" for name in TABLE_OF_FILE] + ["margins.parquet", "summary.json", "annotated/a.mcap"]

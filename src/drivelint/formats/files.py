@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
+from drivelint.formats.commonroad import scenario as commonroad
 from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
 from drivelint.formats.mcap.bag import mcap_files as files_of_bag
 from drivelint.formats.sumo import fcd as sumo
@@ -25,7 +26,7 @@ CANONICAL_FILES = (
 )  # fmt: skip
 """The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
-"""What a folder of traces is searched for, besides XML that is SUMO's: maps and routes lie there as XML too."""
+"""What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too."""
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
 """Endings that maps have, and no format of logs."""
 _HEAD_BYTES = 4096
@@ -55,8 +56,8 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
-    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI and
-    SUMO's FCD files, except for what an earlier check wrote there.
+    `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI,
+    SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there.
     `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
@@ -107,20 +108,21 @@ def _inside(path: Path) -> list[Path]:
             and file.is_file()
             and inside.isdisjoint(file.parents)
             and not _is_result(file, path)
-            and (file.suffix.lower() in TRACE_SUFFIXES or _is_fcd(file))
+            and (file.suffix.lower() in TRACE_SUFFIXES or _is_xml_log(file))
         ]
     except OSError as error:  # such as a folder that went while it was looked through
         raise TraceError(f"{path}: cannot be searched: {error.filename}: {error.strerror}: try again") from error
     if not drives and not files:
         raise TraceError(
-            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, and SUMO's .xml): check the path"
+            f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, SUMO and CommonRoad .xml): check the path"
         )
     return drives + files
 
 
-def _is_fcd(file: Path) -> bool:
+def _is_xml_log(file: Path) -> bool:
     with file.open("rb") as opened:
-        return sumo.is_fcd(file, opened.read(_HEAD_BYTES))
+        head = opened.read(_HEAD_BYTES)
+    return sumo.is_fcd(file, head) or commonroad.has_obstacles(file, head)
 
 
 def _is_result(file: Path, searched: Path) -> bool:

@@ -40,6 +40,8 @@ _FIELDS = {
     "a": "acceleration/exact", "slip": "slipAngle/exact", "step": "time/exact",
 }  # fmt: skip
 """What is read of a state; a value given as an interval is not known."""
+_ROOT: Final = b"<commonRoad"
+_OBSTACLE: Final = re.compile(rb"<(dynamicO|staticO|o)bstacle[\s>]")
 _TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
 _STATE: Final = re.compile(rb"<state>.*?</state>", re.DOTALL)
 _COMMENT: Final = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
@@ -48,7 +50,12 @@ _TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 def accepts(probe: Probe) -> bool:
     """Accept by its root element."""
-    return b"<commonRoad" in probe.head
+    return _ROOT in probe.head
+
+
+def has_obstacles(path: Path, head: bytes) -> bool:
+    """Whether the file is a scenario with somebody in it, and no map alone."""
+    return _ROOT in head and _OBSTACLE.search(path.read_bytes()) is not None
 
 
 def read(probe: Probe) -> Recording:
