@@ -192,6 +192,7 @@ CREATE TABLE registration (
     n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s, and not overtaking in an opposing lane
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, beside an overtake in the opposing lane where that is enough; NULL: never on a lane
+    is_aside BOOLEAN NOT NULL,        -- that median is so great, in steps that tell, that the map may be moved against the log
     ok BOOLEAN NOT NULL,              -- good enough for rules that need the map: the ego fits; or it is against its lane and three of four other vehicles are with theirs; or it keeps to the middle of a lane (within 0.6 m for 5 s and 50 m, or within 0.3 m for 2 s and 20 m) before and after it is anywhere else, on a road that runs as that one does or on two that cross
     reason VARCHAR NOT NULL           -- why ok is true or false, as JSON from the macro why
 );

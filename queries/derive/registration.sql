@@ -31,9 +31,13 @@ step_count AS (
         sum(st.dt_ns) FILTER (NOT e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
         -- A short log may be half an overtake. The steps outside the overtake decide if they last at least 5 s and are at least a third of
         -- the log.
-        CASE WHEN coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
-            AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m)
-            THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m
+        coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
+            AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m) AS outside_decides,
+        CASE WHEN outside_decides THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL)
+            ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m,
+        -- A log that is nothing but an overtake, or in which the ego stands at the kerb, does not tell that its map is moved.
+        coalesce(lateral_median_m > aside_of_lane_m(), false)
+            AND (outside_decides OR coalesce(sum(st.dt_ns) FILTER (s.speed_mps > 1) > longest_overtake_ns(), false)) AS is_aside
     FROM step st
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN ego_place e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
@@ -126,7 +130,7 @@ fitting_ego AS (
     )
 )
 SELECT
-    j.drive_id, j.ego_id, n_steps, n_on_lane, n_moving, n_with_direction, lateral_median_m, trouble IS NULL OR v.n_fit IS NOT NULL OR w.ego_id IS NOT NULL AS ok,
+    j.drive_id, j.ego_id, n_steps, n_on_lane, n_moving, n_with_direction, lateral_median_m, is_aside, trouble IS NULL OR v.n_fit IS NOT NULL OR w.ego_id IS NOT NULL AS ok,
     CASE WHEN v.n_fit IS NOT NULL THEN why('others_fit', {'trouble': trouble, 'n_fit': v.n_fit, 'n_witnesses': v.n_witnesses})
         WHEN trouble IS NOT NULL AND w.ego_id IS NOT NULL THEN why('fits_before_and_after', {'trouble': trouble})
         ELSE coalesce(trouble, why('on_lane', {'n_on_lane': n_on_lane, 'n_steps': n_steps, 'n_with_direction': n_with_direction, 'n_moving': n_moving}))

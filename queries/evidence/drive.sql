@@ -27,7 +27,7 @@ WITH
         SELECT drive_id, $aside_check, 'warning', ego_id, 1, NULL,
             format('ego {} keeps {:.2f} m beside the middle of its lane (median): is the map moved against the log? --map-offset puts it right', ego_id, lateral_median_m),
             false
-        FROM registration WHERE ok AND lateral_median_m > aside_of_lane_m()),
+        FROM registration WHERE ok AND is_aside),
     defects AS (
         SELECT drive_id, bool_or(loss) AS lossy,
             list({'check_id': check_id, 'severity': severity, 'actor_id': actor_id, 'n': n, 't_first_ns': t_first_ns,

@@ -41,6 +41,15 @@ EVIDENCE = {
     ("end of the others", "ukhc.r165.no-overtaking-sign"): "the same",
     ("end of the others", "ukhc.r163.obstruction-give-way"): "the same, 65 m ahead",
     (
+        "end of the others",
+        "declared.r162.go-before-overtaking",
+    ): "last seen 157 m ahead, 0.4 s before the ego pulls out: not the one that it overtakes, who is within 100 m",
+    ("end of the others", "declared.r166.confidence-at-commit"): "the same",
+    (
+        "others that jump for ever",
+        "ukhc.r162.return-gap",
+    ): "at its other place it is passed, and the next one is 165 m ahead of it",
+    (
         "others that jump for ever",
         "ukhc.h3.no-cut-across",
     ): "on the road for 0.4 s before it jumps: it is at the other place for all the rest",

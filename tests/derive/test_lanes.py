@@ -247,6 +247,29 @@ def test_a_log_may_begin_in_the_middle_of_an_overtake(seconds: float, ok: bool) 
     assert found["ok"] is ok
 
 
+@pytest.mark.parametrize(
+    ("off_m", "speed", "seconds", "aside"),
+    [
+        (0.65, 12.0, 8.0, False),
+        (0.75, 12.0, 8.0, True),
+        (0.75, 12.0, 4.0, False),
+        (0.75, 12.0, 16.0, True),
+        (1.0, 0.0, 60.0, False),
+    ],
+)
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_ego_far_beside_the_middle_of_its_lane_may_be_on_a_moved_map(
+    off_m: float, speed: float, seconds: float, aside: bool, side: int
+) -> None:
+    """Not if it stands at the kerb, nor if the log is too short to tell."""
+    way, t = road(((2000.0, 0.0),), hand="rht"), times(seconds)
+    ego = moving("ego", way, t, 600 + speed * t, way.own + side * off_m)
+    (found,) = rows(derived(drive([ego], way.environment), tables=["registration"]), "FROM registration")
+    assert found["ok"]
+    assert found["lateral_median_m"] == pytest.approx(off_m, abs=1e-6)
+    assert found["is_aside"] is aside
+
+
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
     ("pieces", "well_until", "well_from", "ok"),

@@ -23,7 +23,7 @@ IN_ORDER = {
 }
 VALUES: dict[str, Any] = {
     "_objects": True, "per_rule": 1, "least_m": 1.0, "most_m": 1.0, "first_no": 0, "end_no": 1, "path_ns": 1, "step_ns": 1,
-    "ids": ["a"], "only": None, "losses": [],
+    "ids": ["a"], "only": None, "losses": [], "aside_check": "a",
 }  # fmt: skip
 
 

@@ -57,10 +57,11 @@ def _map(drives: Sequence[Row]) -> InputNote:
     elif off_egos:
         words += f", but not {off_egos} of {egos} egos"
     aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
-    if len(aside) == 1:
-        words += f", but {aside[0]}"
-    elif aside:
-        words += f", but {len(aside)} egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
+    if aside:
+        far = (
+            f"{len(aside)} egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
+        )
+        words += f"{'; ' if off_egos else ', but '}{aside[0] if len(aside) == 1 else far}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
     return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
