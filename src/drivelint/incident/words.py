@@ -63,8 +63,12 @@ def measured(row: Row, rule: Row) -> str:
         return ""
     if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
         return f"boxes overlap by {amount(-row['observed'], 'm')} and must not"
-    must = SENSE.get(rule["sense"], "")
-    return minus(f"{amount(row['observed'], row['unit'])}, must be {must}{required(row, rule)}")
+    must = (
+        "none"
+        if row["required"] == 0 and rule["sense"][0] == "<"
+        else f"{SENSE.get(rule['sense'], '')}{required(row, rule)}"
+    )
+    return minus(f"{amount(row['observed'], row['unit'])}, must be {must}")
 
 
 def required(row: Row, rule: Row) -> str:
