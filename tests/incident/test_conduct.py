@@ -177,3 +177,15 @@ def test_a_rule_that_excuses_something_says_so_by_its_tag() -> None:
     assert {rule.id for rule in rules if excuses.search(rule.hypothesis)} == {
         rule.id for rule in rules if EXCUSES in rule.tags
     }
+
+
+def test_one_reason_in_words_is_told_once_whatever_its_codes() -> None:
+    """The rules behind it advise differently, which the sheet leaves out."""
+    rows = [
+        row(rule, "unknown", reason_code=code, reason=f"the log ends: {advice}")
+        for rule, code, advice in (("boxes", "a", "record it until it is back"), ("limit", "b", "see what it did"))
+    ]
+    found = told(rows, [])
+    assert found["reasons"].shown == [
+        f"\u201c{RULES['boxes']['title']}\u201d, \u201c{RULES['limit']['title']}\u201d: The log ends"
+    ]

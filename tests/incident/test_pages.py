@@ -79,7 +79,7 @@ def crowded(case: Case) -> Case:
     findings = [{**finding, "rule_id": rule["rule_id"], "reason": reason} for rule in rules[::2]]
     verdicts = [
         {**case.again.verdicts[0], "rule_id": rule["rule_id"], "verdict": "unknown", "t_start_ns": None,
-         "reason_code": f"code_{n}", "reason": reason, "near_miss": False}
+         "reason_code": f"code_{n}", "reason": f"{rule['title']}: {reason}", "near_miss": False}
         for n, rule in enumerate(rules[1::2])
     ]  # fmt: skip
     judged = replace(case.again, verdicts=verdicts, findings=[*case.again.findings, *findings])

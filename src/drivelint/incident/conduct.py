@@ -101,10 +101,10 @@ def _within(row: Row, span: tuple[int, int]) -> bool:
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
     """Return why rules are not decided, the reason of most rules first."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
-    told = []
+    of_rules: dict[str, set[str]] = {}
     for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
-        titles = tuple(quoted(rules[rule]) for rule in sorted({row["rule_id"] for row in rows}))
         given = (verdict_reason(row) for row in rows)
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
-        told.append(Reason(why, titles))
+        of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # they may differ in their advice only
+    told = [Reason(why, tuple(quoted(rules[rule]) for rule in sorted(found))) for why, found in of_rules.items()]
     return sorted(told, key=lambda reason: (-len(reason.titles), reason))
