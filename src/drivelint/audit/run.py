@@ -9,6 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, fields, replace
+from difflib import get_close_matches
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
@@ -22,6 +23,7 @@ from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
+from drivelint.audit.sources import OPTION_COLUMNS
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
@@ -33,7 +35,7 @@ from drivelint.result.files import parquet_bytes
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import duckdb
     import pyarrow as pa
@@ -48,6 +50,8 @@ RULES_FILE: Final = "rules.parquet"
 _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
+_ALIKE: Final = 0.8
+"""From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,10 +137,8 @@ def _audited(
         if n_absent and request.prune:
             create_views(con, results, Path(home))
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
-        if mistaken := _tags_like_conditions(con):
-            progress.note(
-                f"the manifest's {mistaken} is a tag only: what holds in a drive stands in the column environment, such as weather=wet"
-            )
+        for doubt in _doubtful_tags(con):
+            progress.note(doubt)
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale(con, retry=False))):
@@ -151,10 +153,15 @@ def _audited(
         return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
 
-def _tags_like_conditions(con: duckdb.DuckDBPyConnection) -> str:
-    """Return the names of tags that are names of conditions, which rules read and tags do not give; '' if there are none."""
+def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
+    """Yield what is said of tags that have the name of a condition, or nearly that of a column that is no tag."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
-    return listed([f"column {name}" for (name,) in rows if name in CONDITION_VALUES])
+    names = [name for (name,) in rows]
+    if conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
+        yield f"the manifest's {conditions} is a tag only: what holds in a drive stands in the column environment, such as weather=wet"
+    for name in names:
+        for meant in get_close_matches(name.casefold(), OPTION_COLUMNS, n=1, cutoff=_ALIKE):
+            yield f"the manifest's column {name} is a tag only: did you mean {meant}?"
 
 
 def _judge(
