@@ -250,6 +250,8 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
     assert "7 rules: 1 judged, 2 never judgeable, 1 never applied, 3 not applicable or unknown" in screen(of)
     text = " ".join(re.sub(r"<[^>]+>", "", page(of)).split())
     assert "2 of the rules could be judged nowhere, 1 not everywhere." in text
+    packs = " ".join(re.sub(r"<[^>]+>", " ", page(of).partition('id="rules"')[2]).split())
+    assert re.findall(r"\d+ judged(?:, \d+ not)*", packs)[0] == "1 judged, 6 not"
     assert "3 of the rules did not apply in some places and could not be judged in the others. 1 never applied." in text
     off = {"reason_code": "missing_registration", "reason": "off the map"}
     folds = [row | off if row["verdict"] == "unknown" else row for row in rows]

@@ -278,6 +278,7 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     order = ("not_applicable", "unknown")
     groups = []
     for pack, mine in grouped(_rules(result, rules), lambda rule: rule["pack"]).items():
+        judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in mine)
         idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
         folds = grouped(idle, lambda item: (item[0], item[1].kind, _said_of_idle(item[2]["verdicts"])))
         weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), *item[0][1:]))
@@ -285,6 +286,8 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
             {
                 "pack": pack,
                 "about": mine[0]["pack_title"],
+                "judged": judged,
+                "idle": len(mine) - judged,
                 "rules": [rule for rule in mine if rule["rule_id"] not in why],
                 "folds": [
                     (
