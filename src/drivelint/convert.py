@@ -126,7 +126,8 @@ def _cut_from(trace: Trace, clip: Clip) -> str:
     """Return what log a clip is cut from, and when of it, in one sentence."""
     (log,) = trace.tables["data_log"].to_pylist()
     from_s, to_s = ((t_ns - (log["t_start_ns"] or 0)) / 1e9 for t_ns in (clip.from_ns, clip.to_ns))
-    return f"cut from {log['file_name']}, SHA-256 {log['sha256']}: {from_s:.2f} s to {to_s:.2f} s of it"
+    whole = clip.from_ns <= (log["t_start_ns"] or 0) and clip.to_ns >= (log["t_end_ns"] or 0)
+    return f"cut from {log['file_name']}, SHA-256 {log['sha256']}: {from_s:.2f} s to {to_s:.2f} s{', all of it' if whole else ' of it'}"
 
 
 def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:

@@ -373,3 +373,20 @@ def test_a_true_difference_is_called_and_shared_logs_are_left_out(seeded: duckdb
     called = {each.rule_id for each in compare_rates(cursor, base="", new="worse_") if each.is_called}
     assert called == {"r3"}
     assert not [each for each in compare_rates(cursor, base="other_", new="worse_") if each.is_called], "the same logs"
+
+
+@pytest.mark.parametrize("changed", ["ab", "a", ""])
+def test_logs_of_one_name_in_two_folders_are_told_apart_by_their_place(changed: str) -> None:
+    """Where both were recorded anew, content, id and name do not say which is which."""
+    with duckdb.connect() as con:
+        for of, version in (("", 1), ("other_", 2)):
+            content = {site: f"{site}{version if site in changed else 1}" for site in "ab"}
+            drives = [drive(f"cut-in-{content[site]}", file_name="cut-in.csv", sha256=content[site]) for site in "ab"]
+            told = result([verdict("pass", drive_id=f"cut-in-{content[site]}") for site in "ab"], drives=drives)
+            rows = [row | {"log": f"{row['sha256'][0]}/cut-in.csv", "tags": {}} for row in told.drives.to_pylist()]
+            tables = (told.verdicts.to_pylist(), told.findings.to_pylist(), told.rules.to_pylist())
+            audits.add_rows(con, rows, *tables, of=of)
+        found = compare(con)
+        pairs = con.execute("SELECT base_key, new_key, data FROM same_drive ORDER BY 1").fetchall()
+    assert (found.drives_both, found.drives_base_only, found.drives_new_only) == (2, 0, 0)
+    assert pairs == [(f"cut-in-{s}1", f"cut-in-{s}{2 if s in changed else 1}", s in changed) for s in "ab"]

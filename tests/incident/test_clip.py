@@ -172,7 +172,9 @@ def test_a_clip_names_the_log_that_it_was_cut_from(
     (said,) = [row for row in rows if row["check_id"] == "clip"]
     assert said["severity"] == "info"
     digest = hashlib.sha256(log.read_bytes()).hexdigest()
-    assert re.fullmatch(rf"cut from collision\.csv, SHA-256 {digest}: [\d.]+ s to [\d.]+ s of it", said["message"])
+    assert re.fullmatch(
+        rf"cut from collision\.csv, SHA-256 {digest}: [\d.]+ s to [\d.]+ s(, all)? of it", said["message"]
+    )
     assert "--profile relaxed --profile nominal --out results" in summary_text(written)  # as that check had them
     (sizes,) = [row for row in rows if row["check_id"] == ASSUMED_SIZE]
     assert sizes["message"] == "size as the mapping 'mapping' says, not recorded"

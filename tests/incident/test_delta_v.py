@@ -79,3 +79,13 @@ def test_words(case_of: CaseOf) -> None:
     assert short.startswith("at least 5.0 m/s")
     unknown = told_delta_v(struck((np.nan, 0.0)), 0, BEFORE, trace, "ego")
     assert unknown == "not known: its velocity is missing in part, from \u22120.10 s to +0.30 s"
+
+
+@pytest.mark.parametrize(
+    ("after", "told"),
+    [((3.0, 4.0), ": 5.0 to 5.0 m/s, turning by 53\u00b0, which may be steering"), ((1.0, 1.0), ""), ((4.8, 0.2), "")],
+)
+def test_a_change_of_direction_alone_may_be_steering(case_of: CaseOf, after: tuple[float, float], told: str) -> None:
+    trace = case_of("no-collision@collision").drive.trace
+    said = told_delta_v(struck(after), 0, BEFORE, trace, "ego")
+    assert said.endswith(f"to 0 s{told}")

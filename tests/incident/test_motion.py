@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -119,3 +120,14 @@ def test_acceleration_is_the_change_of_the_signed_speed() -> None:
     rows = {row["t"]: row for row in second_by_second(Motion.of_steps(table, 0), None)}
     assert rows[2.0]["speed"][0] == pytest.approx(-2.0)
     assert rows[2.0]["accel"][0] == pytest.approx(1.0)
+
+
+def test_the_last_step_before_a_contact_is_one_at_which_the_boxes_are_apart() -> None:
+    motion = Motion.of_steps(steps(np.full(10, 5.0), np.arange(10) * 0.5, 300.0), 900_000_000)
+    gap = np.full(10, 1.0)
+    gap[6:] = [0.2, -0.1, -0.2, -0.3]
+    assert replace(motion, gap=gap).last_apart_before(0.0) == 6
+    assert replace(motion, gap=np.full(10, -0.1)).last_apart_before(0.0) == 8
+    gap[7] = np.nan  # it may have been apart
+    assert replace(motion, gap=gap).last_apart_before(0.0) == 7
+    assert motion.last_apart_before(-0.9) is None

@@ -14,6 +14,7 @@ import pytest
 from drivelint.drive.trace import TURNED_FRAME
 from drivelint.incident import render
 from drivelint.incident.conduct import name_party
+from drivelint.incident.fitting import Reason, fit
 from drivelint.incident.judge import Judged
 from drivelint.incident.place import coordinates, inferred_side
 from drivelint.incident.sheet import content
@@ -184,3 +185,20 @@ def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dic
     assert name_party({"kept": ["\u201cOut of the ego's space\u201d: the ego's own"]}, "B")["kept"] == [
         "\u201cOut of the ego's space\u201d: B's own"
     ]
+
+
+@pytest.mark.parametrize("taken", [0, 600, 1200])
+def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
+    """However much room hashes and warnings take, kept rules and reasons give way first."""
+    parties: list[dict[str, Any]] = [
+        {
+            "broken": [f"{n} " + "b" * 140 for n in range(7)],
+            "kept": ["k" * 60] * 12,
+            "excused": ["e" * 30] * 3,
+            "reasons": [Reason(f"{n} " + "r" * 80, ("t" * 30,) * 3) for n in range(6)],
+        },
+        {"broken": ["b" * 140], "kept": ["k" * 60] * 8, "excused": [], "reasons": []},
+    ]
+    fit(parties, 2, taken)
+    assert [told["broken"].more for told in parties] == [0, 0]
+    assert (parties[0]["kept"].more > 0) is (taken > 0)

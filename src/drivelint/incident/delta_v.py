@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
 WINDOW_S: Final = 0.3
 """Crash recorders take the greatest change of velocity in the first 0.3 s of an impact (49 CFR 563.7): an impact is over by then."""
+_LEAST_MPS: Final = 0.5
+"""The direction of a smaller velocity, or of a smaller change, tells nothing."""
 _MOST_STEPS: Final = 2.5
 """Samples further apart, in usual steps, are not continuous: as the rules have it (`max_gap`)."""
 
@@ -55,7 +58,18 @@ def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, a
         return f"not known: its velocity is missing in part, from {_at(motion.t[before])} to {_at(WINDOW_S)}"
     least = "at least " if found.is_least else ""
     derived = "; velocities computed from positions" if "velocity_derived" in checks else ""
-    return f"{least}{speed(found.mps)}, from {_at(motion.t[before])} to {_at(found.at_s)}{derived}"
+    turned = _turned(motion, party, before, found)
+    return f"{least}{speed(found.mps)}, from {_at(motion.t[before])} to {_at(found.at_s)}{turned}{derived}"
+
+
+def _turned(motion: Motion, party: int, before: int, found: DeltaV) -> str:
+    """Return speeds and angle in words where the direction changed more than the speed, as in a curve; else ''."""
+    v = motion.velocity[party][:, [before, int(np.abs(motion.t - found.at_s).argmin())]]
+    first, last = np.hypot(*v).tolist()
+    if found.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS or abs(last - first) > found.mps / 2:
+        return ""
+    angle = math.degrees(math.acos(float(np.clip(v[:, 0] @ v[:, 1] / (first * last), -1.0, 1.0))))
+    return f": {first:.1f} to {last:.1f} m/s, turning by {angle:.0f}\u00b0, which may be steering"
 
 
 def _at(s: float) -> str:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 from drivelint.phrases import plural
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_ROOM: Final = {"broken": 820, "kept": 300, "excused": 80, "reasons": 350}
+_ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """Characters that each part has on the page at least; the number of what is left out is told."""
+_FIRST: Final = ("broken", "reasons")
+"""Parts that are told whole before any other, in this order."""
 _WASTE: Final = {"broken": 30}
 """Characters that the end of a text's last line leaves empty, where each text begins a line."""
 _ALL_ROOM: Final = 3300
@@ -34,6 +36,10 @@ _FIRST_PX: Final = 465
 _CHECK_LINE: Final = 125
 """Characters of the columns of page 2 that a line of the hashes takes."""
 _CELLS: Final = ("delta_v", "fastest", "lane", "lights")
+
+
+_Part: TypeAlias = "tuple[dict[str, Any], str, int]"
+"""What is told of a party, the name of one of its parts, and the characters of that part."""
 
 
 class Reason(NamedTuple):
@@ -67,7 +73,7 @@ def is_crowded(told: dict[str, Any]) -> bool:
     facts = [
         7
         + _lines(
-            f"{drive['map_name']} {told['road_id']} {told['row']['lanelet_id']} {told['coordinates']} {told['hand']}",
+            f"{drive['map_name']} {told['road_id']} {told['place'].lanelet_id} {told['coordinates']} {told['hand']}",
             _FACT,
         ),
         10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
@@ -105,7 +111,8 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
     """Cut the lists of what both parties did to what fits into two columns that share their room.
 
-    What the lists leave goes first to the reasons, until all are told; where other lines take more, each list loses its share.
+    What the lists leave goes first to what was broken, then to the reasons, until all are told; where other lines take more, each list
+    loses its share, that of what was broken last.
     `seconds_left`: rows that the table second by second does not fill; `taken`: characters of other lines.
     """
     parts = [
@@ -116,17 +123,35 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> Non
     ]
     spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken - sum(room for *_, room in parts)
     if spare < 0:
-        held = sum(room for *_, room in parts)
-        parts = [(told, name, max(room + spare * room // held, 0)) for told, name, room in parts]
-    rooms = []
-    for told, name, room in parts:
-        more = min(_least(told[name], name) - room, max(spare, 0)) if name == "reasons" else 0
-        rooms.append(room + more)
-        spare -= more
+        parts = _shrunk(parts, -spare)
+    rooms = [room for *_, room in parts]
+    for first in _FIRST:
+        for i, (told, name, room) in enumerate(parts):
+            if name == first:
+                more = min(_least(told[name], name) - room, max(spare, 0))
+                rooms[i] += more
+                spare -= more
     for (told, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitting_reasons if name == "reasons" else _fitting
         told[name] = fitting(told[name], name, room + max(spare, 0))
         spare -= max(_length(told[name].shown, name) + _COUNTED * told[name].is_short - room, 0)
+
+
+def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
+    """Take so many characters from the parts; from what was broken only those that the others, of which each shows a text, do not have."""
+    others = [(told, name, room) for told, name, room in parts if name != _FIRST[0]]
+    held = sum(room for *_, room in others)
+    from_others = min(by, held - sum(min(_least(told[name][:1], name), room) for told, name, room in others))
+    broken = sum(room for *_, room in parts) - held
+    from_broken = min(by - from_others, broken)
+    return [
+        (
+            told,
+            name,
+            room - (from_broken * room // max(broken, 1) if name == _FIRST[0] else from_others * room // max(held, 1)),
+        )
+        for told, name, room in parts
+    ]
 
 
 def first_fitting(texts: Sequence[str], room: int) -> Fitting:

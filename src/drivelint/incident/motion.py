@@ -59,7 +59,7 @@ class Motion:
         c = {
             name: floats(steps[name])
             for name in steps.column_names
-            if name not in {"t_ns", "out_since_ns", "with_direction"}
+            if name not in {"t_ns", "out_since_ns", "lanelet_id", "with_direction"}
         }
         east, north = c["object_x_m"] - c["x_m"], c["object_y_m"] - c["y_m"]
         de, dn = c["object_vx_mps"] - c["vx_mps"], c["object_vy_mps"] - c["vy_mps"]
@@ -97,6 +97,12 @@ class Motion:
         """Return the last step before a time; None: there is none."""
         i = int(np.searchsorted(self.t, t - 1e-9)) - 1
         return i if i >= 0 else None
+
+    def last_apart_before(self, t: float) -> int | None:
+        """Return the last step before a time at which the boxes are not known to overlap; the last before it, if they always do."""
+        last = self.last_before(t)
+        apart = np.flatnonzero(~(self.gap[: (last or 0) + 1] <= 0)).tolist()
+        return last if last is None or not apart else int(apart[-1])
 
     def signed_speed(self, party: int) -> Floats:
         """Return the speed of a party in m/s, below 0 where it moves backwards."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
 
 from drivelint.convert import CLIP
 from drivelint.drive.trace import TURNED_FRAME
@@ -21,6 +23,31 @@ _INFERRED: Final = {
     "default": "assumed: neither map nor user says it",
 }
 """Source of the side that is driven on, where nobody gave it, in words."""
+
+
+class Place(NamedTuple):
+    """Where the middle of A's box is at a time: degrees (WGS 84), the drive's coordinates, and the lanelet. None: not known, or none."""
+
+    t_ns: int
+    lat: float | None
+    lon: float | None
+    x_m: float | None
+    y_m: float | None
+    lanelet_id: str | None
+
+
+def place(case: Case) -> Place:
+    """Return where A was at the moment, or at the worst step where its place at the moment is not known."""
+    row, moment_ns = case.finding.row, case.finding.moment_ns
+    steps = case.again.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
+    at = next((step for step in steps if step["t_ns"] == moment_ns), None)
+    if row["t_worst_ns"] == moment_ns or at is None or at["x_m"] is None or at["y_m"] is None:
+        return Place(row["t_worst_ns"], *(row[name] for name in Place._fields[1:]))
+    lat = lon = None
+    if case.drive.geo is not None:
+        ((lon, lat),) = case.drive.geo.degrees(np.array([[at["x_m"], at["y_m"]]])).tolist()
+    known = lat is not None and np.isfinite([lat, lon]).all()
+    return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
 
 
 def coordinates(case: Case) -> str:
@@ -42,9 +69,9 @@ def inferred_side(drive: Row) -> str:
     return f"{side}-hand traffic: {how}." if side and how else ""
 
 
-def road_of(case: Case) -> str | None:
-    """Return the map's road of the finding's lanelet; None: there is none, or it is called as the lanelet."""
-    lanelet, environment = case.finding.row["lanelet_id"], case.drive.environment
+def road_of(case: Case, lanelet: str | None) -> str | None:
+    """Return the map's road of a lanelet; None: there is none, or it is called as the lanelet."""
+    environment = case.drive.environment
     if lanelet is None or environment is None:
         return None
     rows: Mapping[str, Any] = environment.tables["lanelet"].select(["lanelet_id", "road_id"]).to_pydict()

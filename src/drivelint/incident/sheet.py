@@ -29,8 +29,9 @@ from drivelint.incident.fitting import (
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party
-from drivelint.incident.place import coordinates, inferred_side, road_of
+from drivelint.incident.place import coordinates, inferred_side, place, road_of
 from drivelint.incident.record import held_elements
+from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured, minus, profile, story, told_unit
@@ -52,7 +53,7 @@ SPAN_S: Final = (15, 7)
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""
-_CLIP_NOTE: Final = "; numbers that depend on what is before or after it differ from the log's"
+_CLIP_NOTE: Final = "; numbers that depend on what is before or after it may differ from the log's"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
@@ -69,14 +70,14 @@ def content(case: Case) -> dict[str, Any]:
     """Return everything that the template shows."""
     finding, row = case.finding, case.finding.row
     motion = Motion.of_steps(case.again.steps, finding.moment_ns)
-    before = motion.last_before(0.0) if finding.is_contact else None
+    before = motion.last_apart_before(0.0) if finding.is_contact else None
     at = motion.at(0.0) if before is None else before
     before_s = None if before is None else float(motion.t[before])
     until_s = 0.0 if before_s is None else before_s
     slowed = [slowings(motion, no, until_s) for no in range(len(finding.parties))]
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
     rows = second_by_second(motion, before_s)
-    span = _span(finding)
+    span, where = _span(finding), place(case)
     told = {
         "row": row,
         "rule": finding.rule,
@@ -101,7 +102,9 @@ def content(case: Case) -> dict[str, Any]:
         if row["t_start_ns"] == row["t_end_ns"]
         else [seconds(row[key], finding.start_ns) for key in ("t_start_ns", "t_end_ns")],
         "utc": utc_at(finding.moment_ns, finding.drive),
-        "road_id": road_of(case),
+        "place": where,
+        "placed": seconds(where.t_ns, finding.start_ns),
+        "road_id": road_of(case, where.lanelet_id),
         "coordinates": coordinates(case),
         "hand": inferred_side(finding.drive),
         "contact": finding.is_contact,
@@ -199,7 +202,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
 
 
 def _contacts(case: Case) -> list[Row]:
-    """Return the contacts of the two in this drive that are findings of other rules, in time order."""
+    """Return the other contacts of A in this drive, in time order."""
     mine = case.finding.row
     tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
     found = [
@@ -209,22 +212,28 @@ def _contacts(case: Case) -> list[Row]:
         and row["rule_id"] in tagged
         and row["finding_id"] != mine["finding_id"]
         and row["object_id"] is not None
-        and {row["ego_id"], row["object_id"]} == set(case.finding.parties)
+        and mine["ego_id"] in {row["ego_id"], row["object_id"]}
     ]
     return sorted(found, key=lambda row: (row["t_start_ns"], row["rule_id"], row["ego_id"]))
 
 
+def _is_of_both(case: Case, row: Row) -> bool:
+    """Whether a contact is one of the two parties."""
+    return {row["ego_id"], row["object_id"]} == set(case.finding.parties)
+
+
 def _told_contacts(case: Case) -> list[str]:
-    """Return the contacts of other rules in words, one for each rule and time."""
+    """Return in words the contacts of the two that other rules found, one for each rule and time, and those of A with others."""
     titles = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist()}
     told = []
     for row in _contacts(case):
         sure = f"; {how_sure(row)}" if row["n_copies"] is not None else ""
         at = seconds(row["t_start_ns"], case.finding.start_ns)
-        if row["rule_id"] != case.finding.row["rule_id"]:
-            told.append(
-                f"at {at}, by the rule \u201c{titles[row['rule_id']]}\u201d (finding {row['finding_id'][:8]}{sure})"
-            )
+        both = _is_of_both(case, row)
+        if not both or row["rule_id"] != case.finding.row["rule_id"]:
+            other = row["object_id"] if row["ego_id"] == case.finding.row["ego_id"] else row["ego_id"]
+            whom, by = "" if both else f" with {other}", titles[row["rule_id"]]
+            told.append(f"at {at}{whom}, by the rule \u201c{by}\u201d (finding {row['finding_id'][:8]}{sure})")
     return told
 
 
@@ -297,7 +306,11 @@ def _surest(case: Case) -> dict[str, Any]:
     told = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
     if case.finding.is_contact and told["word"] == POSSIBLE:
         for other in _contacts(case):
-            same = other["t_start_ns"] <= row["t_end_ns"] and other["t_end_ns"] >= row["t_start_ns"]
+            same = (
+                _is_of_both(case, other)
+                and other["t_start_ns"] <= row["t_end_ns"]
+                and other["t_end_ns"] >= row["t_start_ns"]
+            )
             if same and certainty(other) == SURE:
                 told |= {"title": SURE, "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({how_sure(other)})"}
                 break
@@ -329,21 +342,23 @@ def _rests_on(case: Case, motion: Motion) -> str:
 
 
 def _plan(case: Case) -> dict[str, Any]:
-    """Return the plan view of the finding's worst step, with the lanes and shapes in it; None and nothing: no scene was kept."""
+    """Return the plan view of the moment, with the lanes and shapes in it; None and nothing: no scene of the worst step was kept."""
     finding = case.finding
     at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
     scene, *_ = [*_at(case.result.scenes, at), None]
+    drawn_at = seconds(finding.moment_ns, finding.start_ns)
     if scene is None:
-        return {"plan": None, "tiles": [], "shapes": [], "drawn": []}
+        return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
+    drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)
     road = Road(case.result.lanes)
     spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
-    plan = plan_view(scene, road, set(finding.parties[1:]), spaces)
+    plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
     tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
-    drawn = others_drawn(plan, scene)
+    drawn = others_drawn(plan, drawn_scene)
     letters = dict(zip(finding.parties, LETTERS, strict=False))
     plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
     plan["font"] = f"{_LABEL_SHARE * float(plan['height']):.1f}"
-    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([scene]), "drawn": drawn}
+    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
 
 
 def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
