@@ -81,7 +81,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run(MIXED), WAIVER),
-            "PASS no new finding; 2 known (1 critical, 1 minor), 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            "FINDINGS no new finding; 2 known (1 critical, 1 minor), 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             against(run([crash(drive_id="d2")]), run([crash(drive_id="d2"), crash()])),
@@ -89,7 +89,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run([finding(n_copies=100, n_stays=53), *MIXED[1:]]), confidence=0.95),
-            "PASS no new finding; 2 known (1 critical, 1 minor), 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            "FINDINGS no new finding; 2 known (1 critical, 1 minor), 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             GateInputs(TODAY, confidence=0.95).apply_to(run([finding(n_copies=100, n_stays=53), *MIXED[1:]])),
@@ -128,7 +128,7 @@ def test_a_drive_whose_findings_are_all_known_is_not_said_to_have_none() -> None
 def test_a_waived_contact_is_told_with_the_waiver() -> None:
     waiver = replace(WAIVER, rule="*")
     lines = screen(GateInputs(TODAY, waivers=(waiver,)).apply_to(run([crash()])))
-    assert "PASS  1 finding in 1 of 3 drives: 1 waived (1 critical); CONTACT in 1 drive (waived)" in lines
+    assert "FINDINGS  1 finding in 1 of 3 drives: 1 waived (1 critical); CONTACT in 1 drive (waived)" in lines
     assert any(re.match(r"d1 +waived: +8.00 s CONTACT", line) for line in lines)
 
 

@@ -33,6 +33,8 @@ LABELS: Final = {
 }
 _MOSTLY: Final = "MOSTLY UNKNOWN"
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
+_FINDINGS: Final = "FINDINGS"
+_KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
 _COUNTED: Final = "counted"
@@ -47,7 +49,7 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """What a run comes to. `label`: the word; `kind`: fail, unknown, not_applicable or pass; `parts`: the sentence."""
+    """What a run comes to. `label`: the word; `kind`: fail, near (all findings are let through), unknown, not_applicable or pass; `parts`: the sentence."""
 
     label: str
     kind: str
@@ -76,14 +78,14 @@ def headline(result: Result) -> Headline:
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     rows = result.findings.select(["finding_id", "severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist()
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
-    label = _label(result, bool(left))
+    label = _label(result, bool(rows))
     told = counts.total(result.verdicts)
     whole = not told["unknown"] + told["error"] and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_otherwise(before)
     whole = whole and not less
-    kind = "unknown" if less else {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable"}.get(label, "unknown")
+    kind = "unknown" if less else _KINDS.get(label, "unknown")
     if not rows:
         parts = [Part(_without_findings(result, told, label, whole=whole))]
     else:
@@ -128,12 +130,12 @@ def rule_counts(result: Result) -> RuleCounts:
 
 
 def _label(result: Result, has_findings: bool) -> str:
-    """Return the word. Findings that do not gate are no pass, nor is a run that decided nothing, or less than it left open."""
+    """Return the word. Findings that do not gate, known and waived ones too, are no pass, nor is a run that decided nothing, or less than it left open."""
     code, told = exit_status(result).code, counts.total(result.verdicts)
     if code != ExitCode.OK:
         return LABELS.get(code, "?")
     if has_findings:
-        return "FINDINGS"
+        return _FINDINGS
     if not told["pass"] + told["fail"]:
         return "UNKNOWN" if told["unknown"] + told["error"] or not told["not_applicable"] else _NOT_APPLICABLE
     return _MOSTLY if _is_mostly_open(result) else LABELS[code]
