@@ -24,6 +24,7 @@ from tests.report.pages import page
 from tests.report.synthetic import SDA, drive, finding, result, rule, verdict
 
 TODAY = date(2026, 11, 26)
+KNOWN = "FINDINGS no new finding; 2 known (1 critical, 1 minor)"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 LATER = rule("ukhc.spare", title="Time to spare", severity="minor", sense="holds")
 
@@ -81,7 +82,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run(MIXED), WAIVER),
-            "FINDINGS no new finding; 2 known (1 critical, 1 minor), 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            f"{KNOWN}, 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             against(run([crash(drive_id="d2")]), run([crash(drive_id="d2"), crash()])),
@@ -89,7 +90,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run([finding(n_copies=100, n_stays=53), *MIXED[1:]]), confidence=0.95),
-            "FINDINGS no new finding; 2 known (1 critical, 1 minor), 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            f"{KNOWN}, 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             GateInputs(TODAY, confidence=0.95).apply_to(run([finding(n_copies=100, n_stays=53), *MIXED[1:]])),
@@ -180,8 +181,9 @@ def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_repor
     base = run([crash(drive_id="d2")], verdict("pass"))
     now = [crash(drive_id="d2") | {"margin": -0.5}]
     head = (
-        "pass no new finding; 1 known (1 critical) in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); judged less "
-        "than the baseline: 1 verdict unknown that had been pass or fail (1 critical), 1 drive of it not checked, 1 rule of it not selected"
+        "findings no new finding; 1 known (1 critical) in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); "
+        "judged less than the baseline: 1 verdict unknown that had been pass or fail (1 critical), "
+        "1 drive of it not checked, 1 rule of it not selected"
     )
     less = run(now, verdict("unknown"), drives=[drive(), drive("d2")], rules=[rule(), CONTACT])
     assert heads(against(base, less)) == [head] * 3
@@ -272,11 +274,15 @@ def test_a_run_in_which_no_rule_applied_says_so() -> None:
         assert "NOT APPLICABLE" not in screen(result([verdict("not_applicable"), verdict(more)]))[2]
 
 
-def test_the_mark_beside_pass_is_that_of_a_pass() -> None:
-    for of in (against(run(MIXED), run(MIXED)), run([], verdict("unknown"))):
-        (h1,) = re.findall(r"<h1>(.*?)</h1>", page(of), re.DOTALL)
-        assert '"#k-pass"' in h1
-        assert "PASS" in h1
+@pytest.mark.parametrize(
+    ("of", "mark", "word"),
+    [(against(run(MIXED), run(MIXED)), "near", "FINDINGS"), (run([], verdict("unknown")), "pass", "PASS")],
+)
+def test_the_mark_is_that_of_the_word(of: Result, mark: str, word: str) -> None:
+    """Known findings are no pass: whoever reads only the word must not take a contact for nothing."""
+    (h1,) = re.findall(r"<h1>(.*?)</h1>", page(of), re.DOTALL)
+    assert f'"#k-{mark}"' in h1
+    assert f'<span class="outcome o-{mark}">{word}</span>' in h1
 
 
 def test_the_worst_moment_of_a_passing_page_says_that_it_is_let_through() -> None:

@@ -49,7 +49,10 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """What a run comes to. `label`: the word; `kind`: fail, near (all findings are let through), unknown, not_applicable or pass; `parts`: the sentence."""
+    """What a run comes to. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
+
+    near: there are findings, and a gate lets all of them through.
+    """
 
     label: str
     kind: str
@@ -130,7 +133,10 @@ def rule_counts(result: Result) -> RuleCounts:
 
 
 def _label(result: Result, has_findings: bool) -> str:
-    """Return the word. Findings that do not gate, known and waived ones too, are no pass, nor is a run that decided nothing, or less than it left open."""
+    """Return the word.
+
+    Findings that do not gate, known and waived ones too, are no pass, nor is a run that decided nothing, or less than it left open.
+    """
     code, told = exit_status(result).code, counts.total(result.verdicts)
     if code != ExitCode.OK:
         return LABELS.get(code, "?")
