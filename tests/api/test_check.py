@@ -268,6 +268,18 @@ def test_sql_reads_the_tables_by_name(checked: drivelint.CheckResult) -> None:
     assert sum(each["n"] for each in named.rows()) == row["n"] > 0
 
 
+def test_columns_of_one_name_are_told_apart(checked: drivelint.CheckResult) -> None:
+    """polars takes no two of one name, and a dictionary has one."""
+    joined = checked.sql("SELECT * FROM findings f JOIN drives d USING (drive_id) JOIN findings g USING (drive_id)")
+    names = joined.arrow().column_names
+    assert {"t_start_ns", "t_start_ns_1", "t_start_ns_2"} <= set(names)
+    assert len(set(names)) == len(names) == joined.pl().width
+    same = checked.sql(
+        "SELECT f.t_start_ns, d.t_start_ns, d.lat AS t_start_ns_1 FROM findings f JOIN drives d USING (drive_id)"
+    )
+    assert same.arrow().column_names == ["t_start_ns", "t_start_ns_2", "t_start_ns_1"]
+
+
 @pytest.mark.parametrize(
     ("query", "says"),
     [

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint.audit.ask import ask
 from drivelint.audit.run import merge
 from drivelint.errors import UsageError
 from drivelint.fleet_report.opened import opened, opened_both
@@ -91,6 +92,22 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
             pass
     with pytest.raises(UsageError, match=name), opened(str(copy)):
         pass
+
+
+@pytest.mark.parametrize("change", [without_a_row, of_another_severity, with_a_file_more])
+def test_sql_answers_from_a_changed_file_and_says_so(ended: Path, copy: Path, change: Callable[[Path], str]) -> None:
+    query, warned = "SELECT count(*) AS n FROM findings", list[str]()
+    assert json.loads(ask(str(ended), query, "json", warned.append))[0]["n"] > 0
+    assert warned == []
+    name = change(copy)
+    json.loads(ask(str(copy), query, "json", warned.append))
+    assert [f"{name}: is not as drivelint audit wrote it" in each for each in warned] == [True]
+
+
+def test_a_missing_file_is_not_taken_for_another_run(copy: Path) -> None:
+    only_file(copy, "findings").unlink()
+    with pytest.raises(UsageError, match=r"files\.json lists is missing"):
+        ask(str(copy), "FROM findings", "json")
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from drivelint.result.geometry import COLUMN, SHAPES, with_geometry
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     import geopandas as gpd
     import pandas as pd
@@ -112,6 +112,18 @@ class Table:
         return str(self.pl()._repr_html_())
 
 
+def _told_apart(names: Sequence[str]) -> list[str]:
+    """Return column names of which each is there once: a later one of the same name gets a number, as DuckDB numbers them in a table."""
+    told: list[str] = []
+    for name in names:
+        n, free = 0, name
+        while free in told or (n and free in names):
+            n += 1
+            free = f"{name}_{n}"
+        told.append(free)
+    return told
+
+
 class TableSet:
     """Tables by name, which `sql` queries together."""
 
@@ -125,6 +137,7 @@ class TableSet:
 
         A query with `geom` or a function `ST_...` has the spatial extension, and `geom` (a GEOMETRY in the map's metres) in the tables that
         have one; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
+        Of columns with one name, as of a join, the later ones get numbers: `t_start_ns_1`.
         Errors: `DriveLintError` for a query that DuckDB refuses, or that returns no rows and columns.
         """
         has_geometry = re.search(r"\bgeom\b|\bst_", query, re.IGNORECASE) is not None
@@ -143,7 +156,8 @@ class TableSet:
                 answer = con.execute(query, params)
                 if answer is None or answer.description is None:
                     raise UsageError("the query returns nothing: give a SELECT or FROM")
-                return Table(answer.to_arrow_table())
+                rows = answer.to_arrow_table()
+                return Table(rows.rename_columns(_told_apart(rows.column_names)))
             except duckdb.Error as error:
                 raise UsageError(f"the query failed: {error}") from None  # DuckDB's error says nothing else
 

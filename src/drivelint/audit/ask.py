@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
+from drivelint.audit import sealed
 from drivelint.audit.compact import database, escaped
 from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
@@ -18,6 +19,7 @@ from drivelint.errors import UsageError
 from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.phrases import inert, inert_json
 from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.folder import changed
 from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
 
@@ -34,7 +36,7 @@ _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
 
 
 def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:
-    """Return the rows of a SELECT as text, csv or json. `warn` hears that the audit has not ended.
+    """Return the rows of a SELECT as text, csv or json. `warn` hears that the audit has not ended, or that files were changed.
 
     Errors: `UsageError` for another statement, or one that fails.
     """
@@ -66,7 +68,10 @@ def _inert_cell(cell: re.Match[str]) -> str:
 def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[[str], None]) -> None:
     """Create the views of an audit, or of a check's result, and close the database off from everything else."""
     results = open_store(dest)
-    if results.read(AUDIT_FILE) is not None:
+    is_audit = results.read(AUDIT_FILE) is not None
+    if isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
+        _warn_of_changes(results, dest, home, warn, is_audit=is_audit)
+    if is_audit:
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
@@ -87,6 +92,22 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
     con.execute("SET allowed_directories=?", [folders])
     con.execute("SET enable_external_access=false")
     con.execute("SET lock_configuration=true")
+
+
+def _warn_of_changes(
+    results: LocalFolder, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
+) -> None:
+    """Tell of the first file that is not as it was written; whoever asks may want to look at just that."""
+    if not is_audit:
+        for name in changed(results.root)[:1]:
+            warn(
+                f"{dest.rstrip('/')}/{name}: is not as drivelint check wrote it with the others: check the drives again"
+            )
+        return
+    try:
+        sealed.require_unchanged(results, home, dest)
+    except UsageError as error:
+        warn(str(error))
 
 
 def _view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, home: Path) -> None:

@@ -23,6 +23,7 @@ from drivelint.audit.driver import empty_rows
 from drivelint.audit.worker import TABLES, batch_name
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
+from drivelint.result.folder import MANIFEST
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -68,7 +69,7 @@ class Standing(NamedTuple):
 def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
     """Create the views of `create_views` over all results, also those that are not packed. `prefix`: as there.
 
-    Errors: `UsageError` where somebody packs them meanwhile.
+    Errors: `UsageError` where somebody packs them meanwhile, or has taken a file away.
     """
     inner = f"packed_{prefix}"
     try:
@@ -81,6 +82,10 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
             con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
         con.execute(f"CREATE OR REPLACE VIEW {prefix}rules AS FROM {inner}rules")
     except (duckdb.IOException, FileNotFoundError) as error:
+        if results.read(MANIFEST) is not None:
+            raise UsageError(
+                "a file that files.json lists is missing there: audit the drives again into another --out"
+            ) from error
         raise UsageError("an audit is at work there and has just packed results: ask again") from error
     (n,) = con.execute(f"SELECT count(*) FROM {prefix}receipts").fetchone() or (0,)
     told = json.loads(results.read(SUMMARY_FILE) or b"{}")

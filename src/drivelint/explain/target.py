@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import UsageError
+from drivelint.phrases import plural
 from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
@@ -160,7 +161,11 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     if meant:
         return _only(name, meant, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
-    hint = f"it has {len(findings)} findings, by rules such as {rules[0]}" if rules else ""
+    hint = (
+        f"it has {plural(len(findings), 'finding')} and {plural(len(rules), 'rule')}, such as {rules[0]}"
+        if rules
+        else ""
+    )
     if near:
         hint = f"did you mean {near[0]!r}?"
     raise UsageError(f"no finding begins with {name!r} and no rule of this result is called so; {hint}")

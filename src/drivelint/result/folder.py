@@ -10,7 +10,7 @@ import json
 import os
 import shutil
 from contextlib import contextmanager, suppress
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
@@ -186,7 +186,8 @@ def left_by_killed_run(out: Path) -> Path | None:
 def _sha256(path: Path) -> str | None:
     """Return the hash of a file; None where none can be read: its name may come from a damaged list."""
     try:
-        return sha256(path.read_bytes()).hexdigest()
+        with path.open("rb") as file:
+            return file_digest(file, "sha256").hexdigest()
     except (OSError, ValueError):
         return None
 
