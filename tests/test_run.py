@@ -79,6 +79,19 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def test_tracks_are_the_same_wherever_the_egos_are_cut(
+    ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is a hole in a track depends on the clocks of all egos of the drive."""
+    found = []
+    for room in (batch.PAIRS_PER_PART, 1):
+        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
+        monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
+        found.append(check(settings(ragged, ego="all", rules=FEW, out=tmp_path / str(room)), Silent()).tracks)
+    assert found[0].num_rows == 4
+    assert found[0].equals(found[1])
+
+
 @pytest.mark.slow
 def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
