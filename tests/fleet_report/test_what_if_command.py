@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections import Counter
 from pathlib import Path
 
@@ -93,6 +94,24 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     assert all(line.endswith(".parquet: ego 0: pass -> fail") for line in lines)
     flipped = json.loads(ran("what-if", judged, "own.slow.limit=11", "--format", "json").out)["flipped"]
     assert [f"  {each['log']}: ego {each['ego_id']}: {each['was']} -> {each['becomes']}" for each in flipped] == lines
+
+
+def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own, tmp_path: Path) -> None:
+    manifest, logs = own.fleet.manifest, own.fleet.manifest.parent / "logs"
+    shutil.copy(logs / "drive-00000.parquet", logs / "copy.parquet")
+    listed = manifest.read_text(encoding="utf-8")
+    try:
+        manifest.write_text(f'{listed}"logs/copy.parquet","v1","copied"\n', encoding="utf-8")
+        out = own.audit(tmp_path / "audit")
+    finally:
+        manifest.write_text(listed, encoding="utf-8")
+    done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
+    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    told, _, which = done.out.partition("which:\n")
+    lines = [line for line in told.splitlines() if line.startswith("  ")]
+    assert lines == ["  v0  6 pass -> fail", "  v1  7 pass -> fail"]
+    assert len([line for line in which.splitlines() if line.startswith("  ")]) == 12
+    assert ran("what-if", out, "own.slow.limit=11").out.partition("\n")[2].startswith("12 of 12 verdicts")
 
 
 def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:

@@ -35,7 +35,11 @@ MAX_FLIPPED: Final = 10_000
 
 @dataclass(frozen=True)
 class AskedWhatIf:
-    """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart."""
+    """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
+
+    `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
+    in `found`.
+    """
 
     audit: Audit
     setting: str
@@ -43,6 +47,7 @@ class AskedWhatIf:
     by: str | None
     found: WhatIf
     flipped: tuple[Flipped, ...] = ()
+    by_value: tuple[Flip, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
@@ -66,8 +71,11 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
         if version != rule.version:
             why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
             return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
-        found = _answer(con, rule, param, value, by)
-        return AskedWhatIf(audit, setting, was, by, found, () if found.needs_check else flipped(con, MAX_FLIPPED))
+        tagged = _answer(con, rule, param, value, by)
+        if tagged.needs_check:
+            return AskedWhatIf(audit, setting, was, by, tagged)
+        found = tagged if by is None else _answer(con, rule, param, value, None)
+        return AskedWhatIf(audit, setting, was, by, found, flipped(con, MAX_FLIPPED), tagged.verdicts)
 
 
 def _answer(
@@ -120,7 +128,7 @@ def _table(asked: AskedWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with what becomes of its verdicts."""
     told: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
-        asked.found.verdicts,
+        asked.by_value,
         key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
     ):
         value = "" if asked.by is None else "(not given)" if each.tag_value is None else each.tag_value
@@ -174,7 +182,7 @@ def to_json(asked: AskedWhatIf) -> str:
         "needs_audit": found.needs_check,
         "not_known": found.not_known,
         "warning": asked.audit.warning,
-        "verdicts": [each._asdict() for each in found.verdicts],
+        "verdicts": [each._asdict() for each in asked.by_value],
         "flipped": [each._asdict() for each in asked.flipped],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()
