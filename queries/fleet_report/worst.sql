@@ -3,7 +3,7 @@
 WITH worst AS (
     SELECT * FROM ({ranked}) WHERE no <= $most
 ), broken AS (
-    SELECT key, rule_id, count(*) AS n FROM counted_findings SEMI JOIN worst USING (key) GROUP BY ALL
+    SELECT key, rule_id, count(*) AS n FROM ({event}) SEMI JOIN worst USING (key) GROUP BY ALL
 ), gravest AS (
     SELECT f.key, f.result_key, f.finding_id, f.rule_id AS worst_rule, f.object_id, f.t_worst_s, coalesce(f.n_stays < {least_share} * f.n_copies, false) AS is_possible
     FROM counted_findings f SEMI JOIN worst USING (key) LEFT JOIN rules r ON r.rule_id = f.rule_id

@@ -138,6 +138,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         {"most": MAX_DRIVES},
         least_share=share,
         ranked=ranked(),
+        event=event,
         gravest_first=gravest_first(),
         options=options_column(con),
     )
