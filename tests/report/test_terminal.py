@@ -330,3 +330,10 @@ def printed(part: RenderableType) -> str:
     console = Console(file=io.StringIO(), width=200)
     console.print(part)
     return console.file.getvalue()  # type: ignore[attr-defined, no-any-return]
+
+
+def test_the_worst_of_a_drive_of_several_egos_names_its_ego() -> None:
+    rows = [verdict("fail", ego_id="394"), verdict("pass", ego_id="2")]
+    found = [finding(ego_id="394")]
+    assert any(re.search(r"^d1 .* s ego 394 ", line) for line in summary(result(rows, found, drives=[drive(n_egos=2)])))
+    assert not any("ego 394" in line for line in summary(result(rows[:1], found, drives=[drive()])))

@@ -136,9 +136,9 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
         if mine:
-            worst = _worst(mine[0], rules, starts[name])
+            worst = _worst(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
-            worst = _known(result, let_through[name][0], rules, starts[name])
+            worst = _known(result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         else:
             worst = _without_finding(drive, unknown[name])
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
@@ -160,10 +160,10 @@ def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
-def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
+def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
     """Return a finding that a gate lets through, and why."""
     how = standing(result.gate, row["finding_id"])
-    said = _worst(row, rules, start_ns)
+    said = _worst(row, rules, start_ns, several_egos=several_egos)
     # one that is only possible says so itself
     return said if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), said)
 
@@ -172,7 +172,7 @@ def _cell(n: int, style: str) -> Text:
     return Text(str(n), style) if n else Text("·", "dim")
 
 
-def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
+def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
     """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end.
 
     A contact is told by whom the ego met and how fast they came nearer just before.
@@ -196,7 +196,8 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None) -> Text:
     parts += who
     if later := worst_later(row, rules, start_ns):
         parts.append(later)
-    when = f"{seconds(moment_ns(row, rules), start_ns):>8} "
+    ego = f"ego {row['ego_id']} " if several_egos else ""
+    when = f"{seconds(moment_ns(row, rules), start_ns):>8} {ego}"
     what = "possible contact " if doubt(row) else "CONTACT "
     if doubt(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
