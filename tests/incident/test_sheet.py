@@ -19,13 +19,14 @@ from drivelint import catalogue, cli
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.errors import UsageError
-from drivelint.incident import IncidentRequest, open_case, render, write_incident
+from drivelint.incident import IncidentRequest, open_case, other_drives, render, write_incident
 from drivelint.incident.command import commands
 from drivelint.incident.motion import Motion
 from drivelint.incident.sheet import _rests_on, content
 from drivelint.incident.sizes import size_source
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
+from drivelint.result.load import load_result
 from drivelint.run import CheckOptions
 from drivelint.run import check as run_check
 from tests.explain.checked import OVERTAKE, check
@@ -322,3 +323,15 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     one = np.where(motion.t == 0, motion.gap, unknown)
     assert "nobody knows whether the boxes touch (least gap" in _rests_on(case, replace(motion, gap=one))
     assert _rests_on(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
+
+
+def test_a_rule_that_several_drives_broke_is_said_to_mean_the_worst(folder: Path) -> None:
+    """A sheet of another drive than the one that was meant must not be filed unseen."""
+    every = load_result(folder).findings.select(["rule_id", "drive_id", "finding_id"]).to_pylist()
+    drives = {row["drive_id"] for row in every if row["rule_id"] == "ukhc.r162.safe-distance-ahead"}
+    assert len(drives) > 1
+    others = other_drives(IncidentRequest("safe-distance-ahead", folder))
+    assert len(others) == len(drives) - 1
+    assert set(others) < drives
+    assert other_drives(IncidentRequest("safe-distance-ahead@collision", folder)) == []
+    assert other_drives(IncidentRequest(every[0]["finding_id"], folder)) == []

@@ -11,7 +11,7 @@ from drivelint.cli import completion, fleets, options, values
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line
+from drivelint.phrases import inert, inert_json, inert_line, listed
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -89,11 +89,14 @@ def report(
             f"--by, --baseline and --drive-pages are of an audit, and {dest} is none: name the folder of audit --out"
         )
     if incident is not None:
-        from drivelint.incident import IncidentRequest, write_incident
+        from drivelint.incident import IncidentRequest, other_drives, write_incident
 
         asked = IncidentRequest(incident, folder, pdf, trace, map_)
         for path in run_interruptible(lambda: write_incident(asked)):
             typer.echo(inert_line(str(path)))
+        if others := other_drives(asked):
+            told = f"{incident} is a finding in {listed(others)}, too: the sheet is about the worst; name another by {incident}@DRIVE"
+            typer.echo(f"drivelint: {inert_line(told)}", err=True)
         return
     if pdf or trace is not None or map_ is not None:
         raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")

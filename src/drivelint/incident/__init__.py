@@ -68,6 +68,16 @@ def write_incident(request: IncidentRequest) -> list[Path]:
     return [request.folder / FOLDER / name for name in contents]
 
 
+def other_drives(request: IncidentRequest) -> list[str]:
+    """Return the other drives with a finding that the name may mean: a rule without a drive means its worst finding of all drives."""
+    result = load_result(request.folder)
+    row = named_finding(result, request.name).row
+    if "@" in request.name or row["finding_id"].startswith(request.name):
+        return []
+    rows = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    return sorted({each["drive_id"] for each in rows if each["rule_id"] == row["rule_id"]} - {row["drive_id"]})
+
+
 def render(case: Case) -> bytes:
     """Return the sheet as one HTML page that opens offline; the same case gives the same bytes."""
     text = _environment().get_template("sheet.html.j2").render(sheet.content(case))
