@@ -79,10 +79,10 @@ def same(found: dict[str, bytes], wanted: dict[str, bytes]) -> None:
 
 @pytest.fixture(scope="module")
 def crowd(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """Return a log of 60 vehicles, whose pairs of one part do not fit into the least memory, and its road."""
+    """Return a log of 45 vehicles, whose pairs of one part do not fit into the least memory, and its road."""
     folder = tmp_path_factory.mktemp("crowd")
     (folder / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
-    return traffic.write_folder(folder / "crowd", traffic.Shape(20.0, 10, 60)), folder / "ring.xodr"
+    return traffic.write_folder(folder / "crowd", traffic.Shape(40.0, 10, 45)), folder / "ring.xodr"
 
 
 def crowded(crowd: tuple[Path, Path], **options: Any) -> CheckOptions:

@@ -71,7 +71,7 @@ def is_crowded(told: dict[str, Any]) -> bool:
     """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
     sure, rests, drive = told["sure"], told["rests"], told["drive"]
     facts = [
-        7
+        8
         + _lines(
             f"{drive['map_name']} {told['road_id']} {told['place'].lanelet_id} {told['coordinates']} {told['hand']}",
             _FACT,

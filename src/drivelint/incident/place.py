@@ -8,6 +8,7 @@ import numpy as np
 
 from drivelint.convert import CLIP
 from drivelint.drive.trace import TURNED_FRAME
+from drivelint.engine.earth import frame_of_map
 from drivelint.incident.words import minus
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from drivelint.incident.case import Case
     from drivelint.result.text import Row
 
+_SURROUNDINGS: Final = ("weather", "light")
 _INFERRED: Final = {
     "junctions": "inferred from how the map's junctions are linked",
     "lanes": "inferred from how the map's lanes lie",
@@ -48,6 +50,21 @@ def place(case: Case) -> Place:
         ((lon, lat),) = case.drive.geo.degrees(np.array([[at["x_m"], at["y_m"]]])).tolist()
     known = lat is not None and np.isfinite([lat, lon]).all()
     return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
+
+
+def geo_source(case: Case) -> str:
+    """Return whose geo reference gives latitude and longitude: map or log."""
+    environment = case.drive.environment
+    return "map" if environment is not None and frame_of_map(environment) is not None else "log"
+
+
+def surroundings(drive: Row) -> str:
+    """Return what is known of weather and light, in words."""
+    known = {each["condition"]: each["value"] for each in drive["conditions"]}
+    told = [f"{name} {known[name]}" for name in _SURROUNDINGS if name in known]
+    lost = [name for name in _SURROUNDINGS if name not in known]
+    parts = [", ".join(told)] if told else []
+    return "; ".join([*parts, f"{' and '.join(lost)} not known"] if lost else parts).capitalize()
 
 
 def coordinates(case: Case) -> str:
