@@ -13,8 +13,13 @@ import pytest
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
-from drivelint.incident import pdf, render
+from drivelint.incident import IncidentRequest, open_case, pdf, render
+from drivelint.incident.sheet import content
+from drivelint.report.outputs import write
+from drivelint.report.progress import Silent
+from drivelint.run import CheckOptions, check
 from tests.report.browser import CHROMIUM, Page
+from tests.shared_data import shared
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -69,6 +74,23 @@ def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) 
         labels_are_legible(page)
         assert page.complaints() == []
         assert page.requests() == [html.as_uri()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("run", ["near_miss", "collision"])
+def test_a_real_contact_is_on_two_pages_with_all_that_was_broken(run: str, tmp_path: Path) -> None:
+    data = shared("overtake_case_study")
+    asked = CheckOptions(
+        (str(data / f"{run}.csv"),), map=data / "t_junction.xodr", mapping="carla-testbench", out=tmp_path
+    )
+    write(check(asked, Silent()), tmp_path)
+    case = open_case(IncidentRequest("contact-signature", tmp_path))
+    assert [told["broken"].more for told in content(case)["conduct"]] == [0, 0]
+    html = tmp_path / "sheet.html"
+    html.write_bytes(render(case))
+    with Page(tmp_path / "profile", html.as_uri()) as page:
+        fits(page)
+        labels_are_legible(page)
 
 
 def crowded(case: Case) -> Case:

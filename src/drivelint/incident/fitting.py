@@ -14,6 +14,8 @@ _ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """Characters that each part has on the page at least; the number of what is left out is told."""
 _FIRST: Final = ("broken", "reasons")
 """Parts that are told whole before any other, in this order."""
+_MAY_GO: Final = frozenset({"kept", "excused"})
+"""Parts whose number stands in the party's first line."""
 _WASTE: Final = {"broken": 30}
 """Characters that the end of a text's last line leaves empty, where each text begins a line."""
 _ALL_ROOM: Final = 3300
@@ -138,20 +140,20 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> Non
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
-    """Take so many characters from the parts; from what was broken only those that the others, of which each shows a text, do not have."""
-    others = [(told, name, room) for told, name, room in parts if name != _FIRST[0]]
-    held = sum(room for *_, room in others)
-    from_others = min(by, held - sum(min(_least(told[name][:1], name), room) for told, name, room in others))
-    broken = sum(room for *_, room in parts) - held
-    from_broken = min(by - from_others, broken)
-    return [
-        (
-            told,
-            name,
-            room - (from_broken * room // max(broken, 1) if name == _FIRST[0] else from_others * room // max(held, 1)),
-        )
-        for told, name, room in parts
-    ]
+    """Take so many characters from the parts, in the order in which they give way; of the reasons of a party one is told in any case."""
+    rooms = [room for *_, room in parts]
+    for giving in ("excused", "kept", "reasons", "broken"):
+        spared = {
+            i: room - (min(_least(told[name][:1], name), room) if giving == "reasons" else 0)
+            for i, (told, name, room) in enumerate(parts)
+            if name == giving
+        }
+        held = sum(spared.values())
+        taken = min(by, held)
+        by -= taken
+        for i, n in spared.items():
+            rooms[i] -= taken * n // max(held, 1)
+    return [(told, name, room) for (told, name, _), room in zip(parts, rooms, strict=True)]
 
 
 def first_fitting(texts: Sequence[str], room: int) -> Fitting:
@@ -176,8 +178,10 @@ def _length(texts: Sequence[str], part: str) -> int:
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
-    """Return as many of the texts as fit, at least one."""
+    """Return as many of the texts as fit; at least one, but for parts of which the number alone may be told."""
     shown = list(texts[:1])
+    if part in _MAY_GO and texts and room < len(texts[0]) // 2:
+        return Fitting([], len(texts))
     for text in texts[1:]:
         if _length([*shown, text], part) > room:
             break
