@@ -30,6 +30,10 @@ from tests.shared_data import shared
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")
 SHORT = duckdb.OutOfMemoryException("could not allocate block of size 256.0 KiB (1.1 GiB/1.1 GiB used)")
+AT_COMMIT = duckdb.TransactionException(
+    "TransactionContext Error: Failed to commit: failed to pin block of size 256.0 KiB (95.5 MiB/95.3 MiB used)"
+)
+"""What DuckDB raises where memory runs out as it ends a statement."""
 
 
 class Notes(Silent):
@@ -144,12 +148,20 @@ def usual(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("error", [SHORT, AT_COMMIT], ids=["at once", "at commit"])
 @pytest.mark.parametrize(
     ("step", "fits"),
     [*((step, "one ego") for step in STEPS), ("drivelint.engine.session.evaluate", "no limit")],
 )
 def test_memory_that_does_not_do_is_no_error(
-    step: str, fits: str, usual: dict[str, bytes], monkeypatch: pytest.MonkeyPatch, tmp_path: Path, *, halved: list[int]
+    step: str,
+    fits: str,
+    usual: dict[str, bytes],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    *,
+    error: duckdb.Error,
+    halved: list[int],
 ) -> None:
     def short(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
         ((n_egos,),) = con.execute(
@@ -158,7 +170,7 @@ def test_memory_that_does_not_do_is_no_error(
         ((limit,),) = con.execute("SELECT current_setting('memory_limit')").fetchall()
         STEPS[step](con, *args, **options)
         if n_egos > 1 or (fits == "no limit" and limit == "1.1 GiB"):
-            raise SHORT
+            raise error
 
     monkeypatch.setattr(step, short)
     notes = Notes()
@@ -196,14 +208,15 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
     assert again.drives.equals(usual.drives)
 
 
-def test_a_rule_that_runs_out_of_memory_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("error", [SHORT, AT_COMMIT], ids=["at once", "at commit"])
+def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
     rule = Evaluation.judge_rule
 
     def short(self: Evaluation, binding: Any) -> None:
         ((limit,),) = self.con.execute("SELECT current_setting('memory_limit')").fetchall()
         if binding.rule.id == FEW[0] and limit == "1.1 GiB":
-            raise SHORT
+            raise error
         rule(self, binding)
 
     monkeypatch.setattr(Evaluation, "judge_rule", short)

@@ -87,7 +87,8 @@ def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future
 def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
     """Return how many rows the table got."""
     try:
-        return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
+        with store.telling_short_memory():
+            return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
     except duckdb.OutOfMemoryException:
         raise  # no fault of the query: there may be more
     except duckdb.Error as error:

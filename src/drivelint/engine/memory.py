@@ -86,7 +86,8 @@ class Memory:
     def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T]) -> T:
         """Run a job on the database and return its result; repeat it with more memory if that is short."""
         try:
-            return job(self._con)
+            with store.telling_short_memory():
+                return job(self._con)
         except duckdb.OutOfMemoryException:
             if not self.lift_limit():
                 raise

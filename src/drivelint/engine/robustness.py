@@ -210,7 +210,8 @@ class Robustness:
     def _try(self, chunk: Sequence[Window]) -> None:
         """Judge windows together; if that errs, one by one, so that one rule's fault is not the others'."""
         try:
-            found = self._stays(chunk)
+            with store.telling_short_memory():
+                found = self._stays(chunk)
         except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:
                 for window in chunk:

@@ -131,7 +131,7 @@ class JudgingSession:
         while not done:
             try:
                 one_core = store.one_thread(self._con) if are_few(drives) else nullcontext()
-                with one_core, self._interruption.interruptible(self._con):
+                with one_core, store.telling_short_memory(), self._interruption.interruptible(self._con):
                     done = self._judge(drives)
             except InterruptedRunError:
                 self._forget([drive.trace.drive_id for drive in drives])  # what did so may have been interrupted too
@@ -180,12 +180,13 @@ class JudgingSession:
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
-                    self._judge_part(
-                        ids, may_retry=may_retry, release=self._memory.release if are_large(drives) else None
-                    )
-                    place_rows(self._con, on_earth, "finding")
-                    for observer in self._observers:
-                        observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
+                    with store.telling_short_memory():
+                        self._judge_part(
+                            ids, may_retry=may_retry, release=self._memory.release if are_large(drives) else None
+                        )
+                        place_rows(self._con, on_earth, "finding")
+                        for observer in self._observers:
+                            observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
                 except duckdb.OutOfMemoryException:
                     if not cuttable:
                         raise

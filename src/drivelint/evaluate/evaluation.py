@@ -107,7 +107,8 @@ class Evaluation:
                 continue
             with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
                 try:
-                    self.judge_rule(binding)
+                    with store.telling_short_memory():
+                        self.judge_rule(binding)
                 except duckdb.Error as error:
                     failure = error
                 else:

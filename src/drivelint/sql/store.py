@@ -81,6 +81,17 @@ def _made_at_once(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
 
 
 @contextmanager
+def telling_short_memory() -> Iterator[None]:
+    """Raise `duckdb.OutOfMemoryException` where memory runs out at a commit, too: DuckDB calls that a `TransactionException`."""
+    try:
+        yield
+    except duckdb.TransactionException as error:
+        if any(words in str(error) for words in ("failed to pin block", "could not allocate block")):
+            raise duckdb.OutOfMemoryException(str(error)) from error
+        raise
+
+
+@contextmanager
 def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
 
@@ -90,7 +101,8 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
     limit = None if memory is None else f"{memory}B"
     with temporary_folder() as spill, connect(threads=threads, memory_limit=limit, spill=spill) as con:
         try:
-            yield con
+            with telling_short_memory():
+                yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
         finally:
