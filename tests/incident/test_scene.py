@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import pyarrow.compute as pc
 import pytest
 
 from drivelint.incident.place import place
@@ -39,6 +40,8 @@ def test_actors_are_drawn_where_they_are_at_the_moment(case_of: CaseOf) -> None:
         ends = [samples[actor["actor_id"], before + t]["x_m"] for t in (0, S // 10)]
         assert actor["x_m"] == pytest.approx(sum(ends) / 2, abs=1e-6)
     assert scene_at(scene, states, case.finding.start_ns - 1)["actors"] == []
+    seldom = states.filter(pc.equal(pc.bit_wise_and(pc.divide(states["t_ns"], S), 1), 0))  # the even seconds
+    assert scene_at(scene, seldom, 345 * S // 100)["actors"] == []
 
 
 def test_the_place_of_a_contact_is_that_of_its_first_step(case_of: CaseOf) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.result.text import Row
+
+
+_NEAR_NS: Final = 500_000_000
+"""Who has no sample so near in time is not known to be there."""
 
 
 def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
@@ -28,7 +32,7 @@ def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
         mine = np.flatnonzero((who == actor["actor_id"]) & np.isfinite(columns["x_m"]) & np.isfinite(columns["y_m"]))
         mine = mine[np.argsort(times[mine], kind="stable")]
         t = times[mine]
-        if not len(t) or not t[0] <= t_ns <= t[-1]:
+        if not len(t) or not t[0] <= t_ns <= t[-1] or np.abs(t - t_ns).min() > _NEAR_NS:
             continue
         nearest = mine[np.abs(t - t_ns).argmin()]
         yaw, speed = columns["yaw_rad"][nearest], np.hypot(columns["vx_mps"][nearest], columns["vy_mps"][nearest])
