@@ -38,6 +38,15 @@ def test_nothing_is_wider_than_the_window(opened: Page) -> None:
     assert opened.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
 
 
+def test_no_text_runs_out_of_the_window_where_it_is_cut_off(opened: Page) -> None:
+    """The page clips what is wider than itself, so that its own width does not tell."""
+    beyond = "e => e.getBoundingClientRect().right > innerWidth + 1"
+    assert (
+        opened.value(f"[...document.querySelectorAll('.tied, .command, h1, p')].filter({beyond}).map(e => e.className)")
+        == []
+    )
+
+
 def test_a_click_on_a_head_sorts_by_numbers(opened: Page) -> None:
     column = "[...document.querySelectorAll('.rate-table tbody tr')].map(r => Number(r.cells[2].dataset.v))"
     opened.value("document.querySelectorAll('.rate-table thead th button')[2].click()")
