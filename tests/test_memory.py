@@ -123,7 +123,7 @@ def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path
 def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, halved: list[int]) -> None:
     """For real: the limit is so low that the table of pairs of all egos does not fit."""
     (tmp_path / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
-    log = traffic.write_folder(tmp_path / "crowd", traffic.Shape(5.0, 10, 30))
+    log = traffic.write_folder(tmp_path / "crowd", traffic.Shape(5.0, 10, 60))
     asked: dict[str, Any] = {"map": tmp_path / "ring.xodr", "ego": "all", "rules": ("ukhc.no-collision",)}
     short = check(CheckOptions((str(log),), memory=60_000_000, **asked), Silent())
     assert halved
