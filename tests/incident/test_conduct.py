@@ -189,3 +189,10 @@ def test_one_reason_in_words_is_told_once_whatever_its_codes() -> None:
     assert found["reasons"].shown == [
         f"\u201c{RULES['boxes']['title']}\u201d, \u201c{RULES['limit']['title']}\u201d: The log ends"
     ]
+
+
+def test_why_a_contact_is_not_decided_is_told_first() -> None:
+    """A page that has room for one reason must not leave that one out."""
+    rows = [row(rule, "unknown", reason_code="x", reason="no lights") for rule in ("limit", "lane")]
+    found = told([*rows, row("boxes", "unknown", reason_code="y", reason="the boxes are apart")], [])
+    assert found["reasons"].shown[0].startswith(f"\u201c{RULES['boxes']['title']}\u201d")

@@ -70,7 +70,10 @@ def test_words(case_of: CaseOf) -> None:
         mine = with_quality_finding(trace, QualityFinding(check, "warning", "said", actor_id=actor_id))
         return told_delta_v(motion, 0, BEFORE, mine, "ego")
 
-    assert told("other", None) == "6.0 m/s (22 km/h, 13 mph), from \u22120.10 s to 0 s"
+    assert (
+        told("other", None)
+        == "6.0 m/s (22 km/h, 13 mph), from \u22120.10 s to 0 s: 5.0 to 1.0 m/s, direction changed by 180\u00b0"
+    )
     assert told("velocity_filtered", "ego").startswith("not known: a mean over time")
     assert told("velocity_filtered", "somebody else") == told("other", None)
     assert told("velocity_derived", None).endswith("; velocities computed from positions")
@@ -83,7 +86,12 @@ def test_words(case_of: CaseOf) -> None:
 
 @pytest.mark.parametrize(
     ("after", "told"),
-    [((3.0, 4.0), ": 5.0 to 5.0 m/s, turning by 53\u00b0, which may be steering"), ((1.0, 1.0), ""), ((4.8, 0.2), "")],
+    [
+        ((3.0, 4.0), ": 5.0 to 5.0 m/s, direction changed by 53\u00b0, which may be steering"),
+        ((1.0, 1.0), ": 5.0 to 1.4 m/s, direction changed by 45\u00b0"),
+        ((1.0, 0.0), ""),
+        ((4.8, 0.2), ""),
+    ],
 )
 def test_a_change_of_direction_alone_may_be_steering(case_of: CaseOf, after: tuple[float, float], told: str) -> None:
     trace = case_of("no-collision@collision").drive.trace

@@ -7,6 +7,7 @@ import re
 import shlex
 import shutil
 import sys
+from cmath import phase
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -304,8 +305,11 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
         changes = {t: math.hypot(s.vx - mine[before].vx, s.vy - mine[before].vy) for t, s in mine.items()}
         most = max((t for t in changes if before < t < impact + 0.31), key=lambda t: changes[t])
         assert numbers(party["delta_v"])[0] == pytest.approx(changes[most], abs=0.051)
+        first, last = complex(mine[before].vx, mine[before].vy), complex(mine[most].vx, mine[most].vy)
+        degrees = abs(math.degrees(phase(last / first)))
         assert party["delta_v"].endswith(
-            f"from \u22120.10 s to {'0 s' if most == impact else f'+{most - impact:.2f} s'}"
+            f"from \u22120.10 s to {'0 s' if most == impact else f'+{most - impact:.2f} s'}: "
+            f"{abs(first):.1f} to {abs(last):.1f} m/s, direction changed by {degrees:.0f}\u00b0"
         )
         assert changes[impact] > abs(mine[before].speed - mine[impact].speed) + 1
     assert "of the speed alone" in told["what"]

@@ -99,7 +99,7 @@ def _within(row: Row, span: tuple[int, int]) -> bool:
 
 
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
-    """Return why rules are not decided, the reason of most rules first."""
+    """Return why rules are not decided: those about contacts first, which a sheet is mostly about, then the reason of most rules."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     of_rules: dict[str, set[str]] = {}
     for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
@@ -107,4 +107,5 @@ def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
         of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # they may differ in their advice only
     told = [Reason(why, tuple(quoted(rules[rule]) for rule in sorted(found))) for why, found in of_rules.items()]
-    return sorted(told, key=lambda reason: (-len(reason.titles), reason))
+    contacts = {quoted(rule) for rule in rules.values() if CONTACT in rule["tags"]}
+    return sorted(told, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 WINDOW_S: Final = 0.3
 """Crash recorders take the greatest change of velocity in the first 0.3 s of an impact (49 CFR 563.7): an impact is over by then."""
+_LEAST_DEGREES: Final = 5.0
 _LEAST_MPS: Final = 0.5
 """The direction of a smaller velocity, or of a smaller change, tells nothing."""
 _MOST_STEPS: Final = 2.5
@@ -63,13 +64,16 @@ def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, a
 
 
 def _turned(motion: Motion, party: int, before: int, found: DeltaV) -> str:
-    """Return speeds and angle in words where the direction changed more than the speed, as in a curve; else ''."""
+    """Return speeds and angle in words where the direction changed, which may be steering if it changed more than the speed; else ''."""
     v = motion.velocity[party][:, [before, int(np.abs(motion.t - found.at_s).argmin())]]
     first, last = np.hypot(*v).tolist()
-    if found.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS or abs(last - first) > found.mps / 2:
+    if found.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS:
         return ""
     angle = math.degrees(math.acos(float(np.clip(v[:, 0] @ v[:, 1] / (first * last), -1.0, 1.0))))
-    return f": {first:.1f} to {last:.1f} m/s, turning by {angle:.0f}\u00b0, which may be steering"
+    if angle < _LEAST_DEGREES:
+        return ""
+    steering = ", which may be steering" if abs(last - first) <= found.mps / 2 else ""
+    return f": {first:.1f} to {last:.1f} m/s, direction changed by {angle:.0f}\u00b0{steering}"
 
 
 def _at(s: float) -> str:
