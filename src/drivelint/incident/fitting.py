@@ -41,7 +41,7 @@ _CELLS: Final = ("delta_v", "fastest", "lane", "lights")
 
 
 _Part: TypeAlias = "tuple[dict[str, Any], str, int]"
-"""What is told of a party, the name of one of its parts, and the characters of that part."""
+"""The texts of a party by part, the name of one part, and the characters that this part may take."""
 
 
 class Reason(NamedTuple):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 _NEAR_NS: Final = 500_000_000
-"""Who has no sample so near in time is not known to be there."""
+"""An actor is drawn only if a sample of it is at most so far away in time."""
 
 
 def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
