@@ -15,7 +15,7 @@ from drivelint.drive.trace import DriveInput, QualityFinding
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
 from drivelint.formats import expand_traces, read_trace
-from drivelint.formats.files import CANONICAL_FILES, is_canonical_folder
+from drivelint.formats.folders import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality

@@ -173,5 +173,5 @@ def test_a_file_that_went_away(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_drive(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"without actor_state\.parquet is not a drive"):
+    with pytest.raises(TraceError, match=r"not a folder that is one drive"):
         read(tmp_path)

@@ -12,19 +12,13 @@ from typing import TYPE_CHECKING
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.commonroad import scenario as commonroad
-from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
-from drivelint.formats.mcap.bag import mcap_files as files_of_bag
+from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.sumo import fcd as sumo
 from drivelint.phrases import shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-CANONICAL_FILES = (
-    "actor.parquet", "actor_state.parquet", "data_log.parquet", "declared_event.parquet", "drive_condition.parquet",
-    "map.xodr", "quality.parquet", "signal_state.parquet",
-)  # fmt: skip
-"""The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too."""
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
@@ -40,16 +34,6 @@ RESULT_FILES = frozenset(
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
 ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
-
-
-def is_canonical_folder(path: Path) -> bool:
-    """Say whether `path` is a folder that holds one drive as canonical Parquet tables."""
-    return (path / "actor_state.parquet").is_file()
-
-
-def is_drive_folder(path: Path) -> bool:
-    """Say whether `path` is a folder that is one drive: canonical tables, or a bag of rosbag2."""
-    return is_canonical_folder(path) or is_bag(path)
 
 
 def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
@@ -97,9 +81,7 @@ def _inside(path: Path) -> list[Path]:
     if not path.is_dir() or is_drive_folder(path):
         return [path]
     try:
-        drives = [file.parent for file in path.rglob("actor_state.parquet")]
-        bags = [file.parent for file in path.rglob(METADATA_FILE) if is_bag(file.parent)]
-        drives += [bag for bag in bags if bag not in drives]
+        drives = drive_folders(path)
         inside = frozenset(drives)
         files = [
             file
@@ -148,18 +130,9 @@ def is_utf8(path: str) -> bool:
 def file_states(path: Path) -> list[tuple[str, int, int]]:
     """Return name, size and time of the last change of each file of a trace. Errors: `TraceError`."""
     try:
-        return [(file.name, found.st_size, found.st_mtime_ns) for file in _files(path) for found in [file.stat()]]
+        return [(file.name, found.st_size, found.st_mtime_ns) for file in drive_files(path) for found in [file.stat()]]
     except OSError as error:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
-
-
-def _files(path: Path) -> list[Path]:
-    """Return the files of a trace: itself, or a folder's tables in name order or parts in order."""
-    if not path.is_dir():
-        return [path]
-    if is_canonical_folder(path):
-        return [path / name for name in CANONICAL_FILES if (path / name).is_file()]
-    return [path / METADATA_FILE, *(path / file.name for file in files_of_bag(path) if (path / file.name).is_file())]
 
 
 def identify(path: Path) -> Identity:
@@ -170,7 +143,7 @@ def identify(path: Path) -> Identity:
     try:
         if path.is_dir():
             folder = hashlib.sha256()
-            for file in _files(path):
+            for file in drive_files(path):
                 folder.update(f"{file.name}\0{_sha256(file)}\n".encode())
             digest = folder.hexdigest()
         else:

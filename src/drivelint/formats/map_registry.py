@@ -35,6 +35,8 @@ READERS = {
     "net": "sumo.net",
 }
 """Root element, lower case -> the module that reads such a map: `read(source, options)` returns `MapTables`."""
+READERS_BY_BEGINNING = {b"{": "argoverse2.lanes", b"ARROW1": "d123.lanes", b"\x80": "scenarionet.lanes"}
+"""The first bytes of a map that is no XML -> the module that reads it: JSON, Arrow's file format, a pickle."""
 
 
 def read_source(path: Path) -> MapSource:
@@ -93,6 +95,9 @@ def load_map(
 def _reader(source: MapSource) -> str:
     if source.content[:1] in OSI_TAGS:
         return "osi.map_lanes"
+    for beginning, reader in READERS_BY_BEGINNING.items():
+        if source.content.startswith(beginning):
+            return reader
     root = root_element_name(source.content)
     if root is None:
         shown = source.content[:24]

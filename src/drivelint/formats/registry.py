@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Final
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.commonroad import scenario
-from drivelint.formats.files import file_states, identify, is_drive_folder
+from drivelint.formats.files import file_states, identify
 from drivelint.formats.film import reader as film
+from drivelint.formats.folders import is_drive_folder
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
 from drivelint.formats.osi.trace_file import is_osi_trace
@@ -86,7 +87,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     if path.is_dir():
         if not is_drive_folder(path):
             raise TraceError(
-                f"{path}: a folder without actor_state.parquet is not a drive (nor has it a bag's metadata.yaml): name the files in it"
+                f"{path}: not a folder that is one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log of "
+                "Argoverse 2 or 123D: name the files in it"
             )
         return Probe(path, b"", options)
     try:

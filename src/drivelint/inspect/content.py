@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.formats.files import CANONICAL_FILES
 from drivelint.formats.film import mapping as video_mapping
+from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.resume import MAGIC
@@ -16,8 +16,8 @@ from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.ros2.types import message_kind
+from drivelint.formats.tables import ipc, parquet
 from drivelint.formats.tables import mapping as mappings
-from drivelint.formats.tables import parquet
 from drivelint.formats.tables.mapped_table import open_sheet
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
@@ -47,8 +47,8 @@ _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
 
 
 def size_bytes(path: Path) -> int:
-    """Return the bytes of a file, of the tables of a Parquet folder, or of the files of a bag."""
-    files = [path / name for name in CANONICAL_FILES] if path.is_dir() else [path]
+    """Return the bytes of a file, or of the files of a folder that are read as one drive."""
+    files = drive_files(path)
     if bag.is_bag(path):
         files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
     return sum(file.stat().st_size for file in files if file.is_file())
@@ -59,8 +59,7 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
     if path.is_dir():
         if bag.is_bag(path):
             return Content(channels=_channels(path), notes=notes)
-        tables = [path / name for name in CANONICAL_FILES if name.endswith(".parquet") and (path / name).is_file()]
-        return Content(sheets=[_plain(table) for table in tables], notes=notes)
+        return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
@@ -92,6 +91,16 @@ def _unread(names: Iterable[str]) -> list[Column]:
 
 def _plain(path: Path) -> Sheet:
     return Sheet(name=path.name, rows=parquet.n_rows(path), columns=_unread(parquet.schema(path).names))
+
+
+def _table_file(path: Path) -> Sheet | None:
+    """Return a file of a folder as a table; None: it is none."""
+    if path.suffix == ".parquet":
+        return _plain(path)
+    if path.suffix in {".feather", ".arrow"}:
+        names, rows = ipc.columns(path)
+        return Sheet(name=path.name, rows=rows, columns=_unread(names))
+    return None
 
 
 def _mapped(path: Path, mapping: Mapping) -> Sheet:

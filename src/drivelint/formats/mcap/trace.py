@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.formats.files import is_canonical_folder
+from drivelint.formats.folders import folder_kind
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Recording
@@ -21,7 +21,7 @@ takes_mapping: Final = False
 
 def accepts(probe: Probe) -> bool:
     """Accept by the container's magic bytes, or the folder's description."""
-    return probe.head.startswith(b"\x89MCAP") or (probe.path.is_dir() and not is_canonical_folder(probe.path))
+    return probe.head.startswith(b"\x89MCAP") or folder_kind(probe.path) == "bag"
 
 
 def read(probe: Probe) -> Recording:

@@ -23,7 +23,7 @@ from drivelint.drive.trace import (
     States,
 )
 from drivelint.errors import TraceError
-from drivelint.formats.files import is_canonical_folder
+from drivelint.formats.folders import is_canonical_folder
 from drivelint.formats.osi.metadata import parse_conditions
 from drivelint.formats.tables import parquet
 from drivelint.sql.store import arrow_schemas

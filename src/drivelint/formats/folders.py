@@ -1,0 +1,98 @@
+"""Folders that are one drive: how each kind is recognised, and which of its files make up the drive."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
+from drivelint.formats.mcap.bag import mcap_files as files_of_bag
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+CANONICAL_FILES = (
+    "actor.parquet", "actor_state.parquet", "data_log.parquet", "declared_event.parquet", "drive_condition.parquet",
+    "map.xodr", "quality.parquet", "signal_state.parquet",
+)  # fmt: skip
+"""The files of a canonical folder, in name order; all but `actor_state.parquet` may be missing."""
+
+
+class FolderKind(NamedTuple):
+    """A kind of folder that is one drive.
+
+    `marks`: patterns, as of `Path.glob`, each of which a file in such a folder matches. `files`: patterns of the files that are read,
+    in the order in which they are hashed.
+    """
+
+    name: str
+    marks: tuple[str, ...]
+    files: tuple[str, ...]
+
+
+KINDS: Final = (
+    FolderKind("canonical", ("actor_state.parquet",), CANONICAL_FILES),
+    FolderKind("bag", (METADATA_FILE,), (METADATA_FILE,)),  # its other files are those that the metadata lists
+    FolderKind(
+        "argoverse2-sensor",
+        ("city_SE3_egovehicle.feather", "annotations*.feather"),
+        ("annotations*.feather", "city_SE3_egovehicle.feather", "map/log_map_archive_*.json"),
+    ),
+    FolderKind("argoverse2-forecasting", ("scenario_*.parquet",), ("log_map_archive_*.json", "scenario_*.parquet")),
+    FolderKind(
+        "123d",
+        ("ego_state_se3.arrow",),
+        ("box_detections_se3.arrow", "ego_state_se3.arrow", "map.arrow", "sync.arrow", "traffic_lights.arrow"),
+    ),
+)
+"""The first kind whose marks a folder has is its kind."""
+
+
+def folder_kind(path: Path) -> str | None:
+    """Return the kind of drive that a folder is; None: it is none."""
+    for kind in KINDS:
+        if all(_first_file(path, mark) for mark in kind.marks) and (kind.name != "bag" or is_bag(path)):
+            return kind.name
+    return None
+
+
+def is_canonical_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that holds one drive as canonical Parquet tables."""
+    return folder_kind(path) == "canonical"
+
+
+def is_drive_folder(path: Path) -> bool:
+    """Say whether `path` is a folder that is one drive."""
+    return folder_kind(path) is not None
+
+
+def drive_folders(path: Path) -> list[Path]:
+    """Return the folders below a folder, at any depth, that are one drive each, those of one kind together."""
+    folders: dict[Path, None] = {}
+    for kind in KINDS:
+        folders.update(dict.fromkeys(file.parent for file in path.rglob(kind.marks[0])))
+    return [folder for folder in folders if is_drive_folder(folder)]
+
+
+def drive_files(path: Path) -> list[Path]:
+    """Return the files of a trace: itself, or those of its folder. Errors: `TraceError` for a bag that cannot be understood."""
+    if not path.is_dir():
+        return [path]
+    kind = folder_kind(path)
+    if kind == "bag":
+        return [
+            path / METADATA_FILE,
+            *(path / file.name for file in files_of_bag(path) if (path / file.name).is_file()),
+        ]
+    patterns = next((known.files for known in KINDS if known.name == kind), ())
+    return [file for pattern in patterns for file in _files(path, pattern)]
+
+
+def _files(path: Path, pattern: str) -> Iterator[Path]:
+    if "*" not in pattern:
+        return iter([path / pattern] if (path / pattern).is_file() else [])
+    return iter(sorted(file for file in path.glob(pattern) if file.is_file()))
+
+
+def _first_file(path: Path, pattern: str) -> Path | None:
+    return next(_files(path, pattern), None)

@@ -1,0 +1,54 @@
+"""This module reads tables in Arrow's file format (`.arrow`, and `.feather` of version 2)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+import pyarrow as pa
+
+from drivelint.errors import TraceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+T = TypeVar("T")
+
+
+def table(path: Path, required: Iterable[str] = (), optional: Iterable[str] = ()) -> pa.Table:
+    """Read a file, or the required columns and those of the optional ones that it has.
+
+    Errors: `TraceError` for a damaged file, a column that stands twice, and a required column that is missing.
+    """
+    return _open(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
+
+
+def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional: Iterable[str]) -> pa.Table:
+    """Return the required columns of a table and those of the optional ones that it has, or all. Errors: as `table`."""
+    names = rows.schema.names
+    required, optional = list(required), list(optional)
+    if missing := [name for name in required if name not in names]:
+        raise TraceError(f"{path}: no column {', '.join(missing)}: it needs {', '.join(required)}: get the log again")
+    chosen = [*required, *(name for name in optional if name in names)] or names
+    if twice := [name for name in chosen if names.count(name) > 1]:
+        raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
+    return rows.select(chosen).combine_chunks()
+
+
+def columns(path: Path) -> tuple[list[str], int]:
+    """Return the names of the columns and the number of rows. Errors: `TraceError` for a damaged file."""
+
+    def read(file: pa.RecordBatchFileReader) -> tuple[list[str], int]:
+        return file.schema.names, sum(file.get_batch(i).num_rows for i in range(file.num_record_batches))
+
+    return _open(path, read)
+
+
+def _open(path: Path, take: Callable[[pa.RecordBatchFileReader], T]) -> T:
+    try:
+        with path.open("rb") as file, pa.ipc.open_file(pa.PythonFile(file)) as opened:
+            return take(opened)
+    except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise TraceError(
+            f"{path}: not readable in Arrow's file format: {' '.join(str(error).split())}: copy it again"
+        ) from error
