@@ -772,7 +772,7 @@ CREATE TABLE exposure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     km DOUBLE NOT NULL,               -- way made
-    hours DOUBLE NOT NULL,            -- time, without the holes
+    hours DOUBLE NOT NULL,            -- time, without the holes and without the time in which the ego is absent
     engaged_km DOUBLE NOT NULL,       -- way up to the steps at which the automated driver drives (see ego_condition)
     engaged_hours DOUBLE NOT NULL,    -- the same time
     n_steps BIGINT NOT NULL           -- ego steps

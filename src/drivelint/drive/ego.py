@@ -10,6 +10,7 @@ from drivelint.errors import TraceError
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from drivelint.drive.actors import Actors
@@ -18,6 +19,11 @@ if TYPE_CHECKING:
 ALL_EGOS = "all"
 SIZE_DIFFERENCE_M: Final = 0.05
 """Sizes that differ by more are two sizes."""
+
+
+def asks_for_all(asked: str | None, ids: Collection[str]) -> bool:
+    """Say whether the user asks for every motor vehicle: by `all`, if no actor is called so."""
+    return asked == ALL_EGOS and ALL_EGOS not in ids
 
 
 def choose(
@@ -30,7 +36,7 @@ def choose(
     Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
-    if asked == ALL_EGOS and ALL_EGOS not in ids:
+    if asks_for_all(asked, ids):
         return _every(path, actors)
     if asked is not None:
         if asked not in ids:

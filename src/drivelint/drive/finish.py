@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from drivelint.arrays import spelled
 from drivelint.drive import actors as actor_rows
-from drivelint.drive import checks, contradiction, ego, jumps
+from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
@@ -52,11 +52,20 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     _refuse_no_drive(path, recording.states)
     pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
     lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
-    states, restarts = unknown_at_restarts(recording.hand_over_states())
-    states, repeated = without_duplicates(sorted_states(states))
-    findings = [*recording.findings, *lost, *restarts, *repeated]
+    asked = absence.asked_ego(recording, options.ego)
+    missed, picked = absence.absences(recording, asked), absence.chosen_findings(recording, asked)
+    nobody_ns = absence.frames_without_states(recording, missed)
+    as_read = recording.hand_over_states()
+    states, restarts = unknown_at_restarts(as_read)
+    states = sorted_states(states)
+    # nothing below changes an array in place; the log's own order tells where its clock begins again
+    recorded = None if not options.as_recorded else as_read if restarts else states.copy()
+    del as_read
+    states, repeated = without_duplicates(states)
+    told = recording.findings if asked is None else absence.without_choices(recording.findings)
+    findings = [*told, *picked, *lost, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
-    named = recording.ego_ids if options.ego is None else [options.ego]
+    named = recording.ego_ids if asked is None else [asked]
     step = steps(states)
     split = jumps.NO_SPLIT
     if not assumed:
@@ -78,16 +87,22 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, split.alias)
-    egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
+    egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, needed=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
         findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
+    findings += _lights(states, egos)
+    missed = [each for each in missed if each.ego_id in egos]
+    states = absence.with_absent_states(states, missed, recording.frames_ns)
+    findings += absence.absence_findings(missed, states)
     states, moved = align_to_ego(states, egos)
-    is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
-    findings += [*moved, *_lights(states, egos, is_ego)]
+    findings += moved
+    if recorded is not None:
+        states = recorded.completed()
+    is_ego = _is_ego(states, egos)
     drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
     given = dict(options.conditions)  # what the user gives counts more than what the log says
@@ -127,6 +142,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         recording.frame_times,
         recording.geo_reference,
         recording.geo_offset,
+        nobody_ns,
     )
 
 
@@ -165,7 +181,12 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
         raise TraceError(f"{path}: {errors[0].message}: {remedy}")
 
 
-def _lights(states: States, egos: list[str], is_ego: Mask) -> list[QualityFinding]:
+def _is_ego(states: States, egos: list[str]) -> Mask:
+    return np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
+
+
+def _lights(states: States, egos: list[str]) -> list[QualityFinding]:
+    is_ego = _is_ego(states, egos)
     findings = []
     for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)

@@ -64,6 +64,8 @@ OWN_MAP_UNUSABLE = "own_map_unusable"
 """The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
 ASIDE_OF_LANE = "aside_of_lane"
 """The check of a drive whose ego fits the map, but far from the middle of its lane."""
+EGO_ABSENT = "ego_absent"
+"""The check of a log that goes on while its ego has no place in it."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
 
@@ -87,6 +89,8 @@ class IngestOptions:
     ego_size: EgoSize | None = None
     in_sight: bool = False
     """Whoever is not recorded for a while is taken not to be in plain view."""
+    as_recorded: bool = False
+    """The states are those of the log: none that is doubted is made unknown, none is derived. For whoever writes them anew."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,7 +139,8 @@ class Trace:
     `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
     `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
     see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string,
-    of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians.
+    of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames in
+    which nobody is, as far as the ego should be there.
     """
 
     drive_id: str
@@ -147,6 +152,7 @@ class Trace:
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    nobody_ns: Times = field(default_factory=lambda: np.zeros(0, np.int64))
 
 
 @dataclass(frozen=True)
@@ -209,6 +215,15 @@ class States:
         """The velocities along x and y (2, n) in m/s."""
         return np.stack([self.numbers["vx_mps"], self.numbers["vy_mps"]])
 
+    def copy(self) -> States:
+        """Return the same rows in arrays that are shared until one of the two puts another array in its place."""
+        return States(self.ids, self.actor, self.t_ns, dict(self.numbers), dict(self.codes), self.not_finite)
+
+    def completed(self) -> States:
+        """Return the rows with every column of `STATE_COLUMNS`, unknown where the log has none."""
+        nothing = {name: np.full(len(self), np.nan) for name in STATE_COLUMNS if name not in self.numbers}
+        return States(self.ids, self.actor, self.t_ns, self.numbers | nothing, self.codes, self.not_finite)
+
     def take(self, rows: Indices | Mask | slice) -> States:
         """Return the chosen rows (indices, a mask or a slice), ids unchanged."""
         return States(
@@ -261,7 +276,8 @@ class Recording:
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
     the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
     `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
-    those of `Trace`.
+    those of `Trace`. `frames_ns`: the times of the log's frames, those in which nobody is among them; None: those of the states.
+    `ends_apart_ns`: so far apart the parts of a log may begin and end that were recorded beside each other, such as topics.
     """
 
     format: str
@@ -282,6 +298,8 @@ class Recording:
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    frames_ns: Times | None = None
+    ends_apart_ns: int = 0
 
     def hand_over_states(self) -> States:
         """Return the states and keep none: memory has to hold those of a long drive once, not twice."""

@@ -9,7 +9,7 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
 from drivelint.result import counts
-from drivelint.result.model import MISFITS, off_map_reason
+from drivelint.result.model import MISFITS, ego_absences, off_map_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -80,6 +80,8 @@ def _log(drives: Sequence[Row]) -> InputNote:
     given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMED_INFO})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
     parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
+    absent = [(drive["drive_id"], words) for drive in drives for words in ego_absences(drive)]
+    parts += [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _NAMED)] if absent else []
     parts += assumed
     if not parts:
         parts = [_whole(drives)] if drives else ["none"]

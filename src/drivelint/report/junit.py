@@ -13,7 +13,13 @@ from drivelint.gate import descriptions
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add, document, replace_non_xml
 from drivelint.result import counts
-from drivelint.result.model import failures_without_finding, gating_gone, gating_unknowns, off_map_reason
+from drivelint.result.model import (
+    ego_absences,
+    failures_without_finding,
+    gating_gone,
+    gating_unknowns,
+    off_map_reason,
+)
 from drivelint.result.text import line, rule_name, with_count
 
 if TYPE_CHECKING:
@@ -73,7 +79,7 @@ def _of_drive(drive: Row) -> Iterator[Case]:
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
-        yield Case("the log is whole", "error", "lossy", ["parts of the log were lost"])
+        yield Case("the log is whole", "error", "lossy", ["parts of the log were lost", *ego_absences(drive)])
     if (reason := off_map_reason(drive)) is not None:
         yield Case("the map fits the drive", "error", "map", [reason])
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import SEVERITIES
@@ -92,10 +94,10 @@ def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2. What failed does
-    not hide what was not judged: whoever mends the one would meet the other in the next run.
+    not hide what was not judged or was lost: whoever mends the one would meet the other in the next run.
     """
     status = next(_outcomes(result))
-    hidden = next(_not_judged(result), None) if status.code is ExitCode.FAILED else None
+    hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
     return status if hidden is None else ExitStatus(status.code, f"{status.why}; also {hidden.why}")
 
 
@@ -113,8 +115,7 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     yield from _not_judged(result)
-    if result.lossy:
-        yield ExitStatus(ExitCode.LOSSY, "judged on lossy input: parts of a log were lost")
+    yield from _lossy(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
     if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
@@ -141,6 +142,16 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
     if result.ended_early is not None:
         yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
+
+
+def _lossy(result: Result) -> Iterator[ExitStatus]:
+    """Yield what was lost of the logs that were judged."""
+    if result.lossy:
+        judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
+        absent = [words for drive in judged for words in ego_absences(drive)]
+        more = f" and {plural(len(absent) - 1, 'more ego')}" if absent[1:] else ""
+        why = "; ".join(["judged on lossy input: parts of a log were lost", *absent[:1]])
+        yield ExitStatus(ExitCode.LOSSY, f"{why}{more}")
 
 
 def partial_sentence(drives: pa.Table) -> str:
@@ -181,6 +192,11 @@ def gating_unknowns(result: Result) -> pa.Table:
     rows = rows.filter(pc.equal(rows["verdict"], "unknown"))
     required = pa.array(result.required, pa.string())
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
+
+
+def ego_absences(drive: Row) -> list[str]:
+    """Return for how long each ego of a drive is absent from its log, as far as that is a loss. `drive`: a row of the table `drive`."""
+    return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT]
 
 
 def off_map_reason(drive: Row) -> str | None:

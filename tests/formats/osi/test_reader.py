@@ -126,7 +126,8 @@ def test_sensor_view(tmp_path: Path) -> None:
     path = osi_log.write(tmp_path / "v.mcap", osi_log.truths(views, "sensor", "SensorView"))
     trace = read(path)
     assert [k for k, v in actors(trace).items() if v["is_ego"]] == ["1"]
-    assert len(states(trace)) == 15
+    assert len([row for row in states(trace) if row["x_m"] is not None]) == 15
+    assert quality(trace)["ego_absent"]["message"].startswith("the ego 1 is absent for 8.6 of 9.0 s (96 %), from 0.400 s")
 
 
 def test_host_unset(tmp_path: Path) -> None:

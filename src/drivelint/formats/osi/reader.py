@@ -263,6 +263,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         lost=lost,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
+        frames_ns=t_ns,
         embedded_map=head.lanes,
         geo_reference=head.reference,
         geo_offset=head.geo_offset,

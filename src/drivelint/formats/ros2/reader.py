@@ -40,13 +40,15 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
-    from drivelint.arrays import Times
+    from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import IngestOptions, LostTime
     from drivelint.formats.mcap.losses import Losses
     from drivelint.formats.ros2.cdr import Table
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
+TOPICS_APART_NS = 1_000_000_000
+"""A recorder finds one topic after the other: one may begin, and end, a second before the other."""
 _REPORTS = {
     ros_ego.TURN_INDICATORS: "report", ros_ego.HAZARD_LIGHTS: "report", ros_ego.CONTROL_MODE: "mode", ros_ego.ENGAGE: "engage",
 }  # fmt: skip
@@ -75,6 +77,7 @@ class _Log:
         self.lost: list[LostTime] = []
         self.unread = UnreadTopics()
         self.carla = False
+        self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
         self._forward_m = forward_m
 
     def read(self, files: Iterable[Path]) -> None:
@@ -90,6 +93,8 @@ class _Log:
                 log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
                 read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
                 read.append(self._part(kind, table, log_ns))
+                if kind in OBJECT_ROWS or kind == ros_ego.ODOMETRY:
+                    self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
             parts.append((file, container.losses))
@@ -122,6 +127,12 @@ class _Log:
         rows = OBJECT_ROWS[kind](table)
         rows.log_ns = log_ns[rows.log_ns]
         return rows
+
+    def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
+        """Return the times of the messages of some topics of poses, those in which nobody is among them."""
+        parts = [part for topic in topics for part in self._times.get(topic, ())]
+        times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
+        return np.concatenate([np.zeros(0, np.int64), *times])
 
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch of the messages of a kind, by topic."""
@@ -200,6 +211,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         for text in filter(bytes.strip, table.column("opendrive").tolist()):
             maps.setdefault(text, topic)
     recording.lost = log.lost
+    recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))

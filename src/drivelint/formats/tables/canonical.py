@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from drivelint.arrays import Codes
-    from drivelint.drive.trace import LostTime
+    from drivelint.arrays import Codes, Mask
     from drivelint.formats.probe import Probe
 
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
@@ -60,8 +59,8 @@ def read(probe: Probe) -> Recording:
     Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
     """
     path = probe.path
-    states, egos, findings, lost = _states(path / "actor_state.parquet" if path.is_dir() else path)
-    recording = Recording("canonical-parquet", states, ego_ids=egos, findings=findings, lost=lost)
+    recording = _states(path / "actor_state.parquet" if path.is_dir() else path)
+    states, findings = recording.states, recording.findings
     if not path.is_dir():
         return recording
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
@@ -140,15 +139,17 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
         raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
 
 
-def _states(path: Path) -> tuple[States, list[str], list[QualityFinding], list[LostTime]]:
+def _states(path: Path) -> Recording:
+    """Read the states. A row with a time and nothing else is a frame in which nobody is."""
     table = parquet.table(path)
     _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
     times = _column(path, table, "t_ns", pa.int64())
-    lost = pc.or_(pc.or_(pc.is_null(ids), pc.equal(pc.fill_null(ids, ""), "")), pc.is_null(times)).to_numpy(
-        zero_copy_only=False
-    )
+    timed = times.is_valid().to_numpy(zero_copy_only=False)
+    nameless = pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
     n = len(ids)
+    nobody = nameless & timed & _nothing_else(table, n) if nameless.any() else nameless
+    lost = (nameless | ~timed) & ~nobody
     numbers, not_finite = {}, np.zeros(n, np.bool_)
     for name, column in _columns(path, table, (*STATE_COLUMNS, *SIZE_COLUMNS), pa.float64()).items():
         values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
@@ -165,12 +166,24 @@ def _states(path: Path) -> tuple[States, list[str], list[QualityFinding], list[L
     actor = encoded.indices.to_numpy()
     t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
     states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
-    if not lost.any():
-        return states, egos, [], []
-    what = f"{path.name}: rows without actor or time"
-    finding = QualityFinding("dropped_row", "error", f"{what}: {int(lost.sum())}: they are not judged", int(lost.sum()))
-    timed = times.is_valid().to_numpy(zero_copy_only=False)
-    return states.take(~lost), egos, [finding], times_of_lost_rows(t_ns, timed, lost, what)
+    recording = Recording("canonical-parquet", states, ego_ids=egos)
+    if nobody.any():
+        recording.frames_ns = t_ns[timed]
+    if nobody.any() or lost.any():
+        recording.states = states.take(~(lost | nobody))
+    if lost.any():
+        what, n_lost = f"{path.name}: rows without actor or time", int(lost.sum())
+        recording.findings = [QualityFinding("dropped_row", "error", f"{what}: {n_lost}: they are not judged", n_lost)]
+        recording.lost = times_of_lost_rows(t_ns, timed, lost, what)
+    return recording
+
+
+def _nothing_else(table: pa.Table, n: int) -> Mask:
+    """Say which rows of a table have a value in none of the columns that tell of an actor."""
+    columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_OF_A_STATE, "is_ego"}
+    return np.logical_and.reduce(
+        [np.ones(n, np.bool_), *(table[name].is_null().to_numpy() for name in sorted(columns))]
+    )
 
 
 def _codes(path: Path, column: pa.Array, name: str) -> Codes:

@@ -191,6 +191,8 @@ class _Body:
             ego_ids=self._egos(states),
             findings=self.findings,
             lost=self._lost(t_ns, ~bad_time, lost),
+            # a row of a wide table is a frame, whoever is in it
+            frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,
         )

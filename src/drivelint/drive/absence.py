@@ -1,0 +1,215 @@
+"""Finds the time in which a log goes on without its ego, gives the ego states without values there, and says how much is lost.
+
+The recorder sits in its own ego, which is there from the log's first frame to its last. Who names it: the host of OSI, the odometry of
+ROS, the ego flag of a table, a mapping. An ego that the user picks with --ego, among those whom others observe, comes into their view
+and leaves it: it is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
+
+Without a place at a frame nothing is known of the ego there. With a state that says so every rule is judged at that frame, and unknown.
+Where no frame came, there is no state either: rules have a hole.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.ego import ALL_EGOS, asks_for_all
+from drivelint.drive.lost_time import LATEST_NS
+from drivelint.drive.order import MAX_GAP_PERIODS, UNKNOWN_CODE, sorted_states
+from drivelint.drive.trace import EGO_ABSENT, QualityFinding, States
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.arrays import Indices, Times
+    from drivelint.drive.trace import Recording
+
+EGO_CHOSEN: Final = "ego_chosen"
+"""The check, information only, of an ego that the user picked. A converted log carries it, for there the ego's flag looks like a recorder's."""
+EGOS_CHOSEN: Final = "egos_chosen"
+"""The same of every motor vehicle in turn; its actor is the recorder's own ego, if the log has one."""
+LEAST_ABSENCE_NS: Final = 250_000_000
+"""A shorter hole is a clock that trembles, as that of an odometry at 100 Hz does. It is 2.5 periods of 10 Hz, the usual step in this field."""
+ASSUMED_PERIOD_NS: Final = 100_000_000
+"""The period of an ego that has no two states."""
+
+
+class Absence(NamedTuple):
+    """When one ego has no place in a log that lasts, or in a track that lasts, from `first_ns` to `last_ns`.
+
+    `since_ns`, `until_ns` (n): times before and behind each stretch without a place, in order, both not within it.
+    """
+
+    ego_id: str
+    since_ns: Times
+    until_ns: Times
+    period_ns: int
+    first_ns: int
+    last_ns: int
+    of_track: bool
+
+    @property
+    def ends_ns(self) -> tuple[Times, Times]:
+        """Return the beginnings and ends of the stretches (n) within the log."""
+        return np.maximum(self.since_ns, self.first_ns), np.minimum(self.until_ns, self.last_ns)
+
+    def stretch_of(self, t_ns: Times) -> Indices:
+        """Return the stretch within which each time (n) lies; -1: none."""
+        of = np.searchsorted(self.since_ns, t_ns, side="left") - 1
+        return np.where((of >= 0) & (t_ns < self.until_ns[of]), of, -1)
+
+
+def asked_ego(recording: Recording, asked: str | None) -> str | None:
+    """Return whom the user asks for as the ego, now or when the log was converted; None: whom the log names."""
+    if asked is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
+        return ALL_EGOS
+    return asked
+
+
+def own_egos(recording: Recording) -> list[str]:
+    """Return the egos that the recorder sits in: those that the log or its mapping names, but for those that a user had picked."""
+    picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN}
+    among_all = [finding.actor_id for finding in recording.findings if finding.check_id == EGOS_CHOSEN]
+    if among_all:
+        return [name for name in among_all if name is not None]
+    return [name for name in dict.fromkeys(recording.ego_ids) if name not in picked]
+
+
+def absences(recording: Recording, asked: str | None) -> list[Absence]:
+    """Return the absences of the egos that must be there (states as read): the recorder's own, or the one that the user picks."""
+    states, own = recording.states, own_egos(recording)
+    expected = own if asked is None or asks_for_all(asked, states.ids) else [asked]
+    found = []
+    for name in expected:
+        t_ns = _placed_times(states, name)
+        of_track = name not in own and len(t_ns) > 0
+        span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _span(recording)
+        absence = _absence(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
+        if len(absence.since_ns):
+            found.append(absence)
+    return found
+
+
+def _span(recording: Recording) -> tuple[int, int]:
+    """Return the first and the last time of a log: of its states, and of its frames but for those of a broken clock."""
+    times = [recording.states.t_ns]
+    if recording.frames_ns is not None:
+        times.append(recording.frames_ns[np.abs(recording.frames_ns) < LATEST_NS])
+    known = [t_ns for t_ns in times if len(t_ns)]
+    return min(int(t_ns.min()) for t_ns in known), max(int(t_ns.max()) for t_ns in known)
+
+
+def _placed_times(states: States, name: str) -> Times:
+    """Return the times, in order, at which an actor has a place."""
+    if name not in states.ids or not {"x_m", "y_m"} <= states.numbers.keys():
+        return np.zeros(0, np.int64)
+    mine = states.actor == states.ids.index(name)
+    mine &= np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"])
+    return np.unique(states.t_ns[mine])
+
+
+def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, *, of_track: bool) -> Absence:
+    """Return when an actor with a place at these times has none within a span, longer than a clock trembles."""
+    first, last = span
+    steps = np.diff(t_ns)
+    period = max(int(np.median(steps)), 1) if len(steps) else ASSUMED_PERIOD_NS
+    # the log's own ends have no place behind them
+    edges = np.r_[first - 1, t_ns, last + 1]
+    least = np.full(len(edges) - 1, max(MAX_GAP_PERIODS * period, LEAST_ABSENCE_NS))
+    least[[0, -1]] = max(least[0], ends_apart_ns) + 1
+    wide = np.diff(edges) > (least if len(t_ns) else 0)
+    return Absence(name, edges[:-1][wide], edges[1:][wide], period, first, last, of_track)
+
+
+def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
+    """Return the times of frames that came while an ego was absent, and in which nobody else is (states as read)."""
+    if recording.frames_ns is None or not missed:
+        return np.zeros(0, np.int64)
+    within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
+    return np.setdiff1d(recording.frames_ns[within], recording.states.t_ns)
+
+
+def with_absent_states(states: States, missed: Sequence[Absence], frames_ns: Times | None) -> States:
+    """Give each ego states without values at the frames that came while it was absent. States in order, and so returned."""
+    ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in missed)]))
+    more = [_absent_states(states, ids, each, frames_ns) for each in missed]
+    if not any(map(len, more)):
+        return states
+    states.ids = ids
+    return sorted_states(States.joined([states, *more]))
+
+
+def _absent_states(states: States, ids: list[str], absence: Absence, frames_ns: Times | None) -> States:
+    number = ids.index(absence.ego_id)
+    t_ns = _times_to_fill(absence, states, states.t_ns[states.actor == number], frames_ns)
+    n = len(t_ns)
+    return States(
+        ids,
+        np.full(n, number, np.int32),
+        t_ns,
+        {name: np.full(n, np.nan) for name in states.numbers},
+        {name: np.full(n, UNKNOWN_CODE) for name in states.codes},
+        np.zeros(n, np.bool_),
+    )
+
+
+def _times_to_fill(absence: Absence, states: States, own_ns: Times, frames_ns: Times | None) -> Times:
+    """Return times within an absence, one a period, beside which the ego has no state (`own_ns`): those of frames, as far as they come.
+
+    Where frames come more rarely than the ego's states did, times between them are among them: rules would have a hole between any two.
+    """
+    period, half = absence.period_ns, absence.period_ns // 2
+    times = np.concatenate([states.t_ns, np.zeros(0, np.int64) if frames_ns is None else frames_ns])
+    times = np.unique(times[absence.stretch_of(times) >= 0])
+    if not len(times):
+        return times
+    of = absence.stretch_of(times)
+    slot = (times - absence.since_ns[of] + half) // period
+    _, one = np.unique(np.stack([of, slot]), axis=1, return_index=True)
+    times, of = times[one], of[one]
+    wide = np.flatnonzero((np.diff(times) > MAX_GAP_PERIODS * period) & (np.diff(of) == 0))
+    if len(wide) > len(times) / 2:
+        between = [np.arange(times[k] + period, times[k + 1] - half, period) for k in wide]
+        times = np.sort(np.concatenate([times, *between]))
+    beside = np.searchsorted(own_ns, times - half)
+    taken = np.append(own_ns, np.iinfo(np.int64).max)[beside] <= times + half
+    return times[~taken]
+
+
+def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityFinding]:
+    """Return a finding, an error, for each absence (states in order, those without values among them)."""
+    start = int(states.t_ns.min())
+    findings = []
+    for each in missed:
+        begins, ends = each.ends_ns
+        lost_ns, of_ns = int((ends - begins).sum()), each.last_ns - each.first_ns
+        when = f"from {(begins[0] - start) / 1e9:.3f} s to {'the end' if ends[0] == each.last_ns else f'{(ends[0] - start) / 1e9:.3f} s'}"
+        if len(begins) > 1:
+            when = f"in {len(begins)} stretches, the first {when}"
+        whole = f"{of_ns / 1e9:.1f} s{' of its track' if each.of_track else ''}"
+        percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
+        message = f"the ego {each.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
+        mine = states.t_ns[states.actor == states.ids.index(each.ego_id)] if each.ego_id in states.ids else begins[:0]
+        n = int((each.stretch_of(mine) >= 0).sum())
+        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), each.ego_id))
+    return findings
+
+
+def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
+    """Return findings without those on whom the user chose when the log was converted."""
+    return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
+
+
+def chosen_findings(recording: Recording, asked: str | None) -> list[QualityFinding]:
+    """Return that the user picks an ego that is not the recorder's own, and how long that one is in the log (states as read)."""
+    own, states = own_egos(recording), recording.states
+    if asked is None or asked in own:
+        return []
+    if asks_for_all(asked, states.ids):
+        message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
+        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in own or [None]]
+    t_ns, (first, last) = _placed_times(states, asked), _span(recording)
+    there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
+    message = f"the ego {asked} is chosen with --ego: it is judged for the time of its track, {there}"
+    return [QualityFinding(EGO_CHOSEN, "info", message, actor_id=asked)]
