@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
+from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.result.schemas import TABLE_OF_FILE
@@ -72,13 +74,74 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     assert tmp_path / "verdicts.parquet" in expand_traces([str(tmp_path)])
 
 
-def test_a_folder_that_goes_while_it_is_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def gone(folder: Path, pattern: str) -> list[Path]:
-        raise FileNotFoundError(2, "No such file or directory", str(folder / "sub"))
+def barred(monkeypatch: pytest.MonkeyPatch, folder: Path, error: OSError) -> None:
+    """Let nobody look through a folder; whoever runs these tests may be root, whom no permission stops."""
+    scandir = os.scandir
 
-    monkeypatch.setattr(Path, "rglob", gone)
-    with pytest.raises(TraceError, match=r"cannot be searched: .*sub: No such file"):
-        expand_traces([str(tmp_path)])
+    def look(path: Path) -> object:
+        if Path(path) == folder:
+            raise error
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", look)
+
+
+@pytest.mark.parametrize("error", [PermissionError(13, "Permission denied"), FileNotFoundError(2, "No such file")])
+def test_a_folder_that_cannot_be_looked_through_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: OSError
+) -> None:
+    (tmp_path / "sub" / "barred").mkdir(parents=True)
+    (tmp_path / "sub" / "a.csv").write_text("x")
+    barred(monkeypatch, tmp_path / "sub" / "barred", error)
+    assert names(expand_traces([str(tmp_path)])) == ["a.csv", "barred"]
+    assert names(expand_traces([str(tmp_path / "sub" / "barred")])) == ["barred"]
+    with pytest.raises(TraceError, match=rf"barred: a folder that cannot be looked through \({error.strerror}\)"):
+        read(tmp_path / "sub" / "barred")
+
+
+def test_a_link_to_a_folder_is_named_and_not_followed(tmp_path: Path) -> None:
+    logs, other, drive = (tmp_path / name for name in ("logs", "other", "drive"))
+    for folder in (logs / "sub", other, drive):
+        folder.mkdir(parents=True)
+    for file in (logs / "a.csv", other / "b.csv", drive / "actor_state.parquet"):
+        file.write_text("x")
+    for name, target in (("round", logs), ("inside", logs / "sub"), ("linked", other), ("drive", drive), ("up", tmp_path)):
+        (logs / name).symlink_to(target)
+    # what lies within the folder is searched anyway, and a folder that is one drive needs no search
+    assert names(expand_traces([str(logs)])) == ["up", "drive", "a.csv", "linked"]
+    with pytest.raises(TraceError, match=r"linked: a link to the folder .*other, which a search does not follow"):
+        read(logs / "linked")
+    assert names(expand_traces([str(logs / "linked")])) == ["b.csv"]  # who names it means it
+
+
+def test_a_drive_of_which_a_table_is_not_here(tmp_path: Path) -> None:
+    """Its signals, or what was found when it was converted, would be missing in silence."""
+    spec = mapping(tmp_path)
+    read(table(tmp_path / "d.csv", cars()), mapping=spec)
+    convert(ConvertRequest(str(tmp_path / "d.csv"), "parquet", tmp_path / "drive", mapping=spec))
+    assert read(tmp_path / "drive").tables["actor_state"].num_rows
+    for name in ("quality", "actor_state"):
+        (tmp_path / "drive" / f"{name}.parquet").unlink()
+        (tmp_path / "drive" / f"{name}.parquet").symlink_to(tmp_path / "nowhere")
+        assert expand_traces([str(tmp_path / "drive")]) == [tmp_path / "drive"]
+        with pytest.raises(TraceError, match=rf"(actor_state|{name})\.parquet: a dead link"):
+            read(tmp_path / "drive")
+
+
+def test_what_is_not_here_is_named(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("x")
+    for name in ("b.mcap", "c.txt", "recordings", ".lock", "d.xml"):
+        (tmp_path / name).symlink_to(tmp_path / "nowhere" / name)
+    for name in ("e.mcap.dvc", "a.csv.dvc", "f.png.dvc", "runs.dvc"):
+        (tmp_path / name).write_text("outs:")
+    found = expand_traces([str(tmp_path)])
+    assert sorted(names(found)) == ["a.csv", "b.mcap", "d.xml", "e.mcap.dvc", "recordings", "runs.dvc"]
+    for name, why in (("b.mcap", "a dead link, to .*nowhere/b.mcap"), ("e.mcap.dvc", "a pointer of DVC")):
+        with pytest.raises(TraceError, match=f"{name}: {why}"):
+            read(tmp_path / name)
+    (tmp_path / "g.mcap").write_bytes(b"/annex/objects/SHA256E-s3--ab.mcap\n")
+    with pytest.raises(TraceError, match="a pointer of git-annex, not the file itself"):
+        read(tmp_path / "g.mcap")
 
 
 def test_each_file_once_in_one_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -200,7 +200,11 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
 
 
 def _digest(path: Path) -> str:
-    if path.is_dir():
-        return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
-    with path.open("rb") as file:
-        return file_digest(file, "sha256").hexdigest()
+    """Return the digest of a log; of one that cannot be read, nothing: its reader will say why."""
+    try:
+        if path.is_dir():
+            return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
+        with path.open("rb") as file:
+            return file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""

@@ -13,6 +13,7 @@ from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.commonroad import scenario as commonroad
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
+from drivelint.formats.search import tree, why_not_here
 from drivelint.formats.sumo import fcd as sumo
 from drivelint.phrases import shown
 
@@ -23,6 +24,7 @@ TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
 """What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too."""
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
 """Endings that maps have, and no format of logs."""
+_SEARCHED_SUFFIXES = TRACE_SUFFIXES | {".xml"}
 _HEAD_BYTES = 4096
 RESULT_FILES = frozenset(
     f"{name}.parquet"
@@ -41,7 +43,8 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
     `actor_state.parquet` or of rosbag2 is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV, OSI,
-    SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there.
+    SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there. Subfolders that cannot be
+    read, links to folders elsewhere and dead links are among what is returned: `read_trace` says why they cannot be judged.
     `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
@@ -78,33 +81,36 @@ def _exists(path: Path) -> bool:
 
 
 def _inside(path: Path) -> list[Path]:
-    if not path.is_dir() or is_drive_folder(path):
+    """Return the logs of a folder, and what may hold some but cannot be looked at, which whoever reads it refuses with the reason."""
+    if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
-    try:
-        drives = drive_folders(path)
-        inside = frozenset(drives)
-        files = [
-            file
-            for file in path.rglob("*")
-            if file.suffix.lower() in {*TRACE_SUFFIXES, ".xml"}
-            and file.is_file()
-            and inside.isdisjoint(file.parents)
-            and not _is_result(file, path)
-            and (file.suffix.lower() in TRACE_SUFFIXES or _is_xml_log(file))
-        ]
-    except OSError as error:  # such as a folder that went while it was looked through
-        raise TraceError(f"{path}: cannot be searched: {error.filename}: {error.strerror}: try again") from error
-    if not drives and not files:
+    found = tree(path, _SEARCHED_SUFFIXES)
+    drives = drive_folders([*found.folders, *found.links])
+    inside = frozenset(drives)
+    files = [
+        file
+        for file in found.files
+        if file.suffix.lower() in _SEARCHED_SUFFIXES
+        and inside.isdisjoint(file.parents)
+        and not _is_result(file, path)
+        and (file.suffix.lower() in TRACE_SUFFIXES or _is_xml_log(file))
+    ]
+    missed = [each for each in (*found.links, *found.unreadable) if inside.isdisjoint((each, *each.parents))]
+    if not (drives or files or missed):
         raise TraceError(
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, SUMO and CommonRoad .xml): check the path"
         )
-    return drives + files
+    return drives + files + missed
 
 
 def _is_xml_log(file: Path) -> bool:
-    with file.open("rb") as opened:
-        head = opened.read(_HEAD_BYTES)
-    return sumo.is_fcd(file, head) or commonroad.has_obstacles(file, head)
+    """Say whether a file is a log; one that cannot be opened may be, and is refused by its reader."""
+    try:
+        with file.open("rb") as opened:
+            head = opened.read(_HEAD_BYTES)
+        return sumo.is_fcd(file, head) or commonroad.has_obstacles(file, head)
+    except OSError:
+        return True
 
 
 def _is_result(file: Path, searched: Path) -> bool:
@@ -132,7 +138,12 @@ def file_states(path: Path) -> list[tuple[str, int, int]]:
     try:
         return [(file.name, found.st_size, found.st_mtime_ns) for file in drive_files(path) for found in [file.stat()]]
     except OSError as error:
-        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> TraceError:
+    file = Path(error.filename or path)
+    return TraceError(f"{file}: {why_not_here(file) or f'cannot be read: {error.strerror or error}'}")
 
 
 def identify(path: Path) -> Identity:
@@ -149,7 +160,7 @@ def identify(path: Path) -> Identity:
         else:
             digest = _sha256(path)
     except OSError as error:
-        raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise _unreadable(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
         raise TraceError(f"{shown(whole)}: its name is not UTF-8, in which results name it: rename it")

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
 from drivelint.formats.mcap.bag import mcap_files as files_of_bag
+from drivelint.formats.search import why_not_here
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
 CANONICAL_FILES = (
@@ -66,12 +67,9 @@ def is_drive_folder(path: Path) -> bool:
     return folder_kind(path) is not None
 
 
-def drive_folders(path: Path) -> list[Path]:
-    """Return the folders below a folder, at any depth, that are one drive each, those of one kind together."""
-    folders: dict[Path, None] = {}
-    for kind in KINDS:
-        folders.update(dict.fromkeys(file.parent for file in path.rglob(kind.marks[0])))
-    return [folder for folder in folders if is_drive_folder(folder)]
+def drive_folders(folders: Iterable[Path]) -> list[Path]:
+    """Return those of these folders that are one drive each."""
+    return [folder for folder in folders if why_not_here(folder) is None and is_drive_folder(folder)]
 
 
 def drive_files(path: Path) -> list[Path]:
@@ -89,9 +87,9 @@ def drive_files(path: Path) -> list[Path]:
 
 
 def _files(path: Path, pattern: str) -> Iterator[Path]:
-    if "*" not in pattern:
-        return iter([path / pattern] if (path / pattern).is_file() else [])
-    return iter(sorted(file for file in path.glob(pattern) if file.is_file()))
+    """Return the files of a pattern; a dead link is one, which whoever reads it finds not to be here."""
+    files = sorted(path.glob(pattern)) if "*" in pattern else [path / pattern]
+    return (file for file in files if file.is_file() or (file.is_symlink() and not file.exists()))
 
 
 def _first_file(path: Path, pattern: str) -> Path | None:

@@ -16,6 +16,7 @@ WRAPPINGS: Final = {
     b"PK\x03\x04": "a zip archive: unpack it",
     b"\x1f\x8b": "compressed with gzip: unpack it",
     b"\x28\xb5\x2f\xfd": "compressed with zstd: unpack it",
+    b"/annex/objects/": "a pointer of git-annex, not the file itself: fetch that with git annex get",
     b"version https://git-lfs": "a pointer of Git LFS, not the file itself: fetch that with git lfs pull",
 }
 """What a file begins with that holds another one -> what it is, and what to do."""

@@ -15,6 +15,7 @@ from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
 from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
+from drivelint.formats.search import why_not_followed, why_not_here
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table
 from drivelint.formats.tables.mapping import refuse_if_none
@@ -84,12 +85,15 @@ def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
 
 
 def _probe(path: Path, options: IngestOptions) -> Probe:
+    if (why := why_not_here(path)) is not None:
+        raise TraceError(f"{path}: {why}")
     if path.is_dir():
         if not is_drive_folder(path):
-            raise TraceError(
-                f"{path}: not a folder that is one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log of "
+            why = why_not_followed(path) or (
+                "not a folder that is one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log of "
                 "Argoverse 2 or 123D: name the files in it"
             )
+            raise TraceError(f"{path}: {why}")
         return Probe(path, b"", options)
     try:
         with path.open("rb") as file:

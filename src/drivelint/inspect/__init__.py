@@ -18,6 +18,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.registry import FORMATS, may_be_mapped_table
+from drivelint.formats.search import why_not_here
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
@@ -66,7 +67,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
     (path,) = paths
     library = MapLibrary(request)
     options = request.ingest_options(need_ego=False)
-    name, size = path.resolve().name, size_bytes(path)
+    name, size = path.resolve().name, 0 if why_not_here(path) else size_bytes(path)
     try:
         trace = read_trace(path, options)
     except TraceError as error:
@@ -95,7 +96,7 @@ def exit_code(found: model.Inspection) -> ExitCode:
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
         return content(path, None, [], read=not may_be_mapped_table(path, options))
-    except TraceError:  # the problem that the reader has told already
+    except (TraceError, OSError):  # the problem that the reader has told already
         return model.Content()
 
 

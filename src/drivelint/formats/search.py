@@ -1,0 +1,89 @@
+"""Looks through a folder for logs, and names what it could not look into: there may be logs in it, and nobody judges those.
+
+A link to a folder is not followed, as it may lead in a circle or anywhere else, unless its target is looked through anyway. A dead link,
+such as git-annex has for what is not fetched, and a pointer of DVC beside which its target is missing, stand for a log or a folder that
+is not here.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+_POINTER: Final = ".dvc"
+"""The ending of a small file that DVC keeps in place of a log or a folder, whose name it follows."""
+
+
+class Tree(NamedTuple):
+    """What a folder holds at any depth, in order of names: folders, files, links to folders elsewhere, and what could not be looked at."""
+
+    folders: list[Path]
+    files: list[Path]
+    links: list[Path]
+    unreadable: list[Path]
+
+
+def tree(root: Path, suffixes: Collection[str]) -> Tree:
+    """Look through a folder. `suffixes`: those of logs; of what is not here only they count, and names without a suffix, as of folders."""
+    found = Tree([], [], [], [])
+    waiting = [root]
+    inside = root.resolve()
+    while waiting:
+        folder = waiting.pop()
+        try:
+            with os.scandir(folder) as entries:
+                names = sorted(entries, key=lambda entry: entry.name)
+        except OSError:
+            found.unreadable.append(folder)
+            continue
+        below = []
+        for entry in names:
+            path = folder / entry.name
+            if entry.is_dir(follow_symlinks=False):
+                below.append(path)
+            elif entry.is_symlink() and path.is_dir():
+                if not path.resolve().is_relative_to(inside):
+                    found.links.append(path)
+            elif path.is_file():
+                found.files.append(path)
+                if _is_pointer(path) and _may_be_log(path.with_suffix(""), suffixes):
+                    found.unreadable.append(path)
+            elif entry.is_symlink() and not path.exists() and _may_be_log(path, suffixes):
+                found.unreadable.append(path)
+        found.folders.extend(below)
+        waiting += reversed(below)
+    return found
+
+
+def why_not_here(path: Path) -> str | None:
+    """Return why there may be a log at a path that cannot be looked at, and what to do; None: it can be, or there is nothing."""
+    if path.is_symlink() and not path.exists():
+        return f"a dead link, to {os.readlink(path)}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
+    if _is_pointer(path) and path.is_file():
+        return "a pointer of DVC, and what it stands for is not here: fetch that with dvc pull"
+    if not path.is_dir():
+        return None
+    try:
+        with os.scandir(path):
+            return None
+    except OSError as error:
+        return f"a folder that cannot be looked through ({error.strerror or error}): whether it has logs is not known: make it readable"
+
+
+def why_not_followed(path: Path) -> str | None:
+    """Return why a folder that is no drive was not searched, and what to do; None: it is no link."""
+    if not path.is_symlink():
+        return None
+    return f"a link to the folder {os.readlink(path)}, which a search does not follow: name that folder, too"
+
+
+def _is_pointer(path: Path) -> bool:
+    return path.suffix == _POINTER and path.name != _POINTER and not path.with_suffix("").exists()
+
+
+def _may_be_log(path: Path, suffixes: Collection[str]) -> bool:
+    return path.suffix.lower() in suffixes or (not path.suffix and not path.name.startswith("."))
