@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
-    from drivelint.formats.mcap.losses import Losses
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of the metadata that say what an entity is, where the value is a word that is known."""
@@ -71,7 +70,7 @@ def read(path: Path, topic: str | None) -> Recording:
     scenes: dict[str, _Scene] = {}
     transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
-    parts: list[tuple[Path, Losses]] = []
+    parts: list[Container] = []
     unread = UnreadTopics()
     for file in bag.mcap_files(path):
         container = Container(file, salvage=True)
@@ -90,10 +89,11 @@ def read(path: Path, topic: str | None) -> Recording:
                 inner, parent = list_items(decoded, "transforms")
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
-        parts.append((file, container.losses))
+        parts.append(container)
+    findings += bag.missing_messages(path, parts, FIELD_TREES.__contains__)
     name = _chosen(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
-    recording.lost += times_of_parts(parts)
+    recording.lost += times_of_parts([(part.path, part.losses) for part in parts])
     return recording
 
 

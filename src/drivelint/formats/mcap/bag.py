@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import mmap
-from typing import TYPE_CHECKING, Final
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
+from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_summary
 from drivelint.formats.ros2.types import message_kind
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
 METADATA_FILE = "metadata.yaml"
@@ -58,12 +61,10 @@ def mcap_files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
     try:
-        information = yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
+        information = _information(path)
         storage, names = information.get("storage_identifier"), information["relative_file_paths"]
-    except (OSError, yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError, RecursionError) as error:
-        raise TraceError(
-            f"{path}: its {METADATA_FILE} cannot be read ({type(error).__name__}: {error}): reindex the bag"
-        ) from error
+    except (KeyError, TypeError, AttributeError) as error:
+        raise _unreadable(path, error) from error
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
     if storage not in {None, "mcap"}:
@@ -86,6 +87,48 @@ def mcap_files(path: Path) -> list[Path]:
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or take the file out of its folder"
         )
     return found
+
+
+def _information(path: Path) -> Any:
+    """Return the description of a bag. Errors: `TraceError`."""
+    try:
+        return yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
+    except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: Exception) -> TraceError:
+    return TraceError(f"{path}: its {METADATA_FILE} cannot be read ({type(error).__name__}: {error}): reindex the bag")
+
+
+def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[str], bool]) -> list[QualityFinding]:
+    """Return a finding for each topic of which a bag's description counts more messages than its files hold.
+
+    `parts`: its files, read to their ends. `is_read`: whether a kind of messages, as `message_kind` names it, is read. Where bytes were
+    lost, these explain it.
+    """
+    if not path.is_dir() or any(part.losses.has_lost_bytes for part in parts):
+        return []
+    found: Counter[str] = Counter()
+    for part in parts:
+        for number, n in part.counts.of_channels.items():
+            found[part.channels[number].topic] += n
+    findings = []
+    for topic, kind, counted in _counted_topics(_information(path)):
+        if counted > found[topic] and is_read(message_kind(kind)):
+            n = counted - found[topic]
+            message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {found[topic]}: {n} are lost"
+            findings.append(QualityFinding("index_mismatch", "error", message, n))
+    return findings
+
+
+def _counted_topics(information: Any) -> Iterator[tuple[str, str, int]]:
+    """Yield name, type and number of messages of each topic that a description counts as rosbag2 does."""
+    topics = information.get("topics_with_message_count")
+    for each in topics if isinstance(topics, list) else ():
+        match each:
+            case {"topic_metadata": {"name": str(name), "type": str(kind)}, "message_count": int(n)}:
+                yield name, kind, n
 
 
 def message_family(path: Path) -> str:

@@ -23,6 +23,7 @@ from mcap.records import Channel, DataEnd, Footer, Header, Metadata, Schema, Sta
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD, MessageCounts
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.resume import MAGIC, next_record
 from drivelint.formats.mcap.summary import Summary, read_summary, summary_is_whole
@@ -39,7 +40,6 @@ MOST_RECORD_BYTES = 1 << 48
 """A record of a known kind that says it is longer is no cut-off one, for no file was ever so large: the file is refused."""
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
-_MESSAGE_INDEX = struct.Struct("<HI")
 _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Records whose length is always the same."""
 _KNOWN = frozenset(Opcode)
@@ -89,6 +89,7 @@ class Container:
     findings: list[QualityFinding] = field(default_factory=list)
     losses: Losses = field(default_factory=Losses)
     library: str = ""
+    counts: MessageCounts = field(default_factory=MessageCounts)
     _messages: int = 0
     _loose: int = 0
     _unprotected: int = 0
@@ -165,7 +166,8 @@ class Container:
         end = start + length
         wrong = length != _LENGTHS.get(opcode, length)
         if opcode == Opcode.MESSAGE_INDEX:
-            wrong = length < _MESSAGE_INDEX.size or _MESSAGE_INDEX.unpack_from(view, start)[1] != length - 6
+            head = MESSAGE_INDEX_HEAD
+            wrong = length < head.size or head.unpack_from(view, start)[1] != length - head.size
         elif opcode == Opcode.FOOTER:
             tail = bytes(view[end : end + len(MAGIC)])
             wrong = wrong or not MAGIC.startswith(tail)
@@ -207,6 +209,8 @@ class Container:
             self._statistics = self._parsed(Statistics.read, body, at)
         elif opcode == Opcode.CHUNK:
             yield from self._chunk(body, at, end)
+        elif opcode == Opcode.MESSAGE_INDEX:
+            self._check_message_index(body, at)
         elif opcode == Opcode.METADATA:
             record = self._parsed(Metadata.read, body, at)
             self.metadata.setdefault(record.name, record.metadata)
@@ -236,6 +240,7 @@ class Container:
             if number not in self.channels:
                 raise self._damaged(at, f"a message on channel {number}, which was never announced,", end)
             self._messages += 1
+            self.counts.add(number, log_time)
             self.losses.message(log_time)
             yield Packet(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
         elif opcode == Opcode.SCHEMA:
@@ -255,6 +260,7 @@ class Container:
             raise self._damaged(at, str(error), end if error.framed else None) from error
         self._unprotected += head.crc == 0
         view, place = memoryview(records), 0
+        self.counts.begin_chunk()
         while place < len(view):
             opcode, start, stop = self._inner(view, place, at, end)
             try:
@@ -263,6 +269,14 @@ class Container:
                 error.resume = end
                 raise
             place = stop
+        self.counts.end_chunk()
+
+    def _check_message_index(self, body: memoryview, at: int) -> None:
+        for log_ns in self.counts.missing_from_chunk(body):
+            error = self._damaged(at, "a message is missing from the chunk before its index")
+            if not self.salvage:
+                raise error
+            self.losses.add_message(at, str(error), log_ns)
 
     def _inner(self, view: memoryview, place: int, at: int, end: int) -> tuple[int, int, int]:
         start = place + _RECORD.size
@@ -310,7 +324,7 @@ class Container:
         """Check the index's CRC: the data were read without it, so damage there loses nothing."""
         footer = self._parsed(Footer.read, view[start:end], at)
         if not summary_is_whole(footer, view, at, end):
-            message = f"the index has a wrong CRC (footer at byte {at}): it is not used"
+            message = f"the index has a wrong CRC (footer at byte {at}): only what it counts is compared"
             self.findings.append(QualityFinding("index_damaged", "warning", message))
         extra = len(view) - end - len(MAGIC)
         if extra > 0:
@@ -335,11 +349,12 @@ class Container:
             self.losses.narrow(index.chunks)
 
     def _report(self) -> None:
-        counts = self._statistics
-        is_trusted = not any(each.check_id == "index_damaged" for each in self.findings)
-        if counts is not None and is_trusted and not self.losses and counts.message_count != self._messages:
-            message = f"the index counts {counts.message_count} messages, the file has {self._messages}: these are read"
-            self.findings.append(QualityFinding("index_mismatch", "error", message))
+        if self._statistics is not None and not self.losses.has_lost_bytes:
+            is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
+            told = self.counts.contradiction(self._statistics, self.channels, is_damaged=is_damaged)
+            if told is not None:
+                message = f"the index counts {told}: these are read, and what is missing is lost"
+                self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._unprotected:
             message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
             self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
@@ -361,6 +376,7 @@ def message_batches(
         topic, schema = packet.channel.topic, container.schemas.get(packet.channel.schema_id)
         kind = None if schema is None else kind_of(packet.channel, schema)
         if kind is None:
+            container.counts.unused.add(packet.channel.id)
             continue
         changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id
         if changed or sizes[topic] >= BATCH_BYTES:

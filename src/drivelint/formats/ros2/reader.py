@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import IngestOptions, LostTime
-    from drivelint.formats.mcap.losses import Losses
     from drivelint.formats.ros2.cdr import Table
 
 STATIC_TOPIC_SUFFIX = "tf_static"
@@ -81,7 +80,7 @@ class _Log:
         self._forward_m = forward_m
 
     def read(self, files: Iterable[Path]) -> None:
-        parts: list[tuple[Path, Losses]] = []
+        parts: list[Container] = []
         for file in files:
             container = Container(file, salvage=True)
             decoders: dict[int, Decoder] = {}
@@ -97,9 +96,9 @@ class _Log:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
-            parts.append((file, container.losses))
-        self.findings += self.unread.findings()
-        self.lost = times_of_parts(parts)
+            parts.append(container)
+        self.findings += [*bag.missing_messages(self.path, parts, _FIELD_TREES.__contains__), *self.unread.findings()]
+        self.lost = times_of_parts([(part.path, part.losses) for part in parts])
 
     def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
         """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""

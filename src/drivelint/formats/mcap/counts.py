@@ -1,0 +1,74 @@
+"""Counts the messages of an MCAP file, and compares with that what its own indexes count."""
+
+from __future__ import annotations
+
+import struct
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mcap.records import Channel, Statistics
+
+MESSAGE_INDEX_HEAD: Final = struct.Struct("<HI")
+"""Channel, and bytes of the entries behind it."""
+_ENTRY: Final = struct.Struct("<QQ")
+_NAMED: Final = 3
+
+
+@dataclass
+class MessageCounts:
+    """Channel -> number of its messages. `unused`: channels of whose messages none is used: what is missing there is no loss."""
+
+    of_channels: Counter[int] = field(default_factory=Counter)
+    unused: set[int] = field(default_factory=set)
+    _open: dict[int, list[int]] | None = None  # channel -> log times of its messages in the chunk that is being read
+    _closed: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
+
+    def add(self, channel: int, log_ns: int) -> None:
+        """Count a message."""
+        self.of_channels[channel] += 1
+        if self._open is not None:
+            self._open.setdefault(channel, []).append(log_ns)
+
+    def begin_chunk(self) -> None:
+        """Begin with the messages of a chunk."""
+        self._open, self._closed = {}, None
+
+    def end_chunk(self) -> None:
+        """End with them: all were read."""
+        self._open, self._closed = None, self._open
+
+    def missing_from_chunk(self, index: memoryview) -> list[int]:
+        """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
+
+        They count as found: whoever asks says that they are lost.
+        """
+        channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
+        found = None if self._closed is None else self._closed.get(channel, [])
+        if found is None or length <= _ENTRY.size * len(found) or channel in self.unused:
+            return []
+        named = Counter(log_ns for log_ns, _ in _ENTRY.iter_unpack(index[MESSAGE_INDEX_HEAD.size :]))
+        missing = sorted((named - Counter(found)).elements())
+        self.of_channels[channel] += len(missing)
+        return missing
+
+    def contradiction(self, index: Statistics, channels: Mapping[int, Channel], *, is_damaged: bool) -> str | None:
+        """Return which counts of the index are not those of the messages; None: none is.
+
+        An index with a wrong CRC (`is_damaged`) is heard if it agrees with itself: what changed it may have taken messages.
+        """
+        counted, total = index.channel_message_counts, self.of_channels.total()
+        agrees = not counted or sum(counted.values()) == index.message_count
+        if is_damaged and not agrees:
+            return None
+        told = [
+            f"{n} messages of topic {channels[number].topic!r}, the file has {self.of_channels[number]}"
+            for number, n in sorted(counted.items())
+            if number in channels and number not in self.unused and n != self.of_channels[number]
+        ]
+        if not told and not (counted and agrees) and index.message_count != total:
+            told = [f"{index.message_count} messages, the file has {total}"]
+        return "; ".join(told[:_NAMED]) or None
