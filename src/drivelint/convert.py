@@ -19,7 +19,7 @@ from drivelint.formats.folders import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
-from drivelint.formats.tables import parquet
+from drivelint.formats.tables import canonical, parquet
 from drivelint.phrases import listed, one_line
 from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
@@ -92,6 +92,8 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
+    # a clip has less to go by, and must judge what the whole log was judged by
+    options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:
         told = QualityFinding(CLIP, "info", _cut_from(trace, request.clip))
@@ -104,7 +106,8 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         x, y, yaw = trace.geo_offset
         trace = _with_log(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
     prepare_folder(request.out)
-    files = _mcap(target, trace, road) if request.to == "mcap" else _parquet(target, trace, road)
+    write = _mcap if request.to == "mcap" else _parquet
+    files = write(target, trace, road, as_recorded=options.as_recorded)
     notes = [*trace.notes, *of_road, *_of_a_check(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
@@ -208,11 +211,11 @@ def _unfit_for_mcap(road: MapSource) -> str | None:
     return None
 
 
-def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+def _mcap(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with temporary.open("wb") as file:
-            osi_log.write(file, trace, road)
+            osi_log.write(file, trace, road, as_recorded=as_recorded)
         size = temporary.stat().st_size
         publish(target.parent, {}, {target.name: temporary})
     except OSError as error:
@@ -224,10 +227,12 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
     return {target.name: size}
 
 
-def _parquet(target: Path, trace: Trace, road: MapSource | None) -> dict[str, int]:
+def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
+    tables["actor_state"] = canonical.with_frames_of_nobody(tables["actor_state"], trace)
     names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
-    contents = {f"{name}.parquet": described_parquet(tables[name], name, {_MARK: name}) for name in names}
+    about = {canonical.AS_RECORDED: "yes"} if as_recorded else {}
+    contents = {f"{name}.parquet": described_parquet(tables[name], name, {_MARK: name, **about}) for name in names}
     if road is not None:
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})

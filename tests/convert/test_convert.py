@@ -221,7 +221,7 @@ def test_same_bytes_every_time(tmp_path: Path, to: Any) -> None:
 
 
 def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(sink: Any, *_: object) -> int:
+    def full(sink: Any, *_: object, **_options: object) -> int:
         sink.write(b"half")
         raise OSError(28, "No space left on device")
 

@@ -143,6 +143,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         recording.geo_reference,
         recording.geo_offset,
         nobody_ns,
+        in_log_order=recorded is not None and bool(restarts),
     )
 
 

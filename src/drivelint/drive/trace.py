@@ -66,6 +66,12 @@ ASIDE_OF_LANE = "aside_of_lane"
 """The check of a drive whose ego fits the map, but far from the middle of its lane."""
 EGO_ABSENT = "ego_absent"
 """The check of a log that goes on while its ego has no place in it."""
+FOUND_ANEW = frozenset({
+    "acceleration_not_recorded", "aligned", "clock_restart", "duplicate_state", EGO_ABSENT, "gap", "heading_turned", "heading_unknown",
+    "jumps_onto", "length_below_width", "motion_unknown", "no_position", "no_size", "no_yaw", "removed", "teleport", "too_fast",
+    "track_gap", "track_parted", "velocity_derived", "velocity_filtered", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
+})  # fmt: skip
+"""Checks of the states: a log that was converted as it was recorded says what they found, and whoever reads it finds that anew."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
 
@@ -90,7 +96,7 @@ class IngestOptions:
     in_sight: bool = False
     """Whoever is not recorded for a while is taken not to be in plain view."""
     as_recorded: bool = False
-    """The states are those of the log: none that is doubted is made unknown, none is derived. For whoever writes them anew."""
+    """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts them again."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,7 +146,8 @@ class Trace:
     `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
     see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string,
     of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames in
-    which nobody is, as far as the ego should be there.
+    which nobody is, as far as the ego should be there. `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`)
+    and in its order, as its clock begins again.
     """
 
     drive_id: str
@@ -153,6 +160,7 @@ class Trace:
     geo_reference: str | None = None
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     nobody_ns: Times = field(default_factory=lambda: np.zeros(0, np.int64))
+    in_log_order: bool = False
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive import conditions
-from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.trace import ACTOR_CLASSES, FOUND_ANEW, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 
 if TYPE_CHECKING:
@@ -56,6 +56,8 @@ class _Said(msgspec.Struct, frozen=True, kw_only=True):
     unknown: tuple[str, ...] = ()
     conditions: dict[str, str] = {}
     quality: tuple[QualityFinding, ...] = ()
+    as_recorded: bool = False
+    nobody_ns: tuple[int, ...] = ()
 
 
 class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
@@ -72,8 +74,8 @@ DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, E
 EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
 
 
-def metadata_records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict[str, str]]:
-    """Return the metadata records of a trace; `numbers`: actor id -> OSI id."""
+def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: bool) -> dict[str, dict[str, str]]:
+    """Return the metadata records of a trace; `numbers`: actor id -> OSI id, `as_recorded`: its states are those that were recorded."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
     said: dict[str, Any] = {
@@ -88,6 +90,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int]) -> dict[str, dict
         "conditions": holds or None, "map_offset_m": trace.map_offset,
         "sensor_range_m": log["sensor_range_m"], "utc_start_ns": log["utc_start_ns"],
         "geo_reference": trace.geo_reference, "geo_offset": trace.geo_offset if trace.geo_reference else None,
+        "as_recorded": as_recorded or None, "nobody_ns": trace.nobody_ns.tolist() or None,
     }  # fmt: skip
     said |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
@@ -156,7 +159,9 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
     recording.sensor_range_m = said.sensor_range_m
     for name in set(said.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
-    recording.findings += said.quality
+    # a frame that holds traffic lights alone was none of the log that was converted
+    recording.frames_ns = np.array(said.nobody_ns, np.int64)
+    recording.findings += (f for f in said.quality if not said.as_recorded or f.check_id not in FOUND_ANEW)
 
 
 def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) -> None:

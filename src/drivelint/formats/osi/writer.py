@@ -32,8 +32,8 @@ BATCH_STATES: Final = 200_000
 _MAX_ID: Final = (1 << 64) - 1
 
 
-def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
-    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal.
+def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: bool = False) -> int:
+    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal, and per frame of nobody.
 
     The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector of which x or y is
     not known is left out as a whole.
@@ -44,14 +44,14 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None) -> int:
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
-    for name, content in metadata.metadata_records(trace, numbers).items():
+    for name, content in metadata.metadata_records(trace, numbers, as_recorded=as_recorded).items():
         writer.add_metadata(name, content)
     described = {"net.asam.osi.trace.channel.osi_version": version}
     truth = writer.register_channel(
         GROUND_TRUTH_TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
     )
     times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
-    earliest = int(min(t for t in times if t is not None))
+    earliest = int(min(t for t in (*times, *trace.nobody_ns.tolist()) if t is not None))
     if road is not None:
         schema = writer.register_schema(OPEN_DRIVE, "protobuf", descriptor_set())
         channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
@@ -75,13 +75,21 @@ def osi_ids(actors: list[str]) -> dict[str, int]:
 
 
 def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]]:
-    """Yield time and message of every frame, in order of time."""
+    """Yield time and message of every frame, in order of time; in the order of the log where its clock begins again."""
     states = trace.tables["actor_state"]
     t_ns = states["t_ns"].to_numpy()
     lights = _lights(trace.tables["signal_state"])
-    order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
-    times = np.unique(np.concatenate([t_ns, np.fromiter(lights, np.int64, len(lights))]))
-    bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
+    others = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.nobody_ns])
+    if trace.in_log_order:
+        order = np.arange(len(t_ns))
+        starts = np.flatnonzero(np.r_[True, np.diff(t_ns) != 0])
+        others = np.setdiff1d(others, t_ns)
+        times = np.r_[t_ns[starts], others]
+        bounds = np.r_[starts, np.full(len(others) + 1, len(t_ns))]
+    else:
+        order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
+        times = np.unique(np.concatenate([t_ns, others]))
+        bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
     objects = _objects(trace, numbers)
     egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
     host = min(egos, key=str, default=None)
@@ -92,7 +100,7 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
         some = objects.take(pa.array(order[starts[0] : starts[-1]]))
         messages = ground_truths(times[begin:end], host, some, starts - starts[0]).to_pylist()
         for t, message in zip(times[begin:end].tolist(), messages, strict=True):
-            yield t, b"".join((message, *lights.get(t, ())))
+            yield t, b"".join((message, *lights.pop(t, ())))
         begin = end
 
 

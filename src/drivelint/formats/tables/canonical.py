@@ -14,6 +14,7 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
     BRAKE_LIGHTS,
+    FOUND_ANEW,
     INDICATORS,
     SIGNAL_STATES,
     SIZE_COLUMNS,
@@ -33,10 +34,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.arrays import Codes, Mask
+    from drivelint.drive.trace import Trace
     from drivelint.formats.probe import Probe
 
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
 takes_mapping: Final = False
+AS_RECORDED: Final = "drivelint.as_recorded"
+"""Key in the metadata of the tables of a converted log of which the states are those that were recorded."""
 REQUIRED_COLUMNS = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
 """What makes a Parquet table canonical; every other column may be missing and is then unknown."""
 _OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": ACTOR_CLASSES}
@@ -104,13 +108,15 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
 
 
 def _quality(path: Path) -> list[QualityFinding]:
-    """Read what was found when the log was converted: what was mended then cannot be seen any more."""
+    """Read what was found when the log was converted, and cannot be seen any more."""
     if not path.is_file():
         return []
     rows = parquet.table(path)
     _need(path, rows, ("check_id", "severity", "message"))
+    again = FOUND_ANEW if AS_RECORDED.encode() in (rows.schema.metadata or {}) else ()
     try:
-        return [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
+        found = [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
+        return [finding for finding in found if finding.check_id not in again]
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 
@@ -176,6 +182,16 @@ def _states(path: Path) -> Recording:
         recording.findings = [QualityFinding("dropped_row", "error", f"{what}: {n_lost}: they are not judged", n_lost)]
         recording.lost = times_of_lost_rows(t_ns, timed, lost, what)
     return recording
+
+
+def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
+    """Return states with a row for each frame in which nobody is, such as `_states` reads."""
+    n = len(trace.nobody_ns)
+    if not n:
+        return states
+    empty = {field.name: pa.nulls(n, field.type) for field in states.schema}
+    empty |= {"drive_id": pa.array([trace.drive_id] * n, pa.string()), "t_ns": pa.array(trace.nobody_ns)}
+    return pa.concat_tables([states, pa.table(empty, schema=states.schema)])
 
 
 def _nothing_else(table: pa.Table, n: int) -> Mask:
