@@ -24,6 +24,7 @@ from drivelint.drive.trace import (
     LEAST_UTC_NS,
     SIZE_COLUMNS,
     STATE_COLUMNS,
+    Doubt,
     QualityFinding,
     Trace,
 )
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 LONGEST_ID = 1000
 """Characters of an actor's id; every finding about the actor repeats it."""
 TRACE_TABLES = (
-    "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality",
+    "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality", "doubt",
 )  # fmt: skip
 """The tables of `schemas/model.sql` that a trace has, in its order."""
 
@@ -117,6 +118,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     }
     tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
     tables["quality"] = _quality(drive, findings)
+    tables["doubt"] = _doubts(drive, findings)
     return Trace(
         drive,
         path,
@@ -211,7 +213,14 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return owned_table("quality", drive, [vars(row) for row in rows])
+    names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
+    return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows])
+
+
+def _doubts(drive: str, findings: list[QualityFinding]) -> pa.Table:
+    rows = sorted({(*doubt, finding.check_id) for finding in findings for doubt in finding.doubts})
+    names = (*Doubt._fields, "code")
+    return owned_table("doubt", drive, [dict(zip(names, row, strict=True)) for row in rows])
 
 
 def _nullable(values: Floats) -> pa.Array:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """Tables that hold what rules found; those of a second connection are appended to them."""
 _ALLOWED = pa.schema([("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))])
+_QUANTITIES = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
 _MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
@@ -38,6 +39,12 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     con.execute(statement("judging/todo"))
     counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
     return {int(no): int(n) for no, n in counts}
+
+
+def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
+    """Create the table of the steps that rules may not judge: the log is doubted there in what they use."""
+    with store.registered(con, {"_rule_quantity": _quantities(bindings)}):
+        con.execute(statement("judging/doubted"))
 
 
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
@@ -61,6 +68,11 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
         for b in bindings
         for pos, signal in enumerate(b.rule.needed)
     ])  # fmt: skip
+
+
+def _quantities(bindings: Sequence[Binding]) -> pa.Table:
+    pairs = [(b.no, quantity) for b in bindings for quantity in sorted(b.rule.quantities)]
+    return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITIES)
 
 
 def _allowed(bindings: Sequence[Binding]) -> pa.Table:
