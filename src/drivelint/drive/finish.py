@@ -14,9 +14,11 @@ from drivelint.drive import checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
+from drivelint.drive.implausible import implausible_motion
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.sizes import resolve_sizes
 from drivelint.drive.trace import (
     ASSUMED_MOTION,
     BRAKE_LIGHTS,
@@ -81,11 +83,13 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors = actor_rows.from_table(recording.actors, states, split.alias)
     egos, chosen = ego.choose(path, actors, options.ego, recording.ego_ids, needed=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
+    findings += resolve_sizes(states, actors)
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
         findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
+        findings += implausible_motion(states, step, actors, derived=derived)
     states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings += [*moved, *_lights(states, egos, is_ego)]
