@@ -18,6 +18,7 @@ from drivelint.drive.implausible import implausible_motion
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.same_body import false_entries, same_bodies
 from drivelint.drive.sizes import resolve_sizes
 from drivelint.drive.trace import (
     ASSUMED_MOTION,
@@ -90,6 +91,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     if not assumed:
         findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
         findings += implausible_motion(states, step, actors, derived=derived)
+        findings += [*same_bodies(states, actors, egos), *false_entries(states, step)]
     states, moved = align_to_ego(states, egos)
     is_ego = np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
     findings += [*moved, *_lights(states, egos, is_ego)]
