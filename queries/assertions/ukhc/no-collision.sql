@@ -11,7 +11,7 @@
 -- observes = "distance between the two"
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
--- tags = ["contact"]
+-- tags = ["contact", "standing"]
 -- reads = ["between_steps", "clearance_least", "ego_state", "impact", "pair"]
 -- requires = ["ego_size"]
 --

@@ -65,6 +65,8 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+STANDING: Final = "standing"
+"""Tag of the rules that an ego which never moves is judged by, too."""
 EXCUSES: Final = "excuses"
 """Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
 OTHERS: Final = "road_users"
