@@ -20,7 +20,7 @@ SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required FR
 GAP = "SELECT drive_id, ego_id, object_id, t_ns, clearance_m AS observed, 0 AS required FROM pair"
 
 
-def doubt(actor: str, quantity: str, t_s: tuple[float, float] = (1.0, 1.0)) -> dict[str, Any]:
+def doubt(actor: str, quantity: str, t_s: tuple[float, float] = (0.8, 1.2)) -> dict[str, Any]:
     return {"doubt": {"actor_id": actor, "quantity": quantity, "t_from_s": t_s[0], "t_to_s": t_s[1], "code": "a_check"}}
 
 
@@ -44,6 +44,29 @@ def test_a_doubted_step_is_neither_kept_nor_broken(tmp_path: Path, speed: Any) -
     (row,) = verdicts(speed_rule(tmp_path), drive(speed) | doubt("e", "velocity"))
     assert (row["verdict"], row["reason_code"], row["cause_code"]) == ("unknown", "doubted", "doubted")
     assert "the velocity of the ego is not believed then (a_check)" in row["reason"]
+
+
+@pytest.mark.parametrize("speed", [12, {"else": 12, "1": 9}])
+def test_a_single_doubted_step_counts_as_not_recorded(tmp_path: Path, speed: Any) -> None:
+    (row,) = verdicts(speed_rule(tmp_path), drive(speed) | doubt("e", "velocity", (0.95, 1.05)))
+    assert (row["verdict"], row["n_judged"]) == ("pass", 20)
+    (row,) = verdicts(speed_rule(tmp_path), drive({"else": 12, "1..1.1": 9}) | doubt("e", "velocity", (0.95, 1.05)))
+    assert (row["verdict"], row["t_worst_ns"]) == ("fail", 1_100_000_000)
+
+
+def test_the_last_step_is_not_between_two(tmp_path: Path) -> None:
+    assert brief(verdicts(speed_rule(tmp_path), drive() | doubt("e", "velocity", (1.95, 2.0)))) == [
+        ("unknown", "doubted")
+    ]
+
+
+def test_a_rule_may_say_what_does_not_affect_it(tmp_path: Path) -> None:
+    rule = write(
+        tmp_path,
+        INVARIANT | MEASURED | {"reads": '["ego_state"]', "unaffected_by": '["velocity"]'},
+        {"condition": SPEED},
+    )
+    assert brief(verdicts(rule, drive() | doubt("e", "velocity"))) == [("pass", "kept")]
 
 
 def test_a_breach_beside_the_doubted_step_stands(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
 -- tags = ["contact", "standing"]
+-- unaffected_by = ["velocity"]
 -- reads = ["between_steps", "clearance_least", "ego_state", "impact", "pair"]
 -- requires = ["ego_size"]
 --

@@ -181,7 +181,7 @@ def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
     used = {"existence", "identity"} | ({"position"} if header.reference else set())
     for table in header.reads:
         used.update(*(quantities for column, quantities in declared.get(table, {}).items() if column in named))
-    return frozenset(used)
+    return frozenset(used.difference(header.unaffected_by))
 
 
 def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:

@@ -174,11 +174,13 @@ class Evaluation:
         ):
             return
         n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._check_engagement), binding)
-        self._doubt_steps(binding, "object_id")
         if self._may_stop(n_judged):
             return
         if self._check_engagement or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
             self._execute(statement("judging/error_of_grid"), binding)
+        if self._has_doubts:
+            self._execute(statement("judging/doubt_of_short_time"), binding)
+        self._doubt_steps(binding, "object_id")
         self._execute(invariant.episodes_sql(rule), binding)
         if self._has_holes:
             self._execute(statement("judging/outcome_of_holes"), binding)

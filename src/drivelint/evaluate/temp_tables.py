@@ -55,7 +55,11 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
-        row |= {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags, "of_standing": STANDING in rule.tags}
+        row |= {
+            "of_lanes": "registration" in rule.requires,
+            "of_contact": CONTACT in rule.tags,
+            "of_standing": STANDING in rule.tags,
+        }
         row |= {"by_object": rule.combine == "each"}
         limits = applicability.bound_values(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
