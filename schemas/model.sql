@@ -97,3 +97,14 @@ CREATE TABLE quality (
     t_last_ns BIGINT,                 -- of lost_time: the first time behind it, NULL: it ends with the log; NULL for all other checks
     message VARCHAR NOT NULL          -- what was seen and what follows from it, in one sentence
 );
+
+-- What of an actor is not believed, and when: a step at which a rule uses it is unknown.
+-- lifetime: drive
+CREATE TABLE doubt (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    actor_id VARCHAR NOT NULL,        -- the actor of whom the log is doubted
+    quantity VARCHAR NOT NULL,        -- existence, identity, position, heading, velocity, size, class: what of it
+    t_from_ns BIGINT NOT NULL,        -- from here
+    t_to_ns BIGINT NOT NULL,          -- to here, this time included
+    code VARCHAR NOT NULL             -- the check that doubts it: check_id of quality
+);

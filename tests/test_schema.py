@@ -71,7 +71,14 @@ def test_every_table_says_how_long_its_rows_stay() -> None:
         assert (lifetime == "map") <= ("environment_id" in columns and "drive_id" not in columns), table
         assert (lifetime in {"drive", "part"}) <= ("drive_id" in columns), table
     assert {store.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
-    assert store.tables_of_lifetime("drive") == ["actor", "actor_state", "signal_state", "declared_event", "margin"]
+    assert store.tables_of_lifetime("drive") == [
+        "actor",
+        "actor_state",
+        "signal_state",
+        "declared_event",
+        "doubt",
+        "margin",
+    ]
 
 
 def test_samples_are_continuous_for_python_and_for_sql_alike() -> None:

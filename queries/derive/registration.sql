@@ -34,7 +34,8 @@ step_count AS (
         coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
             AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m) AS outside_decides,
         CASE WHEN outside_decides THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL)
-            ELSE quantile_disc(e.off_m, 0.5) END AS lateral_median_m,
+            -- An ego that waits at the kerb says nothing about the map while it stands.
+            ELSE coalesce(quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1), quantile_disc(e.off_m, 0.5)) END AS lateral_median_m,
         -- A log that is nothing but an overtake, or in which the ego stands at the kerb, does not tell that its map is moved.
         coalesce(lateral_median_m > aside_of_lane_m(), false)
             AND (outside_decides OR coalesce(sum(st.dt_ns) FILTER (s.speed_mps > 1) > longest_overtake_ns(), false)) AS is_aside

@@ -55,6 +55,7 @@ WITH _parts AS (
             WHEN 'lost_on_road' THEN 'The track of ' || who || ' ends on the road at ' || at_time || '.'
             ELSE coalesce(at_time, 'At an unknown time') || ': ' || replace(code, '_', ' ') || '.' END
         WHEN verdict = 'not_applicable' THEN CASE code
+            WHEN 'ego_never_moves' THEN 'The ego never moves in this drive.'
             WHEN 'no_anchor' THEN 'The time or place at which it must hold never came.'
             WHEN 'nobody_there' THEN 'Nobody was there.'
             WHEN 'not_engaged' THEN 'The automated driver never drives in this drive.'

@@ -1,5 +1,6 @@
 -- The subjects to which a rule does not apply, whatever happens in the drive: at every step some condition is known, and is not one that the
 -- rule allows. `other_nation`: the law of one nation says nothing about a drive in another. `outside_conditions`: the conditions of a rule's header.
+-- `ego_never_moves`: an ego that is parked all along is judged by rules about standing only.
 CREATE OR REPLACE TEMP TABLE _excluded AS
 WITH _conditions AS (
     SELECT row_number() OVER () AS no, * FROM (
@@ -25,7 +26,15 @@ WITH _conditions AS (
 ), _of_conditions AS (
     SELECT rule_no, code, drive_id, ego_id, bool_or(is_outside) AS is_outside FROM _known GROUP BY rule_no, code, drive_id, ego_id, no
 )
-SELECT rule_no, drive_id, ego_id, code FROM _of_conditions GROUP BY ALL HAVING bool_and(is_outside);
+SELECT rule_no, drive_id, ego_id, code FROM _of_conditions GROUP BY ALL HAVING bool_and(is_outside)
+UNION ALL
+SELECT r.rule_no, e.drive_id, e.ego_id, 'ego_never_moves'
+FROM _rule r
+CROSS JOIN (
+    SELECT drive_id, ego_id FROM ego_state GROUP BY ALL
+    HAVING bool_and(coalesce(speed_mps <= standing_mps(), false)) AND greatest(max(x_m) - min(x_m), max(y_m) - min(y_m)) <= standing_spread_m()
+) e
+WHERE NOT r.of_standing;
 
 -- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing, if it is
 -- not one that a log is taken to have.

@@ -8,6 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- exempt_after_s = "grace_s"
+-- tags = ["standing"]
 -- reads = ["ego_mode", "ego_state"]
 -- requires = ["mode_engaged", "mode_minimal_risk_manoeuvre", "indicator"]
 --

@@ -10,6 +10,7 @@
 -- unit = "m/s2"
 -- observes = "highest acceleration (negative when braking) over brief_s"
 -- near_margin = 0.2
+-- tags = ["standing"]
 -- reads = ["clock", "ego_mode", "ego_motion"]
 -- requires = ["mode_engaged", "mode_minimal_risk_manoeuvre"]
 --

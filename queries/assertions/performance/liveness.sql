@@ -9,6 +9,7 @@
 -- sense = "<="
 -- unit = "s"
 -- observes = "standstill"
+-- tags = ["standing"]
 -- reads = ["pair", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --

@@ -5,7 +5,7 @@
 -- derivation = "model"
 -- severity = "minor"
 -- legal = "should"
--- status = "stable"
+-- status = "draft"
 -- sense = ">="
 -- unit = "m"
 -- observes = "distance to the oncoming vehicle"

@@ -10,7 +10,7 @@
 -- unit = "m/s2"
 -- observes = "change of speed of the ego or the other"
 -- merge_gap_s = 1.0
--- tags = ["contact"]
+-- tags = ["contact", "standing"]
 -- reads = ["between_steps", "ego_state", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size", "speeds"]
 --

@@ -11,9 +11,16 @@
 -- observes = "distance between the two"
 -- near_margin = 0.5
 -- merge_gap_s = 2.0
--- tags = ["contact"]
+-- tags = ["contact", "standing"]
+-- unaffected_by = ["velocity"]
 -- reads = ["between_steps", "clearance_least", "ego_state", "impact", "pair"]
 -- requires = ["ego_size"]
+--
+-- [params.walking_mps]
+-- default = 2.0
+-- unit = "m/s"
+-- why = "a person slower than this beside a standing vehicle gets in, out or past; who runs into it may be a contact"
+-- source = "our default: a brisk walk"
 --
 -- [reasons.contact_between_steps]
 -- says = "contact between this step and the next, {depth_m:.2f} m deep"
@@ -24,6 +31,10 @@
 -- [reasons.impact_beside_boxes]
 -- says = "the speeds show an impact here, though the boxes are {apart_m:.2f} m apart: the log's sizes or positions are not exact enough to tell"
 -- advice = "see the rule contact-signature"
+--
+-- [reasons.boxes_of_nobody_moving]
+-- says = "the boxes overlap by {depth_m:.2f} m while neither moves: their sizes or places are not exact enough to tell a contact"
+-- advice = "see the steps before, at which one of them moved"
 --
 -- [reasons.contact_standing]
 -- says = "contact, {depth_m:.2f} m deep, while the ego stood still: it was struck"
@@ -50,9 +61,15 @@ LEFT JOIN impact i USING (drive_id, ego_id, t_ns, object_id)
 WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- A contact at a step: the reason says whether the ego moved.
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.clearance_m, 0.0, false,
-    why(CASE WHEN e.fastest_3s_mps < standing_mps() THEN 'contact_standing' WHEN e.fastest_3s_mps IS NOT NULL THEN 'contact_moving' ELSE 'contact_speed_unknown' END,
-        {'depth_m': abs(p.clearance_m), 'fastest_3s_mps': e.fastest_3s_mps})
-FROM pair p
-LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
+-- Boxes that overlap while nobody moves show their errors, not a contact, and so does a person at the door of a standing car.
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, CASE WHEN NOT nobody_moves OR i.t_ns IS NOT NULL THEN p.clearance_m END, 0.0, false,
+    why(CASE WHEN nobody_moves AND i.t_ns IS NULL THEN 'boxes_of_nobody_moving' WHEN p.fastest_3s_mps < standing_mps() THEN 'contact_standing' WHEN p.fastest_3s_mps IS NOT NULL THEN 'contact_moving' ELSE 'contact_speed_unknown' END,
+        {'depth_m': abs(p.clearance_m), 'fastest_3s_mps': p.fastest_3s_mps})
+FROM (
+    SELECT p.*, e.fastest_3s_mps,
+        coalesce(e.fastest_3s_mps < standing_mps() AND (p.speed_mps < standing_mps() OR NOT may_be_vehicle(p.actor_class) AND p.speed_mps < $walking_mps), false) AS nobody_moves
+    FROM pair p
+    LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
+) p
+LEFT JOIN impact i USING (drive_id, ego_id, t_ns, object_id)
 WHERE p.clearance_m <= 0 AND NOT p.clearance_is_bound

@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- tags = ["excuses"]
+-- tags = ["excuses", "standing"]
 -- reads = ["ego_condition", "ego_mode", "ego_state"]
 -- requires = ["mode_headlights"]
 --

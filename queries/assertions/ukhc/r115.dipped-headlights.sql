@@ -7,6 +7,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["ego_condition", "ego_mode", "ego_state"]
 -- requires = ["mode_headlights"]
 --

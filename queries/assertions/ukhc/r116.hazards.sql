@@ -8,6 +8,7 @@
 -- status = "stable"
 -- law = ["gb"]
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["ego_condition", "ego_state"]
 -- requires = ["indicator"]
 --

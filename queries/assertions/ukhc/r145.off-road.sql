@@ -10,7 +10,7 @@
 -- unit = "m"
 -- observes = "reach onto the footway"
 -- merge_gap_s = 2.0
--- tags = ["excuses"]
+-- tags = ["excuses", "standing"]
 -- reads = ["ego_footway", "ego_state"]
 -- requires = ["map", "registration", "lane_types", "ego_size"]
 --

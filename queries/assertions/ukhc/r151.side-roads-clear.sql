@@ -8,6 +8,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["junction_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 -- without_time = "the log does not show the ego on its way into the junction: begin recording before it"

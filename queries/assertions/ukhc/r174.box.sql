@@ -9,6 +9,7 @@
 -- legal = "must"
 -- status = "draft"
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["junction_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 -- without_time = "the log does not show the ego on its way into the junction: begin recording before it"

@@ -8,7 +8,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- tags = ["excuses"]
+-- tags = ["excuses", "standing"]
 -- reads = ["crossing_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --

@@ -8,6 +8,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["crossing_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --

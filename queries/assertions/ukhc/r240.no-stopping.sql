@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- tags = ["excuses"]
+-- tags = ["excuses", "standing"]
 -- reads = ["ego_mode", "ego_state", "in_way", "standstill"]
 -- requires = ["map", "registration", "ego_size", "road_types"]
 --

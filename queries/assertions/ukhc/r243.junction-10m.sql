@@ -11,6 +11,7 @@
 -- sense = ">="
 -- unit = "m"
 -- observes = "way to the next junction"
+-- tags = ["standing"]
 -- reads = ["standstill"]
 -- requires = ["map", "registration", "ego_size"]
 --

@@ -7,6 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
+-- tags = ["standing"]
 -- reads = ["ego_state", "standstill"]
 -- requires = ["map", "registration", "handedness"]
 --

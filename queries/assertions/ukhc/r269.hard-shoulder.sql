@@ -8,7 +8,7 @@
 -- status = "stable"
 -- sense = "holds"
 -- merge_gap_s = 5.0
--- tags = ["excuses"]
+-- tags = ["excuses", "standing"]
 -- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet"]
 -- requires = ["map", "registration"]
 --

@@ -28,7 +28,8 @@ class Query(NamedTuple):
     """What one SELECT is made of.
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
-    `needs`: tables that must have rows for it to have any.
+    `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for
+    those that only word a reason, in lower case.
     """
 
     tables: frozenset[str]
@@ -37,6 +38,7 @@ class Query(NamedTuple):
     places: dict[str, str]
     reasons: tuple[GivenReason, ...] = ()
     needs: frozenset[str] = frozenset()
+    column_names: frozenset[str] = frozenset()
 
 
 class GivenReason(NamedTuple):
@@ -83,7 +85,8 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
         needs = tables_needing_rows(node) & found.tables.keys()
     except RecursionError as error:
         raise RuleError(f"{text.at(0)}: {_DEEP}") from error
-    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs)
+    names = frozenset(found.column_names)
+    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs, names)
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
@@ -111,12 +114,14 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _Found:
-    """Refuses what is not allowed in a syntax tree, and keeps the tables read (name -> file:line) and the reasons given."""
+    """Refuses what is not allowed in a syntax tree, and keeps the tables read (name -> file:line), the columns and the reasons."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
         self.tables: dict[str, str] = {}
         self.reasons: list[GivenReason] = []
+        self.column_names: set[str] = set()
+        self._worded: set[int] = set()
 
     def meet(self, part: Node, ctes: frozenset[str]) -> None:
         """Look at one node; `ctes`: the names of those in sight."""
@@ -157,6 +162,10 @@ class _Found:
             code, *rest = part["children"]
             arguments = _fields(rest[0]) if rest else frozenset[str]()
             self.reasons += [GivenReason(each, arguments, place) for each in _results(code)]
+            # what only words a reason decides nothing; a parent is met before its children
+            self._worded.update(id(each) for each, _ in walk(part["children"]) if each.get("class") == "COLUMN_REF")
+        if kind == "COLUMN_REF" and id(part) not in self._worded:
+            self.column_names.add(part["column_names"][-1].lower())
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed.REFUSED_NAMES:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_type_hints
 import msgspec
 
 from drivelint.drive import conditions
+from drivelint.drive.trace import Quantity  # noqa: TC001 - msgspec reads it
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
@@ -65,6 +66,8 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT: Final = "contact"
 """Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+STANDING: Final = "standing"
+"""Tag of the rules that an ego which never moves is judged by, too."""
 EXCUSES: Final = "excuses"
 """Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
 OTHERS: Final = "road_users"
@@ -104,6 +107,8 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     merge_gap_s: Seconds = 1.0
     tags: tuple[str, ...] = ()
     """What reports know a rule by: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
+    unaffected_by: tuple[Quantity, ...] = ()
+    """Quantities that may be doubted without making a step unknown, although the rule reads columns made of them."""
     law: tuple[str, ...] = ()
     """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
     applies: Conditions = Conditions()

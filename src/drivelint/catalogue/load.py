@@ -58,6 +58,8 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Section -> its columns; @reference is missing here when it selects a star."""
     reason_codes: frozenset[str]
     """The codes that its SQL names as reasons."""
+    quantities: frozenset[str]
+    """What of the actors it uses (position, size, ...), as the columns that it reads declare."""
     occasion_needs: frozenset[str]
     """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
 
@@ -161,8 +163,25 @@ def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes) -> Rul
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
         columns={name: query.columns for name, query in queries.items() if query.columns is not None},
         reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
+        quantities=_quantities(header, queries),
         occasion_needs=next((queries[name].needs for name in ("reference", "applies") if name in queries), frozenset()),
     )
+
+
+def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
+    """Return what of the actors a rule uses: what the columns that it names are made of, and that there is somebody at all."""
+    declared = store.column_quantities()
+    # a table of events that the header names hands over all its columns: those count that the other sections name
+    named = {
+        name
+        for section, query in queries.items()
+        if not (header.reference and section == "reference")
+        for name in query.column_names
+    }
+    used = {"existence", "identity"} | ({"position"} if header.reference else set())
+    for table in header.reads:
+        used.update(*(quantities for column, quantities in declared.get(table, {}).items() if column in named))
+    return frozenset(used.difference(header.unaffected_by))
 
 
 def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:

@@ -14,9 +14,12 @@ from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
+from drivelint.drive.implausible import implausible_motion
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.same_body import false_entries, same_bodies
+from drivelint.drive.sizes import resolve_sizes
 from drivelint.drive.trace import (
     ASSUMED_MOTION,
     BRAKE_LIGHTS,
@@ -24,6 +27,7 @@ from drivelint.drive.trace import (
     LEAST_UTC_NS,
     SIZE_COLUMNS,
     STATE_COLUMNS,
+    Doubt,
     QualityFinding,
     Trace,
 )
@@ -40,7 +44,7 @@ if TYPE_CHECKING:
 LONGEST_ID = 1000
 """Characters of an actor's id; every finding about the actor repeats it."""
 TRACE_TABLES = (
-    "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality",
+    "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality", "doubt",
 )  # fmt: skip
 """The tables of `schemas/model.sql` that a trace has, in its order."""
 
@@ -89,11 +93,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors = actor_rows.from_table(recording.actors, states, split.alias)
     egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, needed=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
+    findings += resolve_sizes(states, actors)
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
         findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
+        findings += implausible_motion(states, step, actors, derived=derived)
+        findings += [*same_bodies(states, actors, egos), *false_entries(states, step)]
     findings += _lights(states, egos)
     missed = [each for each in missed if each.ego_id in egos]
     states = absence.with_absent_states(states, missed, recording.frames_ns)
@@ -132,6 +139,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     }
     tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
     tables["quality"] = _quality(drive, findings)
+    tables["doubt"] = _doubts(drive, findings)
     return Trace(
         drive,
         path,
@@ -233,7 +241,14 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
 def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return owned_table("quality", drive, [vars(row) for row in rows])
+    names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
+    return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows])
+
+
+def _doubts(drive: str, findings: list[QualityFinding]) -> pa.Table:
+    rows = sorted({(*doubt, finding.check_id) for finding in findings for doubt in finding.doubts})
+    names = (*Doubt._fields, "code")
+    return owned_table("doubt", drive, [dict(zip(names, row, strict=True)) for row in rows])
 
 
 def _nullable(values: Floats) -> pa.Array:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import displacements, extent, known_motion
+from drivelint.drive.order import displacements, extent, known_motion, track_starts
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -19,6 +19,12 @@ MISMATCH_MPS = 1.0
 MISMATCH_SHARE = 0.15
 """Velocities mismatch the positions if over a second their displacements differ by more than this (see `checks.VELOCITY_MISMATCH_MPS`)."""
 MISMATCH_WINDOW_NS = 1_000_000_000
+END_ZERO_LEAST_MPS = 1.0
+"""A first or last sample with velocity 0 is none if the positions beside it, and the next sample, move faster than that."""
+BIAS_SHARE = 0.05
+BIAS_LEAST_M = 50.0
+BIAS_LEAST_MPS = 2.0
+"""Over 50 m of way the ratio of velocities to positions is known to about 1 %; a speedometer, or an axle on a bend, is off by up to 5 %."""
 LEAST_MISMATCHES = 20
 """At least so many one-second windows must mismatch; single steps are too noisy to compare."""
 
@@ -33,7 +39,37 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
     for name in STATE_COLUMNS:
         states.numbers.setdefault(name, np.full(n, np.nan))
     starts = np.flatnonzero(np.r_[True, ~step.same])
-    return _velocity(states, step, starts, most_replaced_share) + _acceleration(states, starts)
+    return [
+        *_end_zeros(states, step, starts),
+        *_velocity(states, step, starts, most_replaced_share),
+        *_acceleration(states, starts),
+    ]
+
+
+def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
+    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it stands for none."""
+    n = len(states)
+    if n < 3:
+        return []
+    ends = np.r_[starts[1:], n] - 1
+    long = ends - starts >= 2
+    end = np.r_[starts[long], ends[long]]
+    inner = np.r_[starts[long] + 1, ends[long] - 1]
+    first = np.minimum(end, inner)
+    v, dt_s = states.velocity, np.where(step.continuous[first], step.dt_s[first], np.nan)
+    moved = (states.place[:, first + 1] - states.place[:, first]) / np.where(dt_s > 0.0, dt_s, np.nan)
+    zero = (
+        (v[:, end] == 0.0).all(axis=0)
+        & (np.hypot(*v[:, inner]) > END_ZERO_LEAST_MPS)
+        & (np.hypot(*moved) > END_ZERO_LEAST_MPS)
+    )
+    rows = np.zeros(n, np.bool_)
+    rows[end[zero]] = True
+    for axis, name in enumerate(("vx_mps", "vy_mps")):
+        states.numbers[name] = states.numbers[name].copy()
+        states.numbers[name][end[zero]] = moved[axis, zero]
+    text = "velocity 0 in the first or last sample of {n} tracks that move there ({ids}): it is derived from positions"
+    return states.findings(rows, "velocity_end_derived", "warning", text)
 
 
 def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share: float) -> list[QualityFinding]:
@@ -41,7 +77,8 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
     absent = np.logical_and.reduceat(np.isnan(v).all(axis=0), starts)
     still = ~absent & np.logical_and.reduceat((v == 0.0).all(axis=0), starts)
     astray = ~absent & _astray(states, step, most_replaced_share)[states.actor[starts]]
-    if not (absent.any() or still.any() or astray.any()):
+    biased = ~absent & _biased(states, step, most_replaced_share)[states.actor[starts]]
+    if not (absent.any() or still.any() or astray.any() or biased.any()):
         return []
     false_zero = still & (np.nan_to_num(extent(states.place, starts)).max(axis=0) > MOVED_M)
     findings = []
@@ -49,6 +86,10 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         (absent, "no velocity in the log"),
         (false_zero, "velocity 0 throughout although the positions move"),
         (astray & ~still, "velocity that is not the motion of the positions"),
+        (
+            biased & ~astray & ~still,
+            "velocity that is too high or too low by a constant share, against the way of the positions",
+        ),
     ):
         if not which.any():
             continue
@@ -88,6 +129,37 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
+
+
+def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
+    """Say of each actor whether its velocities are off the way of its positions by the same share all along.
+
+    Both halves of the track must say so: a track that is displaced once is another fault.
+    """
+    biased, n = np.zeros(len(states.ids), np.bool_), len(states)
+    if n < 3 or most_replaced_share == 0.0:
+        return biased
+    known = known_motion(states, step)
+    v = (states.velocity[:, 1:] + states.velocity[:, :-1]) / 2.0
+    speed = np.hypot(*v)
+    moving = known & (speed > BIAS_LEAST_MPS)
+    led = np.where(moving, speed * step.dt_s, 0.0)
+    # along the velocity, so that noise across the way and at a standstill adds nothing
+    went = np.where(moving, np.sum(np.diff(states.place) * v, axis=0) / np.where(moving, speed, 1.0), 0.0)
+    actor, count = states.actor[:-1], len(states.ids)
+    ways = np.bincount(actor, went, count)
+    until = np.r_[0.0, np.cumsum(led)]
+    half = until[1:] - until[track_starts(states.actor)][actor]
+    second = 2.0 * half > np.bincount(actor, led, count)[actor]
+    off = np.ones(count, np.bool_)
+    side = np.zeros(count)
+    for part in (second, ~second):
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratio = np.bincount(actor[part], led[part], count) / np.bincount(actor[part], went[part], count)
+        off &= np.abs(ratio - 1.0) > BIAS_SHARE
+        side += np.sign(ratio - 1.0)
+    biased = off & (np.abs(side) == 2.0) & (ways > BIAS_LEAST_M)
+    return biased & bool(ways[biased].sum() <= most_replaced_share * ways.sum())
 
 
 def _suspicious(states: States, k: int) -> bool:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Indices, Mask, Times
 
 Severity = Literal["info", "warning", "error"]
+Quantity = Literal["existence", "identity", "position", "heading", "velocity", "size", "class"]
 
 STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 """The double columns of `actor_state`, in its order."""
@@ -163,9 +164,18 @@ class Trace:
     in_log_order: bool = False
 
 
+class Doubt(NamedTuple):
+    """One row of `doubt`, still without its drive and its code, which is that of the quality finding it belongs to."""
+
+    actor_id: str
+    quantity: Quantity
+    t_from_ns: int
+    t_to_ns: int
+
+
 @dataclass(frozen=True)
 class QualityFinding:
-    """One row of `quality`, still without its drive."""
+    """One row of `quality`, still without its drive, and what it makes doubtful."""
 
     check_id: str
     severity: Severity
@@ -174,6 +184,7 @@ class QualityFinding:
     t_first_ns: int | None = None
     actor_id: str | None = None
     t_last_ns: int | None = None
+    doubts: tuple[Doubt, ...] = ()
 
     @classmethod
     def unusable_map(cls, message: str) -> QualityFinding:
@@ -258,15 +269,45 @@ class States:
             np.concatenate([part.not_finite for part in parts]),
         )
 
-    def findings(self, rows: Mask, check_id: str, severity: Severity, text: str) -> list[QualityFinding]:
-        """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}."""
+    def findings(
+        self,
+        rows: Mask,
+        check_id: str,
+        severity: Severity,
+        text: str,
+        *,
+        quantity: Quantity | None = None,
+    ) -> list[QualityFinding]:
+        """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}.
+
+        `quantity`: what the finding makes doubtful at those rows, None: nothing. The rows are then in order.
+        """
         n = int(rows.sum())
         if not n:
             return []
         ids = [self.ids[i] for i in np.unique(self.actor[rows])]
         message = text.format(n=n, of=len(self), ids=listed(ids))
         only = ids[0] if len(ids) == 1 else None
-        return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only)]
+        doubts = () if quantity is None else self.doubts(rows, quantity)
+        return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only, doubts=doubts)]
+
+    def doubts(self, rows: Mask, quantity: Quantity) -> tuple[Doubt, ...]:
+        """Return a doubt for each run of rows of a mask (n, in order), which reaches to just before the samples beside the run.
+
+        So a state that is interpolated between a sample in doubt and its neighbour is in doubt too.
+        """
+        change = self.actor[1:] != self.actor[:-1]
+        first = np.flatnonzero(rows & np.r_[True, change | ~rows[:-1]])
+        last = np.flatnonzero(rows & np.r_[change | ~rows[1:], True])
+        first_of_track, last_of_track = np.r_[True, change], np.r_[change, True]
+        before, after = np.r_[self.t_ns[:1], self.t_ns[:-1]], np.r_[self.t_ns[1:], self.t_ns[-1:]]
+        from_ns = np.where(first_of_track[first], self.t_ns[first], before[first] + 1)
+        to_ns = np.where(last_of_track[last], self.t_ns[last], after[last] - 1)
+        names = [self.ids[i] for i in self.actor[first]]
+        return tuple(
+            Doubt(name, quantity, int(t_from), int(t_to))
+            for name, t_from, t_to in zip(names, from_ns, to_ns, strict=True)
+        )
 
 
 class LostTime(NamedTuple):

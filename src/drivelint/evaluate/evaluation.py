@@ -47,6 +47,7 @@ class Evaluation:
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
+    _has_doubts: bool = field(default=False, init=False)
     _empty: set[str] = field(default_factory=set, init=False)
 
     def judge(self) -> None:
@@ -123,6 +124,9 @@ class Evaluation:
         self._run("watched")
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
         self._empty = store.empty_tables(self.con)
+        self._has_doubts = "doubt" not in self._empty
+        if self._has_doubts:
+            temp_tables.create_doubts(self.con, self.bindings)
         quick = [b for b in self.bindings if self._is_quick(b)]
         if quick:
             objects = any(binding.rule.per_object for binding in quick)
@@ -156,6 +160,8 @@ class Evaluation:
         n_steps = -1
         if quick:
             self._execute(invariant.first_pass_sql(rule, partial), binding)
+            if self._has_doubts:
+                self._execute(statement("judging/doubt_of_groups"), binding)
             n_steps = self._count(
                 f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
             )
@@ -172,6 +178,9 @@ class Evaluation:
             return
         if self._check_engagement or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
             self._execute(statement("judging/error_of_grid"), binding)
+        if self._has_doubts:
+            self._execute(statement("judging/doubt_of_short_time"), binding)
+        self._doubt_steps(binding, "object_id")
         self._execute(invariant.episodes_sql(rule), binding)
         if self._has_holes:
             self._execute(statement("judging/outcome_of_holes"), binding)
@@ -190,9 +199,15 @@ class Evaluation:
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
         self._execute(reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding)
+        self._doubt_steps(binding, "coalesce(nullif(who, ''), object_id)")
         self._execute(statement("judging/error_of_references"), binding)
         self._execute(reference_points.outcomes_sql(rule, own_object), binding)
         self._leave(binding)
+
+    def _doubt_steps(self, binding: Binding, whom: str) -> None:
+        """Take back what was judged by data in doubt; `whom`: the object of a step, in SQL."""
+        if self._has_doubts:
+            self._execute(statement("judging/doubt_of_steps", object=whom), binding)
 
     def _leave(self, binding: Binding) -> None:
         if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.catalogue.header import CONTACT, OTHERS
+from drivelint.catalogue.header import CONTACT, OTHERS, STANDING
 from drivelint.drive import conditions
 from drivelint.evaluate import applicability
 from drivelint.sql import store
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """Tables that hold what rules found; those of a second connection are appended to them."""
 _ALLOWED = pa.schema([("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))])
+_QUANTITIES = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
 _MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
@@ -40,6 +41,12 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     return {int(no): int(n) for no, n in counts}
 
 
+def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
+    """Create the table of the steps that rules may not judge: the log is doubted there in what they use."""
+    with store.registered(con, {"_rule_quantity": _quantities(bindings)}):
+        con.execute(statement("judging/doubted"))
+
+
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
     told = ("kind", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
     rows = []
@@ -48,7 +55,11 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
-        row |= {"of_lanes": "registration" in rule.requires, "of_contact": CONTACT in rule.tags}
+        row |= {
+            "of_lanes": "registration" in rule.requires,
+            "of_contact": CONTACT in rule.tags,
+            "of_standing": STANDING in rule.tags,
+        }
         row |= {"by_object": rule.combine == "each"}
         limits = applicability.bound_values(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
@@ -61,6 +72,11 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
         for b in bindings
         for pos, signal in enumerate(b.rule.needed)
     ])  # fmt: skip
+
+
+def _quantities(bindings: Sequence[Binding]) -> pa.Table:
+    pairs = [(b.no, quantity) for b in bindings for quantity in sorted(b.rule.quantities)]
+    return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITIES)
 
 
 def _allowed(bindings: Sequence[Binding]) -> pa.Table:

@@ -32,6 +32,8 @@ _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
+_QUANTITIES = re.compile(r"\{([a-z, ]+)\}$")
+"""Ends the comment of a column that is made of these quantities of the ego or of another actor."""
 
 
 def quoted(text: object) -> str:
@@ -229,6 +231,19 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+
+
+@cache
+def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
+    """Return table -> column -> the quantities of actors that it is made of, for the columns whose comment ends in a list of them."""
+    return {
+        table: {
+            name: frozenset(words[1].split(", "))
+            for name, text in columns.items()
+            if (words := _QUANTITIES.search(text))
+        }
+        for table, columns in column_comments().items()
+    }
 
 
 @cache

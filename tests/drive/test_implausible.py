@@ -1,0 +1,188 @@
+"""What nobody does is doubted, what somebody may do is not; sizes and velocities that the positions contradict are mended and said."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.formats.logs import read
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.drive.trace import Trace
+
+Columns = dict[str, Any]
+CAR: Columns = {"actor_class": "car", "length_m": 4.5, "width_m": 1.8}
+
+
+def track(speed: float = 13.0, *, n: int = 100, hz: float = 10.0, heading: float = 0.0, **more: Any) -> Columns:
+    """Return the columns of a straight track, with its velocity."""
+    t_s = np.arange(n) / hz
+    return {
+        "t_ns": np.round(t_s * 1e9).astype(np.int64), "x_m": speed * t_s * np.cos(heading), "y_m": speed * t_s * np.sin(heading),
+        "yaw_rad": np.full(n, heading), "vx_mps": np.full(n, speed * np.cos(heading)), "vy_mps": np.full(n, speed * np.sin(heading)),
+        **CAR, **more,
+    }  # fmt: skip
+
+
+def drive(folder: Path, **tracks: Columns) -> Trace:
+    """Read tracks, by id, as one log; the ego is `ego`, 50 m aside."""
+    ego = track(5.0)
+    ego["y_m"] = ego["y_m"] + 50.0
+    rows = pl.concat([pl.DataFrame(columns | {"actor_id": name}) for name, columns in {"ego": ego, **tracks}.items()])
+    path = folder / "log.parquet"
+    rows.with_columns(is_ego=pl.col("actor_id") == "ego").write_parquet(path)
+    return read(path)
+
+
+def doubts(trace: Trace) -> set[tuple[str, str, str]]:
+    return {(row["actor_id"], row["quantity"], row["code"]) for row in trace.tables["doubt"].to_pylist()}
+
+
+def checks(trace: Trace) -> set[str]:
+    return {row["check_id"] for row in trace.tables["quality"].to_pylist()}
+
+
+def actor(trace: Trace, name: str) -> dict[str, Any]:
+    (row,) = (row for row in trace.tables["actor"].to_pylist() if row["actor_id"] == name)
+    return row
+
+
+def speeds(trace: Trace, name: str) -> np.ndarray[Any, Any]:
+    rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] == name]
+    return np.array([np.hypot(row["vx_mps"] or np.nan, row["vy_mps"] or 0.0) for row in rows])
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    speed=st.floats(0.0, 40.0), accel=st.floats(-8.0, 4.0), turn=st.floats(-0.5, 0.5), hz=st.sampled_from([5.0, 10.0, 20.0]),
+    noise=st.floats(0.0, 0.02), seed=st.integers(0, 9),
+)  # fmt: skip
+def test_what_can_be_driven_is_not_doubted(
+    tmp_path: Path, *, speed: float, accel: float, turn: float, hz: float, noise: float, seed: int
+) -> None:
+    t_s = np.arange(80) / hz
+    v = np.maximum(speed + accel * t_s, 0.0)
+    rate = np.sign(turn) * np.minimum(abs(turn), np.minimum(8.0 / np.maximum(v, 0.1), v / 6.0))  # 8 m/s2, 6 m radius
+    yaw = np.cumsum(np.r_[0.0, (rate[1:] + rate[:-1]) / 2 / hz])
+    vx, vy = v * np.cos(yaw), v * np.sin(yaw)
+    place = [np.cumsum(np.r_[0.0, (u[1:] + u[:-1]) / 2 / hz]) for u in (vx, vy)]
+    shake = np.random.default_rng(seed).normal(0.0, noise, (2, len(t_s)))
+    car = track(n=80, hz=hz) | {
+        "x_m": place[0] + shake[0], "y_m": place[1] + shake[1], "yaw_rad": yaw, "vx_mps": vx, "vy_mps": vy,
+    }  # fmt: skip
+    assert not {row for row in doubts(drive(tmp_path, car=car)) if row[0] == "car"}
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.0, -1.2])
+def test_a_jolt_there_and_back(tmp_path: Path, heading: float) -> None:
+    car = track(heading=heading)
+    car["vx_mps"][40], car["vy_mps"][40] = 1.2 * car["vx_mps"][40], 1.2 * car["vy_mps"][40]
+    trace = drive(tmp_path, car=car)
+    assert doubts(trace) == {("car", "velocity", "velocity_jolt")}
+    (row,) = trace.tables["doubt"].to_pylist()
+    assert (row["t_from_ns"], row["t_to_ns"]) == (3_900_000_001, 4_099_999_999)
+
+
+def test_an_impact_is_no_jolt(tmp_path: Path) -> None:
+    car = track()
+    for name in ("vx_mps",):
+        car[name][40:] = 7.0
+    car["x_m"] = np.cumsum(np.r_[0.0, (car["vx_mps"][1:] + car["vx_mps"][:-1]) / 20.0])
+    assert not doubts(drive(tmp_path, car=car))
+
+
+def test_a_step_aside_and_back(tmp_path: Path) -> None:
+    bike = track(5.0, actor_class="bicycle", length_m=1.8, width_m=0.6)
+    bike["y_m"][50:60] += 1.0
+    trace = drive(tmp_path, bike=bike)
+    assert doubts(trace) == {("bike", "position", "position_step")}
+    spans = sorted((row["t_from_ns"], row["t_to_ns"]) for row in trace.tables["doubt"].to_pylist())
+    assert spans[0][0] <= 4_900_000_000
+    assert spans[-1][1] >= 6_000_000_000
+
+
+def test_who_is_hit_and_moved_is_not_doubted(tmp_path: Path) -> None:
+    person = track(2.0, actor_class="pedestrian", length_m=0.6, width_m=0.6)
+    person["vx_mps"][50:] = 0.0
+    person["x_m"][50:] = person["x_m"][50]
+    person["y_m"][50:] += 0.9
+    assert not doubts(drive(tmp_path, person=person))
+
+
+def test_a_standing_car_that_turns_on_the_spot(tmp_path: Path) -> None:
+    car = track(0.0)
+    car["yaw_rad"][30:33] = [0.3, 0.6, 0.9]
+    car["yaw_rad"][33:] = 1.2
+    assert doubts(drive(tmp_path, car=car)) == {("car", "heading", "heading_spin")}
+    person = car | {"actor_class": "pedestrian", "length_m": 0.6, "width_m": 0.6}
+    assert not doubts(drive(tmp_path, person=person))
+
+
+def test_a_pedestrian_as_fast_as_a_car(tmp_path: Path) -> None:
+    person = track(20.0, actor_class="pedestrian", length_m=0.6, width_m=0.6)
+    assert doubts(drive(tmp_path, person=person)) == {("person", "class", "class_implausible")}
+    assert not doubts(drive(tmp_path, person=track(9.0, actor_class="pedestrian", length_m=0.6, width_m=0.6)))
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.5])
+def test_swapped_sizes_of_who_moves_are_exchanged(tmp_path: Path, heading: float) -> None:
+    trace = drive(tmp_path, car=track(heading=heading, length_m=1.8, width_m=4.5))
+    assert (actor(trace, "car")["length_m"], actor(trace, "car")["width_m"]) == (4.5, 1.8)
+    assert "size_turned" in checks(trace)
+    assert not doubts(trace)
+
+
+def test_swapped_sizes_of_who_stands_are_unknown(tmp_path: Path) -> None:
+    trace = drive(tmp_path, car=track(0.0, length_m=1.8, width_m=4.5))
+    assert (actor(trace, "car")["length_m"], actor(trace, "car")["width_m"]) == (None, None)
+    assert "size_unknown" in checks(trace)
+
+
+def test_a_box_that_is_hardly_wider_than_long_stays(tmp_path: Path) -> None:
+    trace = drive(tmp_path, car=track(0.0, length_m=1.7, width_m=1.8))
+    assert (actor(trace, "car")["length_m"], actor(trace, "car")["width_m"]) == (1.7, 1.8)
+
+
+def test_a_size_that_nobody_has(tmp_path: Path) -> None:
+    assert doubts(drive(tmp_path, car=track(width_m=0.18))) == {("car", "size", "size_implausible")}
+    assert not doubts(drive(tmp_path, car=track(length_m=14.6, width_m=2.6)))  # a lorry that is recorded as a car
+
+
+@pytest.mark.parametrize("row", [0, -1])
+def test_a_velocity_of_zero_at_an_end_of_a_track(tmp_path: Path, row: int) -> None:
+    car = track()
+    car["vx_mps"][row] = 0.0
+    trace = drive(tmp_path, car=car)
+    assert speeds(trace, "car") == pytest.approx(13.0, abs=1e-6)
+    assert "velocity_end_derived" in checks(trace)
+
+
+def test_who_stops_or_sets_off_at_an_end_of_the_log_keeps_its_zero(tmp_path: Path) -> None:
+    car = track()
+    car["vx_mps"] = np.maximum(0.0, np.linspace(8.0, 0.0, 100))
+    car["x_m"] = np.cumsum(np.r_[0.0, (car["vx_mps"][1:] + car["vx_mps"][:-1]) / 20.0])
+    assert "velocity_end_derived" not in checks(drive(tmp_path, car=car))
+
+
+@pytest.mark.parametrize("share", [0.8, 1.2])
+def test_a_velocity_with_a_constant_bias_gives_way_to_the_positions(tmp_path: Path, share: float) -> None:
+    car = track(15.6)
+    car["vx_mps"] = share * car["vx_mps"]
+    trace = drive(tmp_path, car=car)
+    assert speeds(trace, "car") == pytest.approx(15.6, abs=0.05)
+    (said,) = (row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "velocity_derived")
+    assert "derived from positions" in said
+
+
+@pytest.mark.parametrize("share", [0.97, 1.04])
+def test_a_speedometers_error_is_none(tmp_path: Path, share: float) -> None:
+    car = track(15.6)
+    car["vx_mps"] = share * car["vx_mps"]
+    assert "velocity_derived" not in checks(drive(tmp_path, car=car))

@@ -1,0 +1,76 @@
+"""One body in two tracks is one, two bodies that collide are two; a track that begins elsewhere is not believed there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from tests.drive.test_implausible import doubts, drive, track
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TRUCK = {"actor_class": "truck", "length_m": 12.0, "width_m": 2.5}
+
+
+def moved(columns: dict[str, Any], x: float = 0.0, y: float = 0.0, rows: slice = slice(None)) -> dict[str, Any]:
+    """Return the rows of a track, moved by some metres."""
+    cut = {name: values[rows] if isinstance(values, np.ndarray) else values for name, values in columns.items()}
+    return cut | {"x_m": cut["x_m"] + x, "y_m": cut["y_m"] + y}
+
+
+@pytest.mark.parametrize("rows", [slice(None), slice(0, 60), slice(40, None)])
+def test_a_truck_that_is_tracked_twice(tmp_path: Path, rows: slice) -> None:
+    second = moved(track(**TRUCK), 1.5, 0.3, rows) | {"length_m": 8.0}
+    trace = drive(tmp_path, a=track(**TRUCK), b=second)
+    # of two tracks of one length, the first id counts
+    assert doubts(trace) == {("b", "identity", "same_body")}
+    (said,) = (row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "same_body")
+    assert "b is the same body as a" in said
+
+
+def test_a_rider_on_a_bicycle(tmp_path: Path) -> None:
+    bicycle = track(5.0, actor_class="bicycle", length_m=1.8, width_m=0.6)
+    rider = moved(track(5.0, actor_class="bicycle", length_m=0.9, width_m=0.6), 0.1)
+    assert doubts(drive(tmp_path, rider=rider, wheels=bicycle)) == {("wheels", "identity", "same_body")}
+
+
+def test_the_ego_is_believed(tmp_path: Path) -> None:
+    twin = track(5.0, n=200)
+    twin["y_m"] = twin["y_m"] + 50.2
+    assert doubts(drive(tmp_path, twin=twin)) == {("twin", "identity", "same_body")}
+
+
+def test_vehicles_side_by_side_or_in_a_queue_are_two(tmp_path: Path) -> None:
+    cars = {"a": track(), "b": moved(track(), y=1.9), "c": moved(track(), x=4.4)}
+    assert not doubts(drive(tmp_path, **cars))
+
+
+def test_who_collides_and_is_pushed_along_is_another(tmp_path: Path) -> None:
+    front = track(5.0)
+    front["x_m"] = front["x_m"] + 20.0
+    rear = track(10.0)
+    # from 4.0 s on the rear car lies 2.5 m deep in the front one, both at 7 m/s
+    for car, offset in ((front, 0.0), (rear, -2.0)):
+        car["vx_mps"][40:] = 7.0
+        car["x_m"][40:] = front["x_m"][40] + 7.0 * (np.arange(60) / 10.0) + offset
+    assert not {row for row in doubts(drive(tmp_path, front=front, rear=rear)) if row[2] == "same_body"}
+
+
+def test_a_track_that_begins_elsewhere(tmp_path: Path) -> None:
+    ghost = track(8.0)
+    ghost["x_m"][0] -= 2.5
+    ghost |= {"vx_mps": np.full(100, np.nan), "vy_mps": np.full(100, np.nan)}
+    trace = drive(tmp_path, ghost=ghost)
+    assert ("ghost", "existence", "false_entry") in doubts(trace)
+    (row,) = (row for row in trace.tables["doubt"].to_pylist() if row["code"] == "false_entry")
+    assert (row["t_from_ns"], row["t_to_ns"]) == (0, 99_999_999)
+
+
+def test_who_brakes_hard_as_it_comes_in_is_there(tmp_path: Path) -> None:
+    car = track(8.0)
+    car["vx_mps"] = np.maximum(0.0, 15.0 - np.arange(100))
+    car["x_m"] = np.cumsum(np.r_[0.0, (car["vx_mps"][1:] + car["vx_mps"][:-1]) / 20.0])
+    assert not doubts(drive(tmp_path, car=car))
