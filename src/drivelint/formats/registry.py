@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
+from drivelint.formats.argoverse2 import forecasting, sensor
 from drivelint.formats.commonroad import scenario
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.film import reader as film
@@ -31,6 +32,8 @@ READERS: Final[tuple[Reader, ...]] = (
     osi_file,
     scenario,
     fcd,
+    sensor,
+    forecasting,
     mapped_table,  # last: it accepts any text without markup
 )
 """The first that accepts a file reads it."""
