@@ -48,15 +48,14 @@ def integers(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
 
 
 def without_nameless(
-    path: Path, rows: pa.Table, name: str, time: str
-) -> tuple[pa.Table, list[QualityFinding], list[LostTime]]:
-    """Return the rows that have a track (`name`) and a time, what is said of the others, and when they were recorded."""
+    path: Path, rows: pa.Table, name: str, t_ns: Times, timed: Mask
+) -> tuple[Mask, list[QualityFinding], list[LostTime]]:
+    """Say which rows have a track (`name`) and a time (`timed`), and tell of the others: what they are, and when they were recorded."""
     ids = cast(path, rows, name, pa.string())
-    t_ns, timed = integers(path, rows, time)
     lost = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
     n = int(lost.sum())
     if not n:
-        return rows, [], []
-    what = f"{path.name}: rows without {name} or {time}"
+        return ~lost, [], []
+    what = f"{path.name}: rows without {name} or time"
     finding = QualityFinding("dropped_row", "error", f"{what}: {n}: they are not judged", n)
-    return rows.filter(pa.array(~lost)), [finding], times_of_lost_rows(t_ns, timed, lost, what)
+    return ~lost, [finding], times_of_lost_rows(t_ns, timed, lost, what)

@@ -60,8 +60,10 @@ def read(probe: Probe) -> Recording:
     """Read a scenario. Errors: `TraceError` for a damaged file, missing columns, several scenarios in one."""
     path = _scenario(probe.path)
     rows = _rows(path)
-    rows, findings, lost = cells.without_nameless(path, rows, "track_id", _TIME)
-    step, _ = cells.integers(path, rows, _TIME)
+    step, timed = cells.integers(path, rows, _TIME)
+    t_ns = _times(path, rows, step)
+    usable, findings, lost = cells.without_nameless(path, rows, "track_id", t_ns, timed)
+    rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     ids = pc.dictionary_encode(cells.cast(path, rows, "track_id", pa.string()))
     classes, notes = class_codes(cells.cast(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
     raw = cells.numbers(path, rows, _NUMBERS)
@@ -72,7 +74,7 @@ def read(probe: Probe) -> Recording:
         odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
         numbers[_NUMBERS[name]] = np.where(wrong, np.nan, values)
     states = States(
-        ids.dictionary.to_pylist(), ids.indices.to_numpy().astype(np.int32), _times(path, rows, step), numbers,
+        ids.dictionary.to_pylist(), ids.indices.to_numpy().astype(np.int32), t_ns, numbers,
         {"actor_class": classes}, odd,
     )  # fmt: skip
     _place_ego(states)

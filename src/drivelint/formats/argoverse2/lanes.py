@@ -45,6 +45,8 @@ _LINES: Final = {
 }  # fmt: skip
 _COLOURS: Final = {"WHITE": "white", "YELLOW": "yellow", "BLUE": "blue"}
 _SIDES: Final = ("left", "right")
+_UNREADABLE: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
+"""What a part of the file raises that is not as it should be."""
 _COMMON_GROUND_M2: Final = 1.0
 """Lanes of which more lies over each other share the ground of a junction."""
 _LEVEL_M: Final = 3.0
@@ -52,11 +54,17 @@ _LEVEL_M: Final = 3.0
 
 
 class _Segment(NamedTuple):
-    """A lane segment: what the file says, and its bounds (n, 3) in metres."""
+    """A lane segment: its bounds (n, 3) in metres, and the rest as the file says it, other lanes by their ids."""
 
-    said: Mapping[str, Any]
     left: Floats
     right: Floats
+    lane_type: str
+    is_intersection: bool
+    successors: tuple[str, ...]
+    left_id: str | None
+    right_id: str | None
+    left_mark: str
+    right_mark: str
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
@@ -71,9 +79,12 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         first = next((row["message"] for row in quality.rows), "it has no lane segment")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
     for lane in lanes:
-        segment = segments[lane.lanelet_id]
-        sides = ((segment.left, lane.line.left), (segment.right, lane.line.right))
-        lane.z = sum(_heights(bound, points - request.offset) for bound, points in sides) / 2
+        segment, line = segments[lane.lanelet_id], lane.line
+        left, right = (
+            _heights(segment.left, line.left - request.offset),
+            _heights(segment.right, line.right - request.offset),
+        )
+        lane.z = (left + right) / 2
     _name_junctions(lanes, segments)
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", "rht")], quality)
     walks = _walks(archive.get("pedestrian_crossings", {}), quality)
@@ -100,17 +111,37 @@ def _segments(said: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segmen
     found: dict[str, _Segment] = {}
     for key, segment in said.items():
         try:
-            bounds = [_points(segment[f"{side}_lane_boundary"]) for side in _SIDES]
-            name = str(int(segment["id"]))
+            name = _name(segment["id"])
             if name in found:
                 raise ValueError("another one has its id")
-            found[name] = _Segment(segment, *bounds)
-            _lane(name, found)
-        except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-            found.pop(key, None)
-            what = f"no {error}" if isinstance(error, KeyError) else str(error)
-            quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {what}")
+            found[name] = _segment(segment)
+        except _UNREADABLE as error:
+            quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
     return found
+
+
+def _why(error: Exception) -> str:
+    return f"it has no {error}" if isinstance(error, KeyError) else str(error)
+
+
+def _segment(said: Mapping[str, Any]) -> _Segment:
+    """Return a segment. Errors: those of `_UNREADABLE`."""
+    left, right = (None if (number := said[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
+    return _Segment(
+        left=_points(said["left_lane_boundary"]),
+        right=_points(said["right_lane_boundary"]),
+        lane_type=str(said["lane_type"]),
+        is_intersection=bool(said["is_intersection"]),
+        successors=tuple(map(_name, said["successors"])),
+        left_id=left,
+        right_id=right,
+        left_mark=str(said["left_lane_mark_type"]),
+        right_mark=str(said["right_lane_mark_type"]),
+    )
+
+
+def _name(number: Any) -> str:
+    return str(int(number))
 
 
 def _points(line: Any) -> Floats:
@@ -121,72 +152,57 @@ def _points(line: Any) -> Floats:
 
 def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
     segment = segments[name]
-    said = segment.said
-    kind, drivable = _KINDS.get(said["lane_type"], ("none", False))
+    kind, drivable = _KINDS.get(segment.lane_type, ("none", False))
     lane = BoundedLane(
         name, segment.left[:, :2], segment.right[:, :2], kind, drivable,
-        successors=tuple(to for to in map(_name, said["successors"]) if to in segments),
-        marks=tuple(Mark(side, 0.0, 1.0, *_marking(said[f"{side}_lane_mark_type"])) for side in _SIDES),
+        successors=tuple(to for to in segment.successors if to in segments),
+        marks=(_mark("left", segment.left_mark), _mark("right", segment.right_mark)),
     )  # fmt: skip
-    lane.left_id, lane.left_against = _neighbour(segment, "left", segments)
-    lane.right_id, lane.right_against = _neighbour(segment, "right", segments)
+    if other := segments.get(segment.left_id or ""):
+        lane.left_id, lane.left_against = segment.left_id, _is_against(segment.left, other.right, other.left)
+    if other := segments.get(segment.right_id or ""):
+        lane.right_id, lane.right_against = segment.right_id, _is_against(segment.right, other.left, other.right)
     return lane
 
 
-def _name(number: Any) -> str | None:
-    return None if number is None else str(int(number))
-
-
-def _marking(word: str) -> tuple[str | None, None, str | None]:
-    """Return marking, lane change (never known) and colour of a mark type."""
-    line, _, colour = word.rpartition("_")
-    if word == "NONE":
-        return "none", None, None
-    return _LINES.get(line), None, _COLOURS.get(colour)
-
-
-def _neighbour(segment: _Segment, side: str, segments: Mapping[str, _Segment]) -> tuple[str | None, bool | None]:
-    """Return the lane on one side, and whether it is driven the other way: then the two have the bound of the same side in common."""
-    name = _name(segment.said[f"{side}_neighbor_id"])
-    if name is None or name not in segments:
-        return None, None
-    other = segments[name]
-    own, same, facing = (segment.left, other.right, other.left) if side == "left" else (segment.right, other.left, other.right)
+def _is_against(own: Floats, with_it: Floats, against: Floats) -> bool:
+    """Say whether a bound is rather one of the other lane's that runs against it than the one that runs with it."""
     ends = own[[0, -1], :2]
-    apart = [float(np.hypot(*(ends - line[[k, -1 - k], :2]).T).sum()) for line, k in ((same, 0), (facing, -1))]
-    return name, apart[1] < apart[0]
+    to_with, to_against = (
+        float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
+    )
+    return to_against < to_with
+
+
+def _mark(side: str, word: str) -> Mark:
+    line, _, colour = word.rpartition("_")
+    return Mark(side, 0.0, 1.0, "none" if word == "NONE" else _LINES.get(line), color=_COLOURS.get(colour))
 
 
 def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
     """Name the types of lanes and markings that are not read."""
-    types, marks = Counter[str](), Counter[str]()
+    words = Counter[str]()
     for segment in segments:
-        types[segment.said["lane_type"]] += 1
-        marks.update(segment.said[f"{side}_lane_mark_type"] for side in _SIDES)
-    unread = {word: n for word, n in types.items() if word not in _KINDS}
-    unread |= {word: n for word, n in marks.items() if word != "UNKNOWN" and _marking(word)[0] is None}
-    if unread:
-        listed = ", ".join(f"{word} ({n})" for word, n in sorted(unread.items()))
+        words.update([segment.lane_type] if segment.lane_type not in _KINDS else [])
+        marks = (segment.left_mark, segment.right_mark)
+        words.update(word for word in marks if word != "UNKNOWN" and _mark("", word).marking is None)
+    if words:
+        listed = ", ".join(f"{word} ({n})" for word, n in sorted(words.items()))
         message = f"types of lanes and markings that are not read: {listed}"
-        quality.add("unknown_word", "info", None, message, sum(unread.values()))
+        quality.add("unknown_word", "info", None, message, words.total())
 
 
 def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
     """Say of how many lanes the map does not have what follows or lies beside: it is cut out of a larger one."""
-    said = [segment.said for segment in segments.values()]
-    lost = {
-        "lanes that follow": sum(_name(to) not in segments for each in said for to in each["successors"]),
-        "lanes beside": sum(
-            each[f"{side}_neighbor_id"] is not None and _name(each[f"{side}_neighbor_id"]) not in segments
-            for each in said
-            for side in _SIDES
-        ),
-    }
-    n = sum(lost.values())
-    if n:
-        counts = " and ".join(f"{count} {what}" for what, count in lost.items() if count)
-        message = f"the map is cut out of a larger one: it names {counts} others, which it does not have"
-        quality.add("missing_link", "info", None, message, n)
+    behind = sum(to not in segments for segment in segments.values() for to in segment.successors)
+    beside = sum(
+        name is not None and name not in segments
+        for segment in segments.values()
+        for name in (segment.left_id, segment.right_id)
+    )
+    if behind or beside:
+        message = f"the map is cut out of a larger one: {behind} lanes that follow and {beside} lanes beside others are not in it"
+        quality.add("missing_link", "info", None, message, behind + beside)
 
 
 def _heights(bound: Floats, points: Floats) -> Floats:
@@ -200,7 +216,7 @@ def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segmen
 
     Those are of one junction that begin or end at the same lane, follow each other, lie side by side, or over the same ground.
     """
-    inside = {lane.lanelet_id: lane for lane in lanes if segments[lane.lanelet_id].said["is_intersection"]}
+    inside = {lane.lanelet_id: lane for lane in lanes if segments[lane.lanelet_id].is_intersection}
     parent = {name: name for name in inside}
 
     def root(name: str) -> str:
@@ -249,10 +265,9 @@ def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     for key, crossing in said.items():
         try:
             first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
-            name = str(int(crossing["id"]))
-        except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-            message = f"crossing {key} is left out: {error!r}"
-            quality.add("invalid_lane", "error", key, message)
+            name = _name(crossing["id"])
+        except _UNREADABLE as error:
+            quality.add("invalid_lane", "error", key, f"crossing {key} is left out: {_why(error)}")
             continue
         if len(first) and len(second) and float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
             second = second[::-1]

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.formats.probe import Probe
 
 NAME: Final = "argoverse2-sensor"
@@ -60,11 +60,14 @@ def read(probe: Probe) -> Recording:
     """Read a log. Errors: `TraceError` for damaged files, missing columns, and a log without annotations."""
     file, notes = _annotations(probe.path)
     rows = ipc.table(file, (_TIME, "track_uuid", "category", *_SIZE, *_PLACE, *_TURN))
-    rows, findings, lost = cells.without_nameless(file, rows, "track_uuid", _TIME)
-    t_ns, _ = cells.integers(file, rows, _TIME)
+    t_ns, timed = cells.integers(file, rows, _TIME)
+    usable, findings, lost = cells.without_nameless(file, rows, "track_uuid", t_ns, timed)
+    rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     steps, step = np.unique(t_ns, return_inverse=True)
     if not len(steps):
-        raise TraceError(f"{file}: no annotations: nothing says who was around the vehicle: give a log that is annotated")
+        raise TraceError(
+            f"{file}: no annotations: nothing says who was around the vehicle: give a log that is annotated"
+        )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
     findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
     others, more = _others(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
@@ -91,9 +94,7 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
     values = np.stack(list(cells.numbers(path, rows, (*_PLACE, *_TURN)).values()), axis=1)[timed]
     order = np.argsort(stamps[timed], kind="stable")
     stamps, values = stamps[timed][order], values[order]
-    known = np.zeros(len(t_ns), np.bool_)
-    at = np.searchsorted(stamps, t_ns)
-    known[at < len(stamps)] = (stamps[at[at < len(stamps)]] == t_ns[at < len(stamps)])
+    known, at = np.isin(t_ns, stamps), np.searchsorted(stamps, t_ns)
     twice = (stamps[1:] == stamps[:-1]) & (values[1:] != values[:-1]).any(axis=1)
     known &= ~np.isin(t_ns, stamps[1:][twice])
     found = np.full((len(t_ns), values.shape[1]), np.nan)
@@ -102,15 +103,15 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
     return Poses(found[:, :3], unit_quaternions(found[:, 3:]))
 
 
-def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Floats) -> list[QualityFinding]:
+def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
     """Return the finding on time stamps without a pose: whoever is annotated there, and the ego, is present and not placed."""
     missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
     if not missing.any():
         return []
     n, boxes, first = int(missing.sum()), int(n_boxes[missing].sum()), int(steps[missing][0])
     message = (
-        f"{POSES_FILE} has no single pose at {n} of {len(steps)} time stamps of the annotations, the first {first}: the ego and {boxes} boxes "
-        "are present there but not placed"
+        f"{POSES_FILE} has no pose, or several, at {n} of {len(steps)} time stamps of the annotations, the first {first}: the ego and "
+        f"{boxes} boxes are present there but not placed"
     )
     return [QualityFinding("frame_unresolved", "error", message, n, first)]
 
