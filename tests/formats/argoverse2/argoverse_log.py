@@ -7,8 +7,8 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
-import pyarrow.feather as feather
 import pyarrow.parquet as pq
+from pyarrow import feather
 
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
@@ -102,7 +102,9 @@ def segment(number: int, left: list[Row], right: list[Row], **more: Any) -> Row:
     }  # fmt: skip
 
 
-def straight(number: int, y: float = 0.0, begin: float = -50.0, end: float = 150.0, width: float = 4.0, **more: Any) -> Row:
+def straight(
+    number: int, y: float = 0.0, begin: float = -50.0, end: float = 150.0, width: float = 4.0, **more: Any
+) -> Row:
     """Return a straight lane along x, driven from `begin` to `end`, its middle at y."""
     half = width / 2 if end > begin else -width / 2
     z = more.pop("z", 0.0)

@@ -25,7 +25,9 @@ def test_tracks_by_step(tmp_path: Path) -> None:
     assert (log(trace)["format"], log(trace)["utc_start_ns"]) == ("argoverse2-forecasting", None)
     rows = states(trace, "7")
     assert [row["t_ns"] for row in rows] == [START_NS + k * STEP_NS for k in range(20, 80)]
-    assert (rows[0]["x_m"], rows[0]["y_m"], rows[0]["yaw_rad"], rows[0]["vx_mps"]) == pytest.approx((10.0, 4.0, 0.0, 5.0))
+    assert (rows[0]["x_m"], rows[0]["y_m"], rows[0]["yaw_rad"], rows[0]["vx_mps"]) == pytest.approx(
+        (10.0, 4.0, 0.0, 5.0)
+    )
     assert rows[0]["z_m"] is None
     assert (actors(trace)["7"]["actor_class"], actors(trace)["7"]["length_m"]) == ("vehicle", None)
 
@@ -34,7 +36,7 @@ def test_the_vehicle_that_records_is_the_ego(tmp_path: Path) -> None:
     """Its point is the rear axle."""
     trace = read(scenario(tmp_path / "s", ROWS))
     ego = actors(trace)["AV"]
-    assert (ego["is_ego"], ego["actor_class"], ego["length_m"], ego["width_m"]) == (True, "car", 4.869, 2.127)
+    assert (ego["is_ego"], ego["actor_class"], ego["length_m"], ego["width_m"]) == (True, "car", 4.869, pytest.approx(2.127))
     first = states(trace, "AV")[0]
     assert (first["x_m"], first["y_m"]) == pytest.approx((1.339 * math.cos(0.1), 1.339 * math.sin(0.1)))
     assert quality(trace)["assumed_size"]["actor_id"] == "AV"
@@ -101,7 +103,11 @@ def test_a_scenario_without_its_vehicle_has_no_ego(tmp_path: Path) -> None:
 
 
 def test_numbers_that_are_none_and_rows_without_a_track(tmp_path: Path) -> None:
-    rows = [*track("AV", STEPS), *track("7", range(30), y=4.0, position_x=math.nan), {**track("8", [9])[0], "track_id": None}]
+    rows = [
+        *track("AV", STEPS),
+        *track("7", range(30), y=4.0, position_x=math.nan),
+        {**track("8", [9])[0], "track_id": None},
+    ]
     trace = read(scenario(tmp_path / "s", rows))
     assert {row["x_m"] for row in states(trace, "7")} == {None}
     assert len(states(trace, "7")) == 30

@@ -28,7 +28,11 @@ def test_a_rider_has_the_box_around_both(tmp_path: Path) -> None:
     trace = ridden(tmp_path, bike + rider)
     assert set(actors(trace)) == {"ego", "rider"}
     found = actors(trace)["rider"]
-    assert (found["actor_class"], found["length_m"], found["width_m"]) == ("bicycle", pytest.approx(1.8), pytest.approx(0.7))
+    assert (found["actor_class"], found["length_m"], found["width_m"]) == (
+        "bicycle",
+        pytest.approx(1.8),
+        pytest.approx(0.7),
+    )
     assert found["height_m"] == pytest.approx(1.3 - -0.75)
     first = states(trace, "rider")[0]
     assert (first["x_m"], first["y_m"], first["z_m"]) == pytest.approx((10.0, 2.0, (1.3 - 0.75) / 2))

@@ -145,8 +145,10 @@ def _name(number: Any) -> str:
 
 
 def _points(line: Any) -> Floats:
-    """Return the points (n, 3) of a line; a height that is not given is NaN."""
+    """Return the points (n, 3) of a line; a height that is not given is NaN. Errors: those of `_UNREADABLE`."""
     rows = [(point["x"], point["y"], point.get("z", np.nan)) for point in line]
+    if len(rows) < 2:
+        raise ValueError("a line has fewer than two points")
     return np.array(rows, np.float64).reshape(-1, 3)
 
 
@@ -244,6 +246,8 @@ def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> l
 
 def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
     """Return pairs of lanes that lie over the same ground, on one level."""
+    if not lanes:
+        return []
     areas = [lane.line.polygon for lane in lanes]
     pairs = shapely.STRtree(areas).query(areas, predicate="intersects").T
     found = []
@@ -269,7 +273,7 @@ def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
         except _UNREADABLE as error:
             quality.add("invalid_lane", "error", key, f"crossing {key} is left out: {_why(error)}")
             continue
-        if len(first) and len(second) and float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
+        if float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
             second = second[::-1]
         found.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
     return found

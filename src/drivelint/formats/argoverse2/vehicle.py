@@ -2,7 +2,7 @@
 
 The poses of a log are those of the `egovehicle` frame: its origin is the centre of the rear axle, x points ahead, z up (Argoverse's
 maintainers in argoverse-api issue 286). Size and place of the box are those that py123d's `av2_ford_fusion_hybrid` documents, by the
-car's data sheet and the lidar's points on it; the width includes the mirrors. The same log read through 123D thus has the same ego.
+car's data sheet and the lidar's points on it. The same log read through 123D thus has the same ego.
 The category EGO_VEHICLE of some annotation files is a placeholder of 4.877 x 2.0 x 1.473 m with its centre at the rear axle.
 """
 
@@ -18,8 +18,8 @@ from drivelint.formats.coordinate_frames import Poses
 if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
-SIZE_M: Final = (4.869, 2.127, 1.476)
-"""Length, width and height."""
+SIZE_M: Final = (4.869, 1.852 + 0.275, 1.476)
+"""Length, width of the body and of the mirrors, height."""
 CENTRE_M: Final = (1.339, 0.0, 0.438)
 """The centre of the box in the egovehicle frame."""
 
