@@ -36,7 +36,12 @@ def test_the_vehicle_that_records_is_the_ego(tmp_path: Path) -> None:
     """Its point is the rear axle."""
     trace = read(scenario(tmp_path / "s", ROWS))
     ego = actors(trace)["AV"]
-    assert (ego["is_ego"], ego["actor_class"], ego["length_m"], ego["width_m"]) == (True, "car", 4.869, pytest.approx(2.127))
+    assert (ego["is_ego"], ego["actor_class"], ego["length_m"], ego["width_m"]) == (
+        True,
+        "car",
+        4.869,
+        pytest.approx(2.127),
+    )
     first = states(trace, "AV")[0]
     assert (first["x_m"], first["y_m"]) == pytest.approx((1.339 * math.cos(0.1), 1.339 * math.sin(0.1)))
     assert quality(trace)["assumed_size"]["actor_id"] == "AV"

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.formats.argoverse2.argoverse_log import box, pose, sensor_log, stamp
+from tests.formats.argoverse2.argoverse_log import Row, box, pose, sensor_log, stamp
 from tests.formats.logs import actors, read, states
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 N = 12
-BIKE = {"category": "BICYCLE", "length_m": 1.8, "width_m": 0.5, "height_m": 1.1}
-RIDER = {"category": "BICYCLIST", "length_m": 0.6, "width_m": 0.7, "height_m": 1.6}
+BIKE: Row = {"category": "BICYCLE", "length_m": 1.8, "width_m": 0.5, "height_m": 1.1}
+RIDER: Row = {"category": "BICYCLIST", "length_m": 0.6, "width_m": 0.7, "height_m": 1.6}
 
 
 def ridden(tmp_path: Path, rows: list[dict[str, Any]]) -> Any:

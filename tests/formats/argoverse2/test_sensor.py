@@ -26,6 +26,7 @@ from tests.formats.argoverse2.argoverse_log import (
 from tests.formats.logs import actors, log, quality, read, states
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 N = 12
@@ -156,7 +157,9 @@ def test_a_track_in_two_places_at_once_is_in_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize("column", ["tx_m", "qz"])
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_numbers_that_are_none(tmp_path: Path, column: str, value: float) -> None:
-    trace = read(sensor_log(tmp_path / "log", [box(k, **({column: value} if k == 4 else {})) for k in range(N)]))
+    rows = [box(k) for k in range(N)]
+    rows[4][column] = value
+    trace = read(sensor_log(tmp_path / "log", rows))
     row = at_step(trace, "a", 4)
     assert row["yaw_rad" if column == "qz" else "x_m"] is None
     assert quality(trace)["not_finite"]["n"] == 1
@@ -184,7 +187,7 @@ def test_broken_files_are_named_in_one_line(tmp_path: Path, file: str) -> None:
     content = (folder / file).read_bytes()
     whole = feather.read_table(folder / file)
     timed = whole["timestamp_ns"].combine_chunks()
-    damages = {
+    damages: dict[str, Callable[[], object]] = {
         "cut": lambda: (folder / file).write_bytes(content[: len(content) // 2]),
         "no column": lambda: feather.write_feather(whole.drop_columns(["qw"]), folder / file),
         "text": lambda: feather.write_feather(
