@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
+from drivelint.formats.argoverse2 import forecasting, sensor
 from drivelint.formats.commonroad import scenario
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.film import reader as film
@@ -32,6 +33,8 @@ READERS: Final[tuple[Reader, ...]] = (
     osi_file,
     scenario,
     fcd,
+    sensor,
+    forecasting,
     mapped_table,  # last: it accepts any text without markup
 )
 """The first that accepts a file reads it."""
@@ -69,9 +72,11 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         return finish_trace(path, identity, recording, options)
     if b"<OpenDRIVE" in probe.head:
         raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
+    if probe.head.startswith(b"ARROW1"):
+        raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: give the folder")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
-        "SUMO's floating car data or a CommonRoad scenario"
+        "SUMO's floating car data, a CommonRoad scenario, or the folder of a log of Argoverse 2 or 123D"
     )
 
 

@@ -1,4 +1,4 @@
-"""Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI), which run in the direction of travel.
+"""Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI, Argoverse), which run in the direction of travel.
 
 Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards.
 """
@@ -39,6 +39,7 @@ class Mark(NamedTuple):
     end: float
     marking: str | None
     lane_change: str | None = None
+    color: str | None = None
 
 
 SpeedLimitSpan = tuple[float, float, float | None]
@@ -288,7 +289,7 @@ def map_from_bounds(
         ],
         "lane_boundary": [
             {
-                "lanelet_id": lane.lanelet_id, "side": mark.side, "marking": mark.marking, "color": None,
+                "lanelet_id": lane.lanelet_id, "side": mark.side, "marking": mark.marking, "color": mark.color,
                 "s_start_m": mark.begin * lane.line.length, "s_end_m": mark.end * lane.line.length, "lane_change": mark.lane_change,
             }
             for lane in lanes

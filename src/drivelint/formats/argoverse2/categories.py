@@ -1,0 +1,61 @@
+"""What Argoverse 2 calls an annotated object, and the actor class that it is.
+
+Source: the taxonomies of the sensor and the motion forecasting dataset (Argoverse user guide; av2-api, `AnnotationCategories` and
+`ObjectType`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from drivelint.arrays import coded
+from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from drivelint.arrays import Codes
+
+EGO_CATEGORY: Final = "EGO_VEHICLE"
+"""A category that is not Argoverse's: tools write the recording vehicle itself under it, as a box whose centre is the rear axle."""
+SENSOR_CLASSES: Final = {
+    "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule tells these of others apart
+    "LARGE_VEHICLE": "vehicle",  # what has no category of its own: a camper van, a fire engine, ...
+    "TRUCK": "truck", "BOX_TRUCK": "truck", "TRUCK_CAB": "truck",
+    "BUS": "bus", "SCHOOL_BUS": "bus", "ARTICULATED_BUS": "bus",
+    "MOTORCYCLE": "motorcycle", "RAILED_VEHICLE": "vehicle",
+    "VEHICULAR_TRAILER": "trailer", "MESSAGE_BOARD_TRAILER": "trailer", "TRAFFIC_LIGHT_TRAILER": "trailer",
+    "BICYCLIST": "bicycle", "MOTORCYCLIST": "motorcycle",
+    "WHEELED_RIDER": None,  # on a kick scooter, a skateboard, a golf cart, ...: the law has several classes for them
+    "PEDESTRIAN": "pedestrian", "OFFICIAL_SIGNALER": "pedestrian",
+    "DOG": "animal", "ANIMAL": "animal",
+    # things that people ride or push, who have boxes of their own: one that moves may be any road user all the same, see road_user.sql
+    "BICYCLE": "object", "WHEELED_DEVICE": "object", "WHEELCHAIR": "object", "STROLLER": "object",
+    "BOLLARD": "object", "CONSTRUCTION_CONE": "object", "CONSTRUCTION_BARREL": "object", "SIGN": "object", "STOP_SIGN": "object",
+    "MOBILE_PEDESTRIAN_CROSSING_SIGN": "object", "MOBILE_PEDESTRIAN_SIGN": "object",
+    EGO_CATEGORY: "car",
+}  # fmt: skip
+"""Category of an annotation -> actor class; None: it may be any."""
+FORECASTING_CLASSES: Final = {
+    "vehicle": "vehicle", "bus": "bus", "motorcyclist": "motorcycle", "cyclist": "bicycle", "pedestrian": "pedestrian",
+    "static": "object", "background": "object", "construction": "object", "riderless_bicycle": "object", "unknown": None,
+}  # fmt: skip
+"""`object_type` of a track -> actor class; None: it may be any."""
+RIDERS: Final = ("BICYCLIST", "MOTORCYCLIST", "WHEELED_RIDER")
+RIDDEN: Final = ("BICYCLE", "MOTORCYCLE", "WHEELED_DEVICE", "WHEELCHAIR")
+
+
+def class_codes(words: pa.Array, classes: dict[str, str | None]) -> tuple[Codes, list[str]]:
+    """Return the index into `ACTOR_CLASSES` of each word (-1: not known), and a note on words that are not among `classes`, if any."""
+    foreign: list[str] = []
+
+    def code_of(word: str) -> int:
+        if word not in classes:
+            foreign.append(word)
+        name = classes.get(word)
+        return -1 if name is None else ACTOR_CLASSES.index(name)
+
+    codes = coded(words, code_of)
+    note = f"categories that Argoverse does not have, whose class is not known: {listed(sorted(foreign))}"
+    return codes, [note] if foreign else []

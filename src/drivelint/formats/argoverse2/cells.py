@@ -1,0 +1,61 @@
+"""Columns of Argoverse's tables as arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.lost_time import times_of_lost_rows
+from drivelint.drive.trace import QualityFinding
+from drivelint.errors import TraceError
+from drivelint.formats.tables.parquet import column
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.drive.trace import LostTime
+
+
+def cast(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
+    """Return a column as a type. Errors: `TraceError` where a value is none of it."""
+    values = column(table, name)
+    try:
+        return values.cast(kind)
+    except pa.ArrowException as error:
+        raise TraceError(
+            f"{path}: column {name!r} is {values.type}, not {kind}: {' '.join(str(error).split())}: get the log again"
+        ) from error
+
+
+def numbers(path: Path, table: pa.Table, names: Iterable[str]) -> dict[str, Floats]:
+    """Return columns of numbers as the file has them, NaN for NULL. Errors: `TraceError`."""
+    found = {}
+    for name in names:
+        values = pc.fill_null(cast(path, table, name, pa.float64()), float("nan"))
+        found[name] = np.asarray(values.to_numpy(zero_copy_only=False), np.float64)
+    return found
+
+
+def integers(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
+    """Return a column of integers, 0 for NULL, and which of them are known. Errors: `TraceError`."""
+    values = cast(path, table, name, pa.int64())
+    return pc.fill_null(values, 0).to_numpy(zero_copy_only=False), values.is_valid().to_numpy(zero_copy_only=False)
+
+
+def without_nameless(
+    path: Path, rows: pa.Table, name: str, t_ns: Times, timed: Mask
+) -> tuple[Mask, list[QualityFinding], list[LostTime]]:
+    """Say which rows have a track (`name`) and a time (`timed`), and tell of the others: what they are, and when they were recorded."""
+    ids = cast(path, rows, name, pa.string())
+    lost = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
+    n = int(lost.sum())
+    if not n:
+        return ~lost, [], []
+    what = f"{path.name}: rows without {name} or time"
+    finding = QualityFinding("dropped_row", "error", f"{what}: {n}: they are not judged", n)
+    return ~lost, [finding], times_of_lost_rows(t_ns, timed, lost, what)

@@ -1,0 +1,165 @@
+"""Motion forecasting scenarios of Argoverse 2: one Parquet table of tracks at ten steps a second, and the map beside it.
+
+The track AV is the vehicle that records. The guide says that positions are box centres. Those of AV are not: where it turns, its point
+moves along its heading, as only the rear axle does, and as the egovehicle frame of the sensor logs does; it is moved to the middle of
+the vehicle. Nobody has a size, so gaps to the others are not known. Tracks come from the vehicle's own tracker, in fragments; of those
+with less than ten steps nothing is told, and no range is documented within which everybody has a track.
+
+Source: Argoverse user guide ("Motion Forecasting Dataset"); av2-api, `data_schema` and `scenario_serialization`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.argoverse2 import cells, vehicle
+from drivelint.formats.argoverse2.categories import FORECASTING_CLASSES, class_codes
+from drivelint.formats.argoverse2.cities import frame_of_city
+from drivelint.formats.folders import folder_kind
+from drivelint.formats.tables import parquet
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.arrays import Times
+    from drivelint.formats.probe import Probe
+
+NAME: Final = "argoverse2-forecasting"
+formats: Final = {NAME: ("Argoverse 2 motion forecasting scenario", "the track AV, the vehicle that records")}
+takes_mapping: Final = False
+EGO_ID: Final = "AV"
+SENSOR_RANGE_M: Final = 50.0
+"""None is documented. In published scenarios tracks are as dense up to some 50 m from the vehicle, and fewer beyond."""
+STEP_NS: Final = 100_000_000
+_MAP: Final = "log_map_archive_*.json"
+_TIME: Final = "timestep"
+_NUMBERS: Final = {
+    "position_x": "x_m", "position_y": "y_m", "heading": "yaw_rad", "velocity_x": "vx_mps", "velocity_y": "vy_mps",
+}  # fmt: skip
+_REQUIRED: Final = ("track_id", "object_type", _TIME, *_NUMBERS)
+_CLOCK: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept a folder of a scenario, or Parquet with its columns unless a mapping was asked for."""
+    if probe.path.is_dir():
+        return folder_kind(probe.path) == NAME
+    if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
+        return False
+    return set(_REQUIRED) <= set(parquet.schema(probe.path).names)
+
+
+def read(probe: Probe) -> Recording:
+    """Read a scenario. Errors: `TraceError` for a damaged file, missing columns, several scenarios in one."""
+    path = _scenario(probe.path)
+    rows = _rows(path)
+    step, timed = cells.integers(path, rows, _TIME)
+    t_ns = _times(path, rows, step)
+    usable, findings, lost = cells.without_nameless(path, rows, "track_id", t_ns, timed)
+    rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
+    ids = pc.dictionary_encode(cells.cast(path, rows, "track_id", pa.string()))
+    classes, notes = class_codes(cells.cast(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
+    raw = cells.numbers(path, rows, _NUMBERS)
+    odd = np.zeros(len(rows), np.bool_)
+    numbers = {}
+    for name, values in raw.items():
+        wrong = ~np.isfinite(values)
+        odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
+        numbers[_NUMBERS[name]] = np.where(wrong, np.nan, values)
+    states = States(
+        ids.dictionary.to_pylist(), ids.indices.to_numpy().astype(np.int32), t_ns, numbers,
+        {"actor_class": classes}, odd,
+    )  # fmt: skip
+    _place_ego(states)
+    recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost=lost, notes=notes)
+    if EGO_ID in states.ids:
+        recording.findings.append(vehicle.assumed_size(EGO_ID))
+    recording.sensor_range_m = SENSOR_RANGE_M
+    city = [word for word in _distinct(path, rows, "city") if word]
+    if len(city) == 1 and (frame := frame_of_city(city[0])):
+        recording.geo_reference, recording.geo_offset = frame.reference, (frame.x_m, frame.y_m, 0.0)
+    _add_map(recording, probe.path)
+    return recording
+
+
+def _scenario(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    files = sorted(path.glob("scenario_*.parquet"))
+    if len(files) > 1:
+        raise TraceError(
+            f"{path}: {len(files)} scenarios in one folder ({listed([file.name for file in files])}): name one of them"
+        )
+    return files[0]
+
+
+def _rows(path: Path) -> pa.Table:
+    has = parquet.schema(path).names
+    if missing := [name for name in _REQUIRED if name not in has]:
+        raise TraceError(
+            f"{path}: no column {', '.join(missing)}: a scenario needs {', '.join(_REQUIRED)}: get it again"
+        )
+    optional = [name for name in (*_CLOCK, "city", "scenario_id") if name in has]
+    rows = parquet.table(path, [*_REQUIRED, *optional])
+    if len(names := _distinct(path, rows, "scenario_id")) > 1:
+        raise TraceError(f"{path}: holds {len(names)} scenarios: write one file per scenario")
+    return rows
+
+
+def _distinct(path: Path, rows: pa.Table, name: str) -> list[str | None]:
+    if name not in rows.schema.names:
+        return []
+    found: list[str | None] = pc.unique(cells.cast(path, rows, name, pa.string())).to_pylist()
+    return found
+
+
+def _times(path: Path, rows: pa.Table, step: Times) -> Times:
+    """Return the time of each row: the steps part the time from the first to the last stamp evenly, without stamps from 0 at 10 Hz."""
+    if not set(_CLOCK) <= set(rows.schema.names) or not len(rows):
+        return step * STEP_NS
+    start, end, n = (values[0] for values in cells.numbers(path, rows, _CLOCK).values())
+    if not (end > start and n > 1):
+        return step * STEP_NS
+    spacing: Times = np.round(step * ((end - start) / (n - 1))).astype(np.int64)
+    return int(start) + spacing
+
+
+def _place_ego(states: States) -> None:
+    """Move the ego from its rear axle to its middle, and give it its class and size, in place.
+
+    Its velocity stays that of the axle: along the heading the two are the same.
+    """
+    own = states.actor == states.ids.index(EGO_ID) if EGO_ID in states.ids else np.zeros(len(states), np.bool_)
+    states.codes["actor_class"][own] = ACTOR_CLASSES.index("car")
+    numbers = states.numbers
+    x, y, yaw = (numbers[name][own] for name in ("x_m", "y_m", "yaw_rad"))
+    numbers["x_m"][own], numbers["y_m"][own] = vehicle.box_places(x, y, yaw)
+    for name, size in zip(("length_m", "width_m", "height_m"), vehicle.SIZE_M, strict=True):
+        numbers[name] = np.where(own, size, np.nan)
+
+
+def _add_map(recording: Recording, path: Path) -> None:
+    files = sorted((path if path.is_dir() else path.parent).glob(_MAP))
+    if not path.is_dir():
+        name = path.name.removeprefix("scenario_").removesuffix(".parquet")
+        own = [file for file in files if name in file.name]
+        if own:
+            recording.notes.append(f"its map {own[0].name} lies beside it: give the folder, or --map")
+    elif len(files) > 1:
+        names = listed([file.name for file in files])
+        message = f"the scenario has {len(files)} maps ({names}), and none is used: keep one"
+        recording.findings.append(QualityFinding.unusable_map(message))
+    elif files:
+        try:
+            recording.embedded_map = files[0].read_bytes()
+        except OSError as error:
+            raise TraceError(f"{files[0]}: cannot be read: {error.strerror or error}") from error
+    else:
+        recording.notes.append(f"its map is not there: {_MAP}")

@@ -1,0 +1,279 @@
+"""Vector maps of Argoverse 2 (`log_map_archive_*.json`): lane segments by their two bounds, and pedestrian crossings.
+
+A segment's bounds run in the direction of travel and have heights. Neighbours share a bound; which way a neighbour is driven, the file
+does not say: its bounds do. Only the successors link lanes, as some releases leave the predecessors out. The map is cut 100 m from the
+way of the vehicle, across lanes. It has no speed limit, no sign, no traffic light and no stop line. All six cities are in the United
+States.
+
+Source: Argoverse user guide ("HD Maps"); av2-api, `LaneSegment`, `LaneMarkType`, `PedestrianCrossing`, and `rendering/map.py`, which tells
+that of a double line the nearer one is named first.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.errors import MapError
+from drivelint.formats.argoverse2.cities import frame_by_file_name
+from drivelint.road.boundary_lanes import (
+    BoundedLane,
+    Mark,
+    build_lanes,
+    crossings,
+    map_from_bounds,
+    side_driven_on,
+    stations,
+)
+from drivelint.road.driving_side import choose_side
+from drivelint.road.quality import MapQuality
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.arrays import Floats
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+
+_KINDS: Final = {"VEHICLE": ("driving", True), "BUS": ("bus", True), "BIKE": ("biking", False)}
+_LINES: Final = {
+    "SOLID": "solid", "DASHED": "broken", "DOUBLE_SOLID": "solid_solid", "DOUBLE_DASH": "broken_broken",
+    "SOLID_DASH": "solid_broken", "DASH_SOLID": "broken_solid",
+}  # fmt: skip
+_COLOURS: Final = {"WHITE": "white", "YELLOW": "yellow", "BLUE": "blue"}
+_SIDES: Final = ("left", "right")
+_UNREADABLE: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
+"""What a part of the file raises that is not as it should be."""
+_COMMON_GROUND_M2: Final = 1.0
+"""Lanes of which more lies over each other share the ground of a junction."""
+_LEVEL_M: Final = 3.0
+"""Lanes that are further apart in height are on two levels."""
+
+
+class _Segment(NamedTuple):
+    """A lane segment: its bounds (n, 3) in metres, and the rest as the file says it, other lanes by their ids."""
+
+    left: Floats
+    right: Floats
+    lane_type: str
+    is_intersection: bool
+    successors: tuple[str, ...]
+    left_id: str | None
+    right_id: str | None
+    left_mark: str
+    right_mark: str
+
+
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the file is no such map, or no lane of it can be built."""
+    archive = _archive(source)
+    quality = MapQuality()
+    segments = _segments(archive["lane_segments"], quality)
+    _report_words(segments.values(), quality)
+    _report_cut(segments, quality)
+    lanes = build_lanes((_lane(name, segments) for name in segments), request.offset, quality)
+    if not lanes:
+        first = next((row["message"] for row in quality.rows), "it has no lane segment")
+        raise MapError(f"map {source.name} has no lane that can be built: {first}")
+    for lane in lanes:
+        segment, line = segments[lane.lanelet_id], lane.line
+        left, right = (
+            _heights(segment.left, line.left - request.offset),
+            _heights(segment.right, line.right - request.offset),
+        )
+        lane.z = (left + right) / 2
+    _name_junctions(lanes, segments)
+    side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", "rht")], quality)
+    walks = _walks(archive.get("pedestrian_crossings", {}), quality)
+    furniture = {"traffic_signal": [], "stop_line": [], "crossing": crossings(walks, lanes, request.offset, quality)}
+    geo = frame_by_file_name(source.name)
+    return map_from_bounds(source, request, lanes, furniture, quality, kind="argoverse2", side=side, geo=geo)
+
+
+def _archive(source: MapSource) -> dict[str, Any]:
+    try:
+        archive = json.loads(source.content)
+    except (ValueError, RecursionError) as error:
+        raise MapError(f"map {source.name} is not readable as JSON ({error}): get it again") from error
+    parts = [archive.get(name, {}) for name in ("lane_segments", "pedestrian_crossings")]
+    if "lane_segments" not in archive or not all(isinstance(part, dict) for part in parts):
+        raise MapError(
+            f"map {source.name} is JSON, but no map of Argoverse 2 (lane_segments by their ids): give an OpenDRIVE file"
+        )
+    return dict(archive)
+
+
+def _segments(said: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
+    """Return the lane segments by their ids; those that cannot be understood are reported."""
+    found: dict[str, _Segment] = {}
+    for key, segment in said.items():
+        try:
+            name = _name(segment["id"])
+            if name in found:
+                raise ValueError("another one has its id")
+            found[name] = _segment(segment)
+        except _UNREADABLE as error:
+            quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
+    return found
+
+
+def _why(error: Exception) -> str:
+    return f"it has no {error}" if isinstance(error, KeyError) else str(error)
+
+
+def _segment(said: Mapping[str, Any]) -> _Segment:
+    """Return a segment. Errors: those of `_UNREADABLE`."""
+    left, right = (None if (number := said[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
+    return _Segment(
+        left=_points(said["left_lane_boundary"]),
+        right=_points(said["right_lane_boundary"]),
+        lane_type=str(said["lane_type"]),
+        is_intersection=bool(said["is_intersection"]),
+        successors=tuple(map(_name, said["successors"])),
+        left_id=left,
+        right_id=right,
+        left_mark=str(said["left_lane_mark_type"]),
+        right_mark=str(said["right_lane_mark_type"]),
+    )
+
+
+def _name(number: Any) -> str:
+    return str(int(number))
+
+
+def _points(line: Any) -> Floats:
+    """Return the points (n, 3) of a line; a height that is not given is NaN. Errors: those of `_UNREADABLE`."""
+    rows = [(point["x"], point["y"], point.get("z", np.nan)) for point in line]
+    if len(rows) < 2:
+        raise ValueError("a line has fewer than two points")
+    return np.array(rows, np.float64).reshape(-1, 3)
+
+
+def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
+    segment = segments[name]
+    kind, drivable = _KINDS.get(segment.lane_type, ("none", False))
+    lane = BoundedLane(
+        name, segment.left[:, :2], segment.right[:, :2], kind, drivable,
+        successors=tuple(to for to in segment.successors if to in segments),
+        marks=(_mark("left", segment.left_mark), _mark("right", segment.right_mark)),
+    )  # fmt: skip
+    if other := segments.get(segment.left_id or ""):
+        lane.left_id, lane.left_against = segment.left_id, _is_against(segment.left, other.right, other.left)
+    if other := segments.get(segment.right_id or ""):
+        lane.right_id, lane.right_against = segment.right_id, _is_against(segment.right, other.left, other.right)
+    return lane
+
+
+def _is_against(own: Floats, with_it: Floats, against: Floats) -> bool:
+    """Say whether a bound is rather one of the other lane's that runs against it than the one that runs with it."""
+    ends = own[[0, -1], :2]
+    to_with, to_against = (
+        float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
+    )
+    return to_against < to_with
+
+
+def _mark(side: str, word: str) -> Mark:
+    line, _, colour = word.rpartition("_")
+    return Mark(side, 0.0, 1.0, "none" if word == "NONE" else _LINES.get(line), color=_COLOURS.get(colour))
+
+
+def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
+    """Name the types of lanes and markings that are not read."""
+    words = Counter[str]()
+    for segment in segments:
+        words.update([segment.lane_type] if segment.lane_type not in _KINDS else [])
+        marks = (segment.left_mark, segment.right_mark)
+        words.update(word for word in marks if word != "UNKNOWN" and _mark("", word).marking is None)
+    if words:
+        listed = ", ".join(f"{word} ({n})" for word, n in sorted(words.items()))
+        message = f"types of lanes and markings that are not read: {listed}"
+        quality.add("unknown_word", "info", None, message, words.total())
+
+
+def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
+    """Say of how many lanes the map does not have what follows or lies beside: it is cut out of a larger one."""
+    behind = sum(to not in segments for segment in segments.values() for to in segment.successors)
+    beside = sum(
+        name is not None and name not in segments
+        for segment in segments.values()
+        for name in (segment.left_id, segment.right_id)
+    )
+    if behind or beside:
+        message = f"the map is cut out of a larger one: {behind} lanes that follow and {beside} lanes beside others are not in it"
+        quality.add("missing_link", "info", None, message, behind + beside)
+
+
+def _heights(bound: Floats, points: Floats) -> Floats:
+    """Return the heights of a bound (n, 3) at points on it (m, 2)."""
+    along = shapely.line_locate_point(shapely.LineString(bound[:, :2]), shapely.points(points))
+    return np.asarray(np.interp(along, stations(bound), bound[:, 2]), np.float64)
+
+
+def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segment]) -> None:
+    """Give the lanes inside intersections the junction that they are part of.
+
+    Those are of one junction that begin or end at the same lane, follow each other, lie side by side, or over the same ground.
+    """
+    inside = {lane.lanelet_id: lane for lane in lanes if segments[lane.lanelet_id].is_intersection}
+    parent = {name: name for name in inside}
+
+    def root(name: str) -> str:
+        while parent[name] != name:
+            name = parent[name]
+        return name
+
+    for group in (*_links(lanes, inside), *_overlaps(list(inside.values()))):
+        names = sorted({root(name) for name in group}, key=int)
+        parent.update(dict.fromkeys(names[1:], names[0]))
+    for name, lane in inside.items():
+        lane.junction_id = f"j{root(name)}"
+
+
+def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> list[list[str]]:
+    """Return groups of lanes inside intersections that are linked: by a lane before, by a lane behind, or side by side."""
+    groups = [[to for to in (lane.lanelet_id, *lane.successors) if to in inside] for lane in lanes]
+    before: dict[str, list[str]] = defaultdict(list)
+    for lane in inside.values():
+        groups.append([n for n in (lane.lanelet_id, lane.left_id, lane.right_id) if n is not None and n in inside])
+        for to in lane.successors:
+            before[to].append(lane.lanelet_id)
+    return [group for group in (*groups, *before.values()) if len(group) > 1]
+
+
+def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
+    """Return pairs of lanes that lie over the same ground, on one level."""
+    if not lanes:
+        return []
+    areas = [lane.line.polygon for lane in lanes]
+    pairs = shapely.STRtree(areas).query(areas, predicate="intersects").T
+    found = []
+    for i, j in pairs[pairs[:, 0] < pairs[:, 1]].tolist():
+        a, b = lanes[i], lanes[j]
+        apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
+        if apart <= _LEVEL_M and shapely.area(shapely.intersection(areas[i], areas[j])) > _COMMON_GROUND_M2:
+            found.append([a.lanelet_id, b.lanelet_id])
+    return found
+
+
+def _have_heights(*lanes: BoundedLane) -> bool:
+    return all(np.isfinite(lane.z).any() for lane in lanes)
+
+
+def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
+    """Return the pedestrian crossings, the two edges as the bounds of a lane for people on foot."""
+    found = []
+    for key, crossing in said.items():
+        try:
+            first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
+            name = _name(crossing["id"])
+        except _UNREADABLE as error:
+            quality.add("invalid_lane", "error", key, f"crossing {key} is left out: {_why(error)}")
+            continue
+        if float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
+            second = second[::-1]
+        found.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
+    return found

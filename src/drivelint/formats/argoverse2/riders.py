@@ -1,0 +1,102 @@
+"""Riders and what they ride, which Argoverse annotates with a box each: together they are one road user.
+
+Two boxes in one place would be two bodies that touch all the time, and two vehicles to be passed. The rider gets the box around both;
+what is ridden has no state of its own while somebody is on it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.arrays import turned
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from drivelint.arrays import Floats, Indices, Mask, Times
+
+REACH_M: Final = 0.5
+"""The middle of a rider may be so far outside of the box of what is ridden: annotators draw both by few points of the lidar."""
+LEVEL_M: Final = 2.0
+"""The two middles are no further apart in height."""
+_SIZES: Final = ("length_m", "width_m", "height_m")
+
+
+def join_riders(
+    t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
+) -> tuple[Mask, list[int]]:
+    """Give riders the box around them and what they ride, in place; return the rows that are in another's box, and who rides.
+
+    n boxes: time, track, whether it is a rider or a thing that is ridden, and the columns x_m, y_m, z_m, yaw_rad, length_m, width_m,
+    height_m. Somebody rides what he is on in most of the samples that both have; of several on one, the first track gets the box.
+    """
+    inside = np.zeros(len(t_ns), np.bool_)
+    on, under = _on_and_under(t_ns, actor, rider, ridden, boxes)
+    if not len(on):
+        return inside, []
+    order = np.lexsort((actor[on], under))
+    on, under = on[order], under[order]
+    first = np.flatnonzero(np.r_[True, under[1:] != under[:-1]])
+    keeper, thing = on[first], under[first]
+    low, high = _extents(on, under, boxes)
+    size = np.stack([boxes[name] for name in _SIZES])
+    low = np.fmin(np.fmin.reduceat(low, first, axis=1), -size[:, thing] / 2)
+    high = np.fmax(np.fmax.reduceat(high, first, axis=1), size[:, thing] / 2)
+    ahead, left, up = (low + high) / 2
+    dx, dy = turned(ahead, left, boxes["yaw_rad"][thing])
+    for name, values in (("x_m", dx), ("y_m", dy), ("z_m", up), ("yaw_rad", np.zeros(len(thing)))):
+        boxes[name][keeper] = boxes[name][thing] + values
+    riders = np.unique(actor[keeper]).tolist()
+    for name, values in zip(_SIZES, high - low, strict=True):
+        for number in riders:  # one size for all of a ride: both boxes tremble against each other
+            own = actor[keeper] == number
+            boxes[name][keeper[own]] = np.median(values[own])
+    inside[under] = inside[on] = True
+    inside[keeper] = False
+    return inside, riders
+
+
+def _on_and_under(
+    t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
+) -> tuple[Indices, Indices]:
+    """Return the rows of riders on something, and the rows of what they are on, each rider's row once."""
+    on, under = np.flatnonzero(rider), np.flatnonzero(ridden)
+    under = under[np.argsort(t_ns[under], kind="stable")]
+    begin, end = (np.searchsorted(t_ns[under], t_ns[on], side=side) for side in ("left", "right"))
+    n = end - begin
+    on, place = np.repeat(on, n), np.arange(n.sum()) - np.repeat(np.cumsum(n) - n - begin, n)
+    under = under[place]
+    near = _is_over(on, under, boxes)
+    of = np.unique(actor[on].astype(np.int64) << 32 | actor[under], return_inverse=True)[1]
+    n_near = np.bincount(of, near)
+    rides = near & (2 * n_near > np.bincount(of))[of]
+    on, under, n_near = on[rides], under[rides], n_near[of[rides]]
+    order = np.lexsort((actor[under], -n_near, on))
+    on, under = on[order], under[order]
+    once = np.r_[True, on[1:] != on[:-1]][: len(on)]
+    return on[once], under[once]
+
+
+def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
+    """Say of pairs of rows whether the middle of the one box is over the other box, or beside it within reach."""
+    dx, dy = _relative(on, under, boxes)
+    half_length, half_width = (boxes[name][under] / 2 + REACH_M for name in _SIZES[:2])
+    level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= LEVEL_M
+    return (np.abs(dx) <= half_length) & (np.abs(dy) <= half_width) & level
+
+
+def _relative(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
+    x, y = boxes["x_m"], boxes["y_m"]
+    return turned(x[on] - x[under], y[on] - y[under], -boxes["yaw_rad"][under])
+
+
+def _extents(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
+    """Return from where to where (3, n) the one box reaches along the axes of the other, from its middle (m)."""
+    angle = boxes["yaw_rad"][on] - boxes["yaw_rad"][under]
+    cos, sin = np.abs(np.cos(angle)), np.abs(np.sin(angle))
+    length, width, height = (boxes[name][on] for name in _SIZES)
+    half = np.stack([length * cos + width * sin, length * sin + width * cos, height]) / 2
+    middle = np.stack([*_relative(on, under, boxes), boxes["z_m"][on] - boxes["z_m"][under]])
+    return middle - half, middle + half

@@ -1,0 +1,177 @@
+"""Sensor logs of Argoverse 2: a folder with the annotated boxes, the poses of the recording vehicle, and its map.
+
+Boxes are given in the frame of the recording vehicle at exactly their time stamp (quaternion w first, centre of the box); the poses bring
+them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then is it known who was
+around it. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one; those
+between the annotations are not read.
+
+Time stamps are nanoseconds on a clock whose zero is not documented: by 1970 these drives of 2020 would be of January 1980. There is no
+date, no velocity, no indicator and no state of a traffic light in a log.
+
+Source: Argoverse user guide ("Sensor Dataset"); av2-api, `SensorDataloader` and `Cuboid`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import QualityFinding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.argoverse2 import cells, vehicle
+from drivelint.formats.argoverse2.categories import EGO_CATEGORY, RIDDEN, RIDERS, SENSOR_CLASSES, class_codes
+from drivelint.formats.argoverse2.cities import frame_by_file_name
+from drivelint.formats.argoverse2.riders import join_riders
+from drivelint.formats.coordinate_frames import Poses, unit_quaternions
+from drivelint.formats.folders import folder_kind
+from drivelint.formats.tables import ipc
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from drivelint.arrays import Floats, Indices, Mask, Times
+    from drivelint.formats.probe import Probe
+
+NAME: Final = "argoverse2-sensor"
+formats: Final = {NAME: ("Argoverse 2 sensor log", "the vehicle that records")}
+takes_mapping: Final = False
+EGO_ID: Final = "ego"
+POSES_FILE: Final = "city_SE3_egovehicle.feather"
+SENSOR_RANGE_M: Final = 150.0
+"""The range up to which the benchmarks of the dataset take the annotations for the whole truth (av2-api, `DetectionCfg.max_range_m`), of
+what is on the drivable area or within 5 m of it. Boxes further away are kept."""
+_PLACE: Final = ("tx_m", "ty_m", "tz_m")
+_TURN: Final = ("qx", "qy", "qz", "qw")
+_SIZE: Final = ("length_m", "width_m", "height_m")
+_TIME: Final = "timestamp_ns"
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept a folder with the files of a log."""
+    return folder_kind(probe.path) == NAME
+
+
+def read(probe: Probe) -> Recording:
+    """Read a log. Errors: `TraceError` for damaged files, missing columns, and a log without annotations."""
+    file, notes = _annotations(probe.path)
+    rows = ipc.table(file, (_TIME, "track_uuid", "category", *_SIZE, *_PLACE, *_TURN))
+    t_ns, timed = cells.integers(file, rows, _TIME)
+    usable, findings, lost = cells.without_nameless(file, rows, "track_uuid", t_ns, timed)
+    rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
+    steps, step = np.unique(t_ns, return_inverse=True)
+    if not len(steps):
+        raise TraceError(
+            f"{file}: no annotations: nothing says who was around the vehicle: give a log that is annotated"
+        )
+    rear_axle = _poses_at(probe.path / POSES_FILE, steps)
+    findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
+    others, more = _others(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
+    ego = _ego(steps, vehicle.box_poses(rear_axle), others.ids)
+    recording = Recording(NAME, States.joined([ego, others]), ego_ids=[EGO_ID], findings=findings, lost=lost)
+    recording.notes = notes + more
+    recording.sensor_range_m = SENSOR_RANGE_M
+    _add_map(recording, probe.path)
+    return recording
+
+
+def _annotations(folder: Path) -> tuple[Path, list[str]]:
+    """Return the file of annotations, Argoverse's own if there is one, and a note on the others."""
+    files = sorted(folder.glob("annotations*.feather"))
+    first = next((file for file in files if file.name == "annotations.feather"), files[0])
+    others = [file.name for file in files if file != first]
+    return first, [f"{first.name} is read, and not {listed(others)} beside it"] if others else []
+
+
+def _poses_at(path: Path, t_ns: Times) -> Poses:
+    """Return the poses at these times (ascending), NaN where none has exactly that time, or two that differ."""
+    rows = ipc.table(path, (_TIME, *_PLACE, *_TURN))
+    stamps, timed = cells.integers(path, rows, _TIME)
+    values = np.stack(list(cells.numbers(path, rows, (*_PLACE, *_TURN)).values()), axis=1)[timed]
+    order = np.argsort(stamps[timed], kind="stable")
+    stamps, values = stamps[timed][order], values[order]
+    known, at = np.isin(t_ns, stamps), np.searchsorted(stamps, t_ns)
+    twice = (stamps[1:] == stamps[:-1]) & (values[1:] != values[:-1]).any(axis=1)
+    known &= ~np.isin(t_ns, stamps[1:][twice])
+    found = np.full((len(t_ns), values.shape[1]), np.nan)
+    found[known] = values[at[known]]
+    found[~np.isfinite(found).all(axis=1)] = np.nan
+    return Poses(found[:, :3], unit_quaternions(found[:, 3:]))
+
+
+def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
+    """Return the finding on time stamps without a pose: whoever is annotated there, and the ego, is present and not placed."""
+    missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
+    if not missing.any():
+        return []
+    n, boxes, first = int(missing.sum()), int(n_boxes[missing].sum()), int(steps[missing][0])
+    message = (
+        f"{POSES_FILE} has no pose, or several, at {n} of {len(steps)} time stamps of the annotations, the first {first}: the ego and "
+        f"{boxes} boxes are present there but not placed"
+    )
+    return [QualityFinding("frame_unresolved", "error", message, n, first)]
+
+
+def _others(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
+    """Return the annotated boxes as states, `rear_axle`: the pose at each, and notes."""
+    category = cells.cast(path, rows, "category", pa.string())
+    classes, notes = class_codes(category, SENSOR_CLASSES)
+    own = _is_any(category, [EGO_CATEGORY])
+    ids = pc.dictionary_encode(cells.cast(path, rows, "track_uuid", pa.string()))
+    actor = ids.indices.to_numpy().astype(np.int32)
+    raw = cells.numbers(path, rows, (*_PLACE, *_TURN, *_SIZE))
+    odd = np.zeros(len(rows), np.bool_)
+    for name, values in raw.items():
+        wrong = ~np.isfinite(values)
+        odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
+        raw[name] = np.where(wrong, np.nan, values)
+    place, turn = (np.stack([raw[name] for name in names], axis=1) for names in (_PLACE, _TURN))
+    poses = rear_axle.compose(Poses(place, unit_quaternions(turn)))
+    boxes = _columns(poses) | {name: raw[name] for name in _SIZE}
+    inside, riders = join_riders(t_ns, actor, _is_any(category, RIDERS), _is_any(category, RIDDEN), boxes)
+    names = ids.dictionary.to_pylist()
+    if riders:
+        who = listed([names[i] for i in riders])
+        notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
+    if own.any():
+        notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
+    states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)
+    return states.take(~own & ~inside), notes
+
+
+def _is_any(words: pa.Array, of: Iterable[str]) -> Mask:
+    found = pc.is_in(words, value_set=pa.array(list(of), pa.string()))
+    return np.asarray(found.to_numpy(zero_copy_only=False), np.bool_)
+
+
+def _columns(poses: Poses) -> dict[str, Floats]:
+    x, y, z = poses.place.T.copy()
+    return {"x_m": x, "y_m": y, "z_m": z, "yaw_rad": poses.yaw}
+
+
+def _ego(steps: Times, poses: Poses, ids: list[str]) -> States:
+    n = len(steps)
+    numbers = _columns(poses) | {name: np.full(n, size) for name, size in zip(_SIZE, vehicle.SIZE_M, strict=True)}
+    classes, _ = class_codes(pa.array([EGO_CATEGORY] * n), SENSOR_CLASSES)
+    return States(ids, np.zeros(n, np.int32), steps, numbers, {"actor_class": classes}, np.zeros(n, np.bool_))
+
+
+def _add_map(recording: Recording, folder: Path) -> None:
+    files = sorted((folder / "map").glob("log_map_archive_*.json"))
+    if len(files) > 1:
+        names = listed([file.name for file in files])
+        message = f"the log has {len(files)} maps ({names}), and none is used: keep one"
+        recording.findings.append(QualityFinding.unusable_map(message))
+    elif files:
+        try:
+            recording.embedded_map = files[0].read_bytes()
+        except OSError as error:
+            raise TraceError(f"{files[0]}: cannot be read: {error.strerror or error}") from error
+        if frame := frame_by_file_name(files[0].name):
+            recording.geo_reference, recording.geo_offset = frame.reference, (frame.x_m, frame.y_m, 0.0)
+    else:
+        recording.notes.append("its map is not there: map/log_map_archive_*.json")
