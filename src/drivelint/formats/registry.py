@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.commonroad import scenario
+from drivelint.formats.d123 import reader as d123
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.film import reader as film
 from drivelint.formats.folders import is_drive_folder
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 READERS: Final[tuple[Reader, ...]] = (
     film,
     canonical,
+    d123,
     mcap,
     osi_file,
     scenario,
