@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from drivelint.arrays import Indices, Times
+    from drivelint.arrays import Times
 
 _LATEST_US: Final = 1 << 52  # the year 2112: a clock beyond it is broken
 
@@ -26,13 +26,9 @@ class Clock(NamedTuple):
 
     zero_us: int = 0
 
-    def times(self, stamps: pa.Array) -> Times:
-        """Return the nanoseconds of a column of microseconds."""
-        return (integers(stamps) - self.zero_us) * 1000
-
-    def of_rows(self, stamps: pa.Array, rows: Indices) -> Times:
-        """Return the nanoseconds of some rows of such a column."""
-        return self.times(stamps)[rows]
+    def nanoseconds(self, stamps_us: Times) -> Times:
+        """Return times of the log in nanoseconds of the drive."""
+        return (stamps_us - self.zero_us) * 1000
 
     @property
     def notes(self) -> list[str]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import msgspec
-import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import METADATA_KEY, log_info, metadata
+from drivelint.formats.d123.arrow_files import METADATA_KEY
+from drivelint.formats.d123.map_layers import LIGHT_LANES_KEY, Intersection, LaneGroup, Layers
 from drivelint.formats.tables import ipc
+from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from drivelint.formats.d123.arrow_files import LogInfo
 
 OWN_MAP: Final = "map.arrow"
-COLUMNS: Final = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
-LIGHT_LANES_KEY: Final = b"drivelint.light_lanes"
-"""Metadata that we add to a log's own map: the lanes for which the log has states of lights."""
 
 
 def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | None, list[QualityFinding], list[str]]:
@@ -39,17 +36,15 @@ def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | N
         looked = " nor at ".join(str(each) for each in (folder / OWN_MAP, shared) if each is not None)
         return None, [], [f"the log has no map: there is none at {looked}: give one with --map"]
     try:
-        rows = ipc.table(path, COLUMNS)
-        log_info(path, metadata(path, rows.schema))
-        is_lane = pc.equal(rows["map_layer"].cast(pa.int64()), facts.LAYERS["LANE"])
-    except (TraceError, pa.ArrowException) as error:
+        layers = Layers(str(path), ipc.table(path))
+    except TraceError as error:
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {error}")], []
-    if not pc.any(is_lane).as_py():
+    if not layers.count("LANE"):
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {path.name} has no lanes")], []
     notes = [] if path.name == OWN_MAP else [f"the map of the place is {path.name} under {path.parent.parent}"]
-    if set(lit) <= _signalled_lanes(rows):
+    if set(lit) <= _signalled_lanes(layers):
         return path.read_bytes(), [], notes
-    return _with_light_lanes(rows, lit), [], notes
+    return _with_light_lanes(layers, lit), [], notes
 
 
 def shared_map(folder: Path, info: LogInfo) -> Path | None:
@@ -61,35 +56,24 @@ def shared_map(folder: Path, info: LogInfo) -> Path | None:
     return root[2] / "maps" / info.dataset / f"{info.dataset}_{info.location}.arrow" if len(root) > 2 else None
 
 
-def _signalled_lanes(rows: pa.Table) -> set[int]:
+def _signalled_lanes(layers: Layers) -> set[int]:
     """Return the lanes that the map says to have lights: see `lanes.py`."""
-    layers = np.asarray(rows["map_layer"].to_numpy(), np.int64)
-    groups = _features(rows, layers == facts.LAYERS["LANE_GROUP"])
-    crossings = _features(rows, layers == facts.LAYERS["INTERSECTION"])
-    signalled = {name for name, said in crossings if said.get("intersection_type") == facts.SIGNALLED}
-    found: set[int] = set()
-    for _, said in groups:
-        if said.get("intersection_id") in signalled:
-            found.update(said.get("lane_ids") or ())
-    return found
+    quality = MapQuality()  # the map's reader reports what cannot be read
+    intersections = layers.features("INTERSECTION", Intersection, quality)
+    signalled = {name for name, said in intersections.items() if said.intersection_type == facts.SIGNALLED}
+    return {
+        lane
+        for group in layers.features("LANE_GROUP", LaneGroup, quality).values()
+        if group.intersection_id in signalled
+        for lane in group.lane_ids or ()
+    }
 
 
-def _features(rows: pa.Table, chosen: np.ndarray) -> list[tuple[int, dict[str, Any]]]:
-    some = rows.filter(pa.array(chosen))
-    try:
-        return [
-            (name, msgspec.msgpack.decode(packed, type=dict[str, Any]))
-            for name, packed in zip(some["object_id"].to_pylist(), some["features"].to_pylist(), strict=True)
-        ]
-    except (msgspec.DecodeError, TypeError):  # the map's reader says which
-        return []
-
-
-def _with_light_lanes(rows: pa.Table, lit: Sequence[int]) -> bytes:
+def _with_light_lanes(layers: Layers, lit: Sequence[int]) -> bytes:
     """Return the map as a file of its own, which says for which lanes there are lights."""
-    said = {METADATA_KEY: rows.schema.metadata[METADATA_KEY], LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
-    rows = rows.replace_schema_metadata(said)
+    said = {METADATA_KEY: layers.noted[METADATA_KEY], LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
+    rows = layers.rows.replace_schema_metadata(said)
     sink = pa.BufferOutputStream()
     with pa.ipc.new_file(sink, rows.schema) as writer:
         writer.write_table(rows)
-    return bytes(sink.getvalue())
+    return sink.getvalue().to_pybytes()

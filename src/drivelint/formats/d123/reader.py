@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from drivelint.arrays import Indices, Mask
+    from drivelint.arrays import Indices, Mask, Times
     from drivelint.formats.d123.arrow_files import LogInfo, Modality
     from drivelint.formats.probe import Probe
 
@@ -41,6 +41,7 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: who is around the ego is not recorded: rules that look at others than the ego are unknown",
 )
+_ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
 _MALFORMED: Final = "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
 
 
@@ -67,13 +68,13 @@ def read(probe: Probe) -> Recording:
     if frames.malformed.any():
         n = int(frames.malformed.sum())
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))
-        t_ns = time.times(sync["timestamp_us"])
+        t_ns = time.nanoseconds(integers(sync["timestamp_us"]))
         recording.lost += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
     others: list[States] = []
     if boxes is None:
         recording.findings.append(_NO_ROAD_USERS)
     else:
-        t_ns = time.of_rows(boxes.columns["timestamp_us"], frames.box_rows)
+        t_ns = time.nanoseconds(integers(boxes.columns["timestamp_us"])[frames.box_rows])
         states, findings, notes = box_file.box_states(boxes, frames.box_rows, t_ns, about)
         others.append(states)
         recording.findings += findings
@@ -82,12 +83,12 @@ def read(probe: Probe) -> Recording:
     forward_m = 0.0 if probe.options.ego_size is None else probe.options.ego_size.forward_m
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
-    t_ns = time.of_rows(ego.columns["timestamp_us"], frames.ego_rows)
+    t_ns = time.nanoseconds(frames.ego_us)
     own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about, name)
     recording.states, recording.ego_ids = _joined(own, others), [name]
     lit: tuple[int, ...] = ()
     if lights is not None:
-        shown = light_states(lights, about, time.times(lights.columns["timestamp_us"]))
+        shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
         recording.signals, lit = shown.rows, shown.lanes
         recording.findings += shown.findings
         recording.lost += shown.lost
@@ -101,19 +102,20 @@ _NOBODY: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}
 
 
 class _Frames(NamedTuple):
-    """The rows of the ego's file and of the boxes' that are one frame each, which frames are left out, and notes."""
+    """The rows of the ego's file and of the boxes' that are one frame each, which frames are left out, and notes.
+
+    `ego_us`: the time of each of the ego's rows.
+    """
 
     ego_rows: Indices
+    ego_us: Times
     box_rows: Indices
     malformed: Mask
     notes: list[str]
 
 
 def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Modality | None) -> _Frames:
-    """Return the frames that have the ego and boxes, if the log has boxes at all. Errors: `TraceError` if there is none.
-
-    Of the ego's rows the one of the boxes' own time counts, where there is one: a frame's is only the first after its time.
-    """
+    """Return the frames that have the ego and boxes, if the log has boxes at all. Errors: `TraceError` if there is none."""
     ego_rows = integers(sync[EGO_STATE])
     box_rows = integers(sync[BOXES]) if boxes is not None and BOXES in sync else np.full(len(ego_rows), -1)
     whole, malformed = ego_rows >= 0, ego_rows >= ego.n
@@ -134,12 +136,25 @@ def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Mo
             f"{path_of(folder, SYNC)}: no frame has the ego and boxes that can be read: nothing can be judged: convert the log again"
         )
     ego_rows, box_rows = ego_rows[chosen], box_rows[chosen]
+    moments = integers(ego.columns["timestamp_us"])
+    ego_us = moments[ego_rows]
     if boxes is not None:
-        at, moments = integers(boxes.columns["timestamp_us"])[box_rows], integers(ego.columns["timestamp_us"])
-        if (np.diff(moments) >= 0).all():
-            near = np.minimum(np.searchsorted(moments, at), len(moments) - 1)
-            ego_rows = np.where(moments[near] == at, near, ego_rows)
-    return _Frames(ego_rows, box_rows, np.asarray(malformed, np.bool_), notes)
+        ego_rows, ego_us = _ego_at(integers(boxes.columns["timestamp_us"])[box_rows], moments, ego_rows)
+    return _Frames(ego_rows, ego_us, box_rows, np.asarray(malformed, np.bool_), notes)
+
+
+def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices, Times]:
+    """Return for boxes of these times the row of the ego nearest in time, and its time. `moments`: the times of all its rows.
+
+    The row that a frame names may be a later one: the first after the frame's time. Converters round times, so that the ego's and the
+    boxes' differ by a microsecond where they are one.
+    """
+    if (np.diff(moments) < 0).any():
+        return frames_own, moments[frames_own]
+    after = np.clip(np.searchsorted(moments, box_us), 1, max(len(moments) - 1, 1))
+    before, after = after - 1, np.minimum(after, len(moments) - 1)
+    rows = np.where(box_us - moments[before] <= moments[after] - box_us, before, after)
+    return rows, np.where(np.abs(moments[rows] - box_us) <= _ROUNDED_US, box_us, moments[rows])
 
 
 def _joined(own: States, others: list[States]) -> States:
