@@ -101,10 +101,11 @@ def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
 def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
     """Return the class of each box, -1: not known; findings; and which boxes are the ego's own."""
     qualified = str(boxes.metadata.get("box_detection_label_class", ""))
-    enumeration = qualified.rpartition(".")[2]
-    codes, none_own = facts.label_classes(enumeration), np.zeros(len(numbers), np.bool_)
+    module, _, enumeration = qualified.rpartition(".")
+    of_package = not module or module.startswith("py123d.")
+    codes, none_own = facts.label_classes(enumeration) if of_package else None, np.zeros(len(numbers), np.bool_)
     if codes is None:
-        message = f"what {len(numbers)} boxes are is not known: their labels are numbers of {qualified or 'an enumeration without a name'!r}"
+        message = f"what {len(numbers)} boxes are is not known: their labels are numbers of {qualified or 'an enumeration without a name'}"
         finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []
         return np.full(len(numbers), -1, np.int8), finding, none_own
     inside = (numbers >= 0) & (numbers < len(codes))

@@ -116,7 +116,7 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
         return nothing
     still = told & (velocity == 0.0).all(axis=1)
     if still[told].all():
-        return np.where(told[:, None], 0.0, np.nan)
+        return np.where(told[:, None], np.zeros_like(velocity), np.nan)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
     if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[told] != 0.0).any() and box.place[:2].any():
         return nothing
