@@ -40,8 +40,8 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder that is one drive (`folders.KINDS`:
-    canonical tables, rosbag2, 123D) is taken as it is; any other is searched, with subfolders, for such folders and MCAP, Parquet, CSV, OSI,
-    SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there.
+    canonical tables, rosbag2, 123D) is taken as it is; any other is searched, with subfolders, for such folders and MCAP,
+    Parquet, CSV, OSI, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there.
     `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.

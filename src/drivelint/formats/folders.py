@@ -42,7 +42,13 @@ KINDS: Final = (
     FolderKind(
         "123d",
         ("ego_state_se3.arrow", "sync.arrow"),
-        ("box_detections_se3.arrow", "ego_state_se3.arrow", "map.arrow", "sync.arrow", "traffic_light_detections.arrow"),
+        (
+            "box_detections_se3.arrow",
+            "ego_state_se3.arrow",
+            "map.arrow",
+            "sync.arrow",
+            "traffic_light_detections.arrow",
+        ),
     ),
 )
 """The first kind whose marks a folder has is its kind."""

@@ -202,7 +202,7 @@ def intersection(number: int, groups: Sequence[int], kind: int = 0) -> Object:
     return Object(LAYERS["intersection"], number, features, shapely.box(0, 0, 1, 1))
 
 
-def crosswalk(number: int, x0: float, y0: float, x1: float, y1: float, z: float = 0.0) -> Object:
+def crosswalk(number: int, x0: float, y0: float, x1: float, y1: float, *, z: float = 0.0) -> Object:
     """Return a crosswalk."""
     ring = [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)]
     return Object(LAYERS["crosswalk"], number, {"outline": packed(ring)}, shapely.Polygon(ring))

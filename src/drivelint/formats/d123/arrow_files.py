@@ -103,7 +103,9 @@ def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
     try:
         return msgspec.msgpack.decode(packed, type=dict[str, Any])
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise TraceError(f"{path}: the metadata of its schema cannot be read: {error}: convert the log again") from error
+        raise TraceError(
+            f"{path}: the metadata of its schema cannot be read: {error}: convert the log again"
+        ) from error
 
 
 def _cast(path: Path, rows: pa.Table, name: str, kind: pa.DataType) -> pa.Array:

@@ -17,7 +17,7 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.arrays import Codes, Floats, Indices, Mask, Times
+    from drivelint.arrays import Codes, Indices, Mask, Times
     from drivelint.formats.d123.arrow_files import Modality
 
 _COLUMNS: Final = {
@@ -59,7 +59,9 @@ def box_states(
     labels, findings, own = _classes(boxes, integers(flat["label"]))
     notes = []
     if own.any():
-        notes.append(f"{int(own.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own")
+        notes.append(
+            f"{int(own.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own"
+        )
         keep = np.flatnonzero(~own)
         flat, frame, labels = {name: values.take(keep) for name, values in flat.items()}, frame[keep], labels[keep]
     tracks = flat["track_token"].dictionary_encode()
@@ -72,9 +74,7 @@ def box_states(
     numbers = {name: box[:, k].copy() for k, name in enumerate(STATE_COLUMNS[:3])}
     numbers["yaw_rad"] = Poses(box[:, :3], turn).yaw
     numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
-    numbers |= {
-        name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)
-    }
+    numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
     states = States(
         [str(token) for token in tracks.dictionary.to_pylist()],
         integers(tracks.indices).astype(np.int32),
@@ -169,15 +169,14 @@ def _way_between_boxes(states: States, frame: Indices, told: Mask) -> bool:
     """Say whether the velocities are those of the way from the box one frame before to the one after, nearly everywhere."""
     order = np.lexsort((frame, states.actor))
     actor, at = states.actor[order], frame[order]
-    middle = np.flatnonzero(
-        (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1) & told[order[1:-1]]
-    ) + 1
+    in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)
+    middle = np.flatnonzero(in_row & told[order[1:-1]]) + 1
     if len(middle) < _LEAST_COMPARED:
         return False
     before, here, after = order[middle - 1], order[middle], order[middle + 1]
-    span_s: Floats = (states.t_ns[after] - states.t_ns[before]) * 1e-9
+    span_s = (states.t_ns[after] - states.t_ns[before]) * 1e-9
     with np.errstate(divide="ignore", invalid="ignore"):
-        way = (states.place[:, after] - states.place[:, before]) / span_s
+        way = np.asarray((states.place[:, after] - states.place[:, before]) / span_s, np.float64)
     off = np.hypot(*(way - states.velocity[:, here]))
     moving = np.hypot(*way) > SAME_MPS
     return bool(moving.any() and (off[moving] <= SAME_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SHARE)

@@ -48,5 +48,7 @@ def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:
     every = np.concatenate([integers(stamps) for stamps in columns])
     low, high = int(every.min()), int(every.max())
     if max(-low, high) > _LATEST_US:
-        raise TraceError(f"{folder}: times from {low} to {high} us: the clock or its unit is wrong: convert the log again")
+        raise TraceError(
+            f"{folder}: times from {low} to {high} us: the clock or its unit is wrong: convert the log again"
+        )
     return Clock(0 if utc or high * 1000 < LEAST_UTC_NS else low)

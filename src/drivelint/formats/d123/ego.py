@@ -82,7 +82,7 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
 
 
-def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, about: facts.Dataset, name: str) -> States:
+def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about: facts.Dataset, name: str) -> States:
     """Return the states of the middle of the ego's box at these rows, at times `t_ns`, (rows,)."""
     n = len(rows)
     poses, motion = vectors(ego.columns["imu_se3"]), vectors(ego.columns["dynamic_state_se3"])
@@ -108,7 +108,7 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
     """
     nothing = np.full((len(motion), 3), np.nan)
     velocity, turning = motion[:, :3], motion[:, 6:9]
-    told = np.isfinite(velocity).all(axis=1)
+    told = np.asarray(np.isfinite(velocity).all(axis=1), np.bool_)
     if not told.any():
         return nothing
     outward = rotated(imu.turn, velocity)

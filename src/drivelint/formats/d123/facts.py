@@ -19,11 +19,15 @@ EGO_LABEL: Final = "EGO"
 class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What holds for a data set; the defaults hold for one that is not known.
 
-    `sensor_range_m`: how far it is documented to have whoever is there. `utc`: times count from 1970 in UTC. `ego_class`: of the vehicle that
-    recorded. `ego_size_recorded`: its size is that of this vehicle, not of its model. `box_velocities_global`: velocities of
-    boxes are along the axes of the map. `steady_for_flashing`: a light that flashes is written as one that shows this colour.
-    `lines_of_lanes`: the road lines are the bounds of the lanes, left and right, in the lanes' order, without those that are unmarked.
-    `estimated_bounds`: bounds of lanes that the converter estimates, "": none. `unsure_lines`: types of road lines that may be others.
+    `sensor_range_m`: how far it is documented to have whoever is there.
+    `utc`: times count from 1970 in UTC.
+    `ego_class`: of the vehicle that recorded.
+    `ego_size_recorded`: its size is that of this vehicle, not of its model.
+    `box_velocities_global`: velocities of boxes are along the axes of the map.
+    `steady_for_flashing`: a light that flashes is written as one that shows this colour.
+    `lines_of_lanes`: the road lines are the bounds of the lanes, left and right, in the lanes' order, without the unmarked.
+    `estimated_bounds`: bounds of lanes that the converter estimates, "": none.
+    `unsure_lines`: types of road lines that may be others.
     `sides`: location -> lht or rht.
     """
 

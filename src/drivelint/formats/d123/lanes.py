@@ -22,11 +22,12 @@ from drivelint.road.quality import MapQuality
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.arrays import Floats
+    from drivelint.arrays import Floats, Indices
     from drivelint.road.boundary_lanes import Mark, SpeedLimitSpan
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 _NOT_DRIVEN: Final = frozenset({"biking"})
+_MOST_POINTS: Final = 200  # of a bound, to see which way a lane runs
 _FASTEST_MPS: Final = 45.0  # 160 km/h: a higher one is none, or in another unit
 
 
@@ -41,13 +42,23 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     junctions = _junctions(lanes, layers.features("LANE_GROUP", LaneGroup, quality), intersections)
     followers = _followers(lanes)
     bounded = [
-        _bounded(name, lane, lanes, followers[name], marks[str(name)], junctions.get(name), quality)
+        _bounded(
+            name,
+            lane,
+            lanes=lanes,
+            followers=followers[name],
+            marks=marks[str(name)],
+            junction=junctions.get(name),
+            quality=quality,
+        )
         for name, lane in lanes.items()
     ]
     built = build_lanes(bounded, request.offset, quality)
     if not any(lane.drivable for lane in built):
         first = next((row["message"] for row in quality.rows if row["check_id"] == "invalid_lane"), "it has no lane")
-        raise MapError(f"map {source.name} has no lane for vehicles that can be built: {first}: give another with --map")
+        raise MapError(
+            f"map {source.name} has no lane for vehicles that can be built: {first}: give another with --map"
+        )
     if layers.said.get("map_has_z"):
         _set_heights(built, lanes, request.offset)
     if not intersections:
@@ -56,7 +67,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     side = choose_side([("option", request.side), ("attribute", by_place), ("lanes", side_driven_on(built))], quality)
     lit = {name for name, number in junctions.items() if intersections[number].intersection_type == facts.SIGNALLED}
     furniture = {
-        "traffic_signal": light_rows(built, lit | layers.light_lanes()),
+        "traffic_signal": light_rows(built, lit | layers.light_lanes),
         "crossing": crossing_rows(layers, built, request.offset, quality),
     }
     report_unread(layers, about, quality)
@@ -80,17 +91,18 @@ def _junctions(
     lanes: Mapping[int, Lane], groups: Mapping[int, LaneGroup], intersections: Mapping[int, Intersection]
 ) -> dict[int, int]:
     """Return lane -> the intersection that its group is part of."""
-    of_group = {
-        name: group.intersection_id for name, group in groups.items() if group.intersection_id in intersections
-    }
+    of_group: dict[int, int] = {}
+    for name, within in groups.items():
+        if within.intersection_id is not None and within.intersection_id in intersections:
+            of_group[name] = within.intersection_id
     for number, intersection in intersections.items():
         for name in intersection.lane_group_ids or ():
             of_group.setdefault(name, number)
     found = {}
     for name, lane in lanes.items():
-        number = None if lane.lane_group_id is None else of_group.get(lane.lane_group_id)
-        if number is not None:
-            found[name] = number
+        group = lane.lane_group_id
+        if group is not None and group in of_group:
+            found[name] = of_group[group]
     return found
 
 
@@ -107,6 +119,7 @@ def _followers(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
 def _bounded(
     name: int,
     lane: Lane,
+    *,
     lanes: Mapping[int, Lane],
     followers: set[str],
     marks: tuple[Mark, ...],
@@ -152,9 +165,14 @@ def _runs_against(lane: Lane, other: Lane) -> bool:
 
 def _pieces(lane: Lane) -> tuple[Floats, Floats]:
     """Return the middles (n, 2) and directions (n, 2) of the pieces of both bounds of a lane."""
-    lines = [bound[:, :2] for bound in (lane.left_boundary, lane.right_boundary)]
+    lines = [bound[_some(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
     middles = np.vstack([(line[1:] + line[:-1]) / 2.0 for line in lines])
     return middles, np.vstack([np.diff(line, axis=0) for line in lines])
+
+
+def _some(n: int) -> Indices:
+    """Return the numbers of at most some of n points, the first and the last with them."""
+    return np.unique(np.linspace(0, n - 1, min(n, _MOST_POINTS)).astype(np.intp))
 
 
 def _set_heights(built: Sequence[BoundedLane], lanes: Mapping[int, Lane], offset: tuple[float, float]) -> None:

@@ -45,7 +45,9 @@ def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightSt
     findings, lost = [], []
     if bad.any():
         what = "frames of traffic lights whose lanes and states differ in number"
-        findings.append(QualityFinding("malformed_row", "warning", f"{what}: {int(bad.sum())}: left out", int(bad.sum())))
+        findings.append(
+            QualityFinding("malformed_row", "warning", f"{what}: {int(bad.sum())}: left out", int(bad.sum()))
+        )
         lost = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, what)
     good = pa.array(~bad)
     lane, status = (integers(lights.columns[name].filter(good).flatten()) for name in _COLUMNS)
@@ -83,7 +85,9 @@ def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Cod
     lit = codes >= 0
     shown = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
     shown[light[lit], codes[lit]] = True
-    doubtful = (shown.sum(axis=1) == 1) & ~shown[:, SIGNAL_STATES.index("green")] & ~shown[:, SIGNAL_STATES.index("off")]
+    doubtful = (
+        (shown.sum(axis=1) == 1) & ~shown[:, SIGNAL_STATES.index("green")] & ~shown[:, SIGNAL_STATES.index("off")]
+    )
     if not doubtful.any():
         return codes, []
     message = (

@@ -8,11 +8,11 @@ import msgspec
 import pyarrow as pa
 
 from drivelint.drive.trace import QualityFinding
-from drivelint.errors import TraceError
+from drivelint.errors import MapError
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import METADATA_KEY
 from drivelint.formats.d123.map_layers import LIGHT_LANES_KEY, Intersection, LaneGroup, Layers
-from drivelint.formats.tables import ipc
+from drivelint.formats.map_registry import read_source
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -36,14 +36,15 @@ def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | N
         looked = " nor at ".join(str(each) for each in (folder / OWN_MAP, shared) if each is not None)
         return None, [], [f"the log has no map: there is none at {looked}: give one with --map"]
     try:
-        layers = Layers(str(path), ipc.table(path))
-    except TraceError as error:
+        source = read_source(path)
+        layers = Layers.of_source(source)
+    except MapError as error:
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {error}")], []
     if not layers.count("LANE"):
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {path.name} has no lanes")], []
     notes = [] if path.name == OWN_MAP else [f"the map of the place is {path.name} under {path.parent.parent}"]
     if set(lit) <= _signalled_lanes(layers):
-        return path.read_bytes(), [], notes
+        return source.content, [], notes
     return _with_light_lanes(layers, lit), [], notes
 
 
@@ -71,9 +72,9 @@ def _signalled_lanes(layers: Layers) -> set[int]:
 
 def _with_light_lanes(layers: Layers, lit: Sequence[int]) -> bytes:
     """Return the map as a file of its own, which says for which lanes there are lights."""
-    said = {METADATA_KEY: layers.noted[METADATA_KEY], LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
+    said = {METADATA_KEY: layers.packed_said, LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
     rows = layers.rows.replace_schema_metadata(said)
     sink = pa.BufferOutputStream()
     with pa.ipc.new_file(sink, rows.schema) as writer:
         writer.write_table(rows)
-    return sink.getvalue().to_pybytes()
+    return bytes(memoryview(sink.getvalue()))

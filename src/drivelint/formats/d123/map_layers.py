@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import msgspec
 import numpy as np
@@ -11,7 +11,7 @@ import shapely
 
 from drivelint.errors import MapError, TraceError
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import log_info, metadata
+from drivelint.formats.d123.arrow_files import METADATA_KEY, log_info, metadata
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 T = TypeVar("T")
-COLUMNS = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
-LIGHT_LANES_KEY = b"drivelint.light_lanes"
+_LONGEST_M: Final = 100_000.0  # longer is a mistake
+COLUMNS: Final = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
+LIGHT_LANES_KEY: Final = b"drivelint.light_lanes"
 """Metadata that we add to a log's own map: the lanes for which the log has states of lights."""
 
 
@@ -70,9 +71,14 @@ class Layers:
         try:
             self.rows = rows.select(list(COLUMNS)).cast(pa.schema(list(COLUMNS.items()))).combine_chunks()
         except pa.ArrowException as error:
-            raise TraceError(f"{name}: its columns are not those of a map of 123D: {error}: convert it again") from error
+            raise TraceError(
+                f"{name}: its columns are not those of a map of 123D: {error}: convert it again"
+            ) from error
+        if self.rows["object_id"].null_count or self.rows["map_layer"].null_count:
+            raise TraceError(f"{name}: an object has no number or no layer: convert it again")
         self._layer = np.asarray(self.rows["map_layer"].to_numpy(), np.int64)
-        self.noted = rows.schema.metadata
+        self.packed_said = rows.schema.metadata[METADATA_KEY]
+        self.light_lanes = _light_lanes(name, rows.schema)
 
     @classmethod
     def of_source(cls, source: MapSource) -> Layers:
@@ -101,6 +107,9 @@ class Layers:
         found: dict[int, T] = {}
         decoder = msgspec.msgpack.Decoder(kind)
         for name, packed in zip(some["object_id"].to_pylist(), some["features"].to_pylist(), strict=True):
+            if name in found:
+                self._report(layer, name, "another has the same number", quality)
+                continue
             try:
                 found[name] = decoder.decode(packed or b"")
             except (msgspec.MsgspecError, UnicodeDecodeError) as error:
@@ -119,11 +128,6 @@ class Layers:
             else:
                 self._report(layer, name, "it has no outline", quality)
         return found
-
-    def light_lanes(self) -> set[int]:
-        """Return the lanes for which a log that has this map has states of lights."""
-        packed = (self.noted or {}).get(LIGHT_LANES_KEY)
-        return set() if packed is None else set(msgspec.msgpack.decode(packed, type=list[int]))
 
     def _of(self, layer: str) -> pa.Table:
         return self.rows.filter(pa.array(self._layer == facts.LAYERS[layer]))
@@ -146,4 +150,16 @@ def points_of(value: Any) -> Floats:
         raise ValueError(f"a bound is no array: {error!r}") from error
     if points.ndim != 2 or points.shape[1] not in {2, 3} or len(points) < 2:
         raise ValueError(f"the points of a bound have the shape {points.shape}")
+    length_m = float(np.hypot(*np.diff(points[:, :2], axis=0).T).sum())
+    if not length_m < _LONGEST_M:
+        raise ValueError(f"a bound is {length_m / 1000:.0f} km long")
     return points
+
+
+def _light_lanes(name: str, schema: pa.Schema) -> frozenset[int]:
+    """Return the lanes for which the log that has this map has states of lights."""
+    packed = schema.metadata.get(LIGHT_LANES_KEY)
+    try:
+        return frozenset() if packed is None else frozenset(msgspec.msgpack.decode(packed, type=list[int]))
+    except msgspec.MsgspecError as error:
+        raise TraceError(f"{name}: {LIGHT_LANES_KEY.decode()} in its metadata is no list of lanes: {error}") from error

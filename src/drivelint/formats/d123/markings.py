@@ -13,7 +13,7 @@ from drivelint.road.boundary_lanes import Mark, both_marks, resampled, stations
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.arrays import Floats, Indices
+    from drivelint.arrays import Floats, Indices, Mask
 
 _NEAR_M: Final = 0.1  # a painted line is about as wide
 _PIECE_M: Final = 2.0
@@ -105,12 +105,18 @@ def _piece_codes(points: Floats, starts: Indices, tree: shapely.STRtree, codes: 
     is_middle = np.zeros(len(points), np.bool_)
     is_middle[middles] = True
     some = keys[is_middle[keys // n]]
-    along = some[np.isin(some - n, keys) & np.isin(some + n, keys)]
+    along = some[_are_among(some - n, keys) & _are_among(some + n, keys)]
     piece = np.searchsorted(middles, along // n)
     lowest, highest = np.full(len(middles), np.iinfo(np.int64).max), np.full(len(middles), _UNKNOWN - 1)
     np.minimum.at(lowest, piece, codes[along % n])
     np.maximum.at(highest, piece, codes[along % n])
     return np.where(lowest == highest, lowest, _UNKNOWN)
+
+
+def _are_among(values: Indices, ordered: Indices) -> Mask:
+    """Say which values are among the others, which are in order."""
+    at = np.minimum(np.searchsorted(ordered, values), max(len(ordered) - 1, 0))
+    return np.asarray(ordered[at] == values, np.bool_) if len(ordered) else np.zeros(len(values), np.bool_)
 
 
 def _runs(side: str, pieces: Indices) -> list[Mark]:

@@ -42,7 +42,9 @@ _NO_ROAD_USERS: Final = QualityFinding(
     f"the log has no {BOXES}.arrow: who is around the ego is not recorded: rules that look at others than the ego are unknown",
 )
 _ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
-_MALFORMED: Final = "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
+_MALFORMED: Final = (
+    "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
+)
 
 
 def accepts(probe: Probe) -> bool:
@@ -84,7 +86,7 @@ def read(probe: Probe) -> Recording:
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
     t_ns = time.nanoseconds(frames.ego_us)
-    own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about, name)
+    own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
     recording.states, recording.ego_ids = _joined(own, others), [name]
     lit: tuple[int, ...] = ()
     if lights is not None:
@@ -122,7 +124,9 @@ def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Mo
     notes = []
     if boxes is not None:
         if n := int((whole & (box_rows < 0)).sum()):
-            notes.append(f"{n} of {int(whole.sum())} frames have no boxes: they are not read, as nobody knows who was there")
+            notes.append(
+                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, as nobody knows who was there"
+            )
         if n := boxes.n - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n)])):
             notes.append(f"{n} of {boxes.n} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")
         whole &= box_rows >= 0

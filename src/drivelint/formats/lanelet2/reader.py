@@ -135,4 +135,3 @@ def _marking(bound: Any, *, near_left: bool) -> str | None:
         first_solid = (style == "solid_dashed") != bool(bound.inverted())
         return "solid_broken" if first_solid == near_left else "broken_solid"
     return _LINES.get(style)
-

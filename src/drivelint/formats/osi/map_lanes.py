@@ -84,7 +84,9 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
         s = stations(drawn.centre)
         points = resampled(drawn.centre, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
-        heights = [heights_beside(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
+        heights = [
+            heights_beside(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)
+        ]
         level = np.abs(points[over, 2] - heights)
         same = level < _SAME_SURFACE_M
         if len(set(over[same].tolist())) > len(points) / 2:
