@@ -6,7 +6,7 @@ CREATE TABLE environment (
     environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default, with ~ if the lanes run the other way than its rule says>
     name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
     sha256 VARCHAR NOT NULL,          -- hash of the map's bytes
-    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi, argoverse2
+    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi, argoverse2, 123d, scenarionet
     offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
     handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
@@ -16,7 +16,8 @@ CREATE TABLE environment (
     geo_offset_y_m DOUBLE,            -- the same for y
     geo_offset_z_m DOUBLE,            -- the same for z
     geo_offset_yaw_rad DOUBLE,        -- turn about the z axis from the map's own coordinates to those of geo_reference, counter-clockwise
-    geo_usable BOOLEAN                -- geo_reference gives positions on the earth; why not is in map_quality (geo_reference_unusable); NULL: there is none
+    geo_usable BOOLEAN,               -- geo_reference gives positions on the earth; why not is in map_quality (geo_reference_unusable); NULL: there is none
+    signs_mapped BOOLEAN NOT NULL     -- it has the stop and give-way signs of the ways into its junctions, where there are any; false: it has none of them (signs_unmapped in map_quality)
 );
 
 -- lifetime: map

@@ -107,7 +107,13 @@ branch_count AS (
     LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
-map_with_signals AS (SELECT DISTINCT environment_id FROM traffic_signal WHERE kind IN ('traffic_light', 'stop', 'give_way')),
+-- A map with lights alone does not tell that no sign stands where there is no light.
+map_with_signals AS (
+    SELECT DISTINCT t.environment_id
+    FROM traffic_signal t
+    JOIN environment e USING (environment_id)
+    WHERE e.signs_mapped AND t.kind IN ('traffic_light', 'stop', 'give_way')
+),
 -- Passages where the map begins so shortly before the junction that a signal may stand outside the map.
 cropped_approach AS (
     SELECT w.drive_id, w.ego_id, w.t_first_ns
@@ -127,7 +133,7 @@ passage_detail AS (
         -- Once the ego's centre is on the lane after the junction, its turn is seen, even if the log ends before its rear is past the
         -- junction.
         CASE WHEN e.t_in_ns IS NOT NULL AND (o.t_out_ns IS NOT NULL OR a.t_first_ns > i.t_last_ns) THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
-        CASE WHEN g.environment_id IS NOT NULL AND w.entry_mark IS NOT NULL THEN coalesce(w.entry_mark.control, CASE WHEN x.t_first_ns IS NULL THEN 'none' END) END AS control
+        CASE WHEN w.entry_mark IS NOT NULL THEN coalesce(w.entry_mark.control, CASE WHEN g.environment_id IS NOT NULL AND x.t_first_ns IS NULL THEN 'none' END) END AS control
     FROM passage i
     JOIN environment v USING (environment_id)
     LEFT JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)

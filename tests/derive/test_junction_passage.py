@@ -10,11 +10,13 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from drivelint.arrays import with_columns
 from tests.cropping import beyond, cropped
 from tests.derive.junction_scenes import ARM, TURN, R, cross, signal, star
 from tests.scenes import Actor, Road, derived, drive, judged, moving, rows, times
 
 if TYPE_CHECKING:
+    from drivelint.road.map_reader import MapTables
     from tests.scenes import Row
 
 LENGTH = {"right": TURN, "straight": 2 * R, "left": TURN}
@@ -199,6 +201,19 @@ def test_what_governs_the_way_in(hand: str, code: str, control: str, minor: bool
     way = cross(hand, signals)["we"]
     (row,) = passages(going(way), way=way)
     assert (row["control"], row["minor"]) == (control, minor)
+
+
+@pytest.mark.parametrize(("of", "control"), [("1", "traffic_light"), ("3", None)])
+def test_a_map_without_signs_tells_only_of_lights(of: str, control: str | None) -> None:
+    """A light on the way in governs it; where it stands on another way in, a sign may stand on this one."""
+    way = cross("rht", ((of, signal("a", 170.0, "1000001")),))["we"]
+    (row,) = passages(going(way), way=replace(way, environment=without_signs(way.environment)))
+    assert row["control"] == control
+
+
+def without_signs(environment: MapTables) -> MapTables:
+    about = with_columns(environment.tables["environment"], {"signs_mapped": [False]})
+    return replace(environment, tables={**environment.tables, "environment": about})
 
 
 @pytest.mark.parametrize(("s", "orientation", "control"), [(136, "+", "stop"), (134, "+", "none"), (170, "-", "none")])

@@ -1,7 +1,7 @@
 """The code blocks of README and of the guides do what the pages say.
 
 `<!-- run: 0 1 -->` above a block: its lines are run, in a folder with the files of `PREPARED`, and exit so. `with FILE as NAME`
-behind it: the reference file is there under that name. `<!-- prints -->`: the lines are in what the block before
+behind it: the reference file or folder is there under that name. `<!-- prints -->`: the lines are in what the block before
 printed, in this order; `...` stands for any lines between. `<!-- file: NAME -->`: the block is that file.
 """
 
@@ -81,7 +81,8 @@ def run_block(block: Block, folder: Path) -> str:
     codes, _, needs = block.argument.partition(" with ")
     if needs:
         source, _, name = needs.partition(" as ")
-        shutil.copy(shared(source), folder / name)
+        copy = shutil.copytree if shared(source).is_dir() else shutil.copy
+        copy(shared(source), folder / name)
     printed = ""
     lines = block.body.splitlines()
     assert len(lines) == len(codes.split()), "an exit code for each line"

@@ -41,10 +41,11 @@ ANNOTATED_FOLDER = "annotated"
 def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
-    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder with
-    `actor_state.parquet`, of rosbag2, Argoverse 2 or 123D is one drive; any other is searched, with subfolders, for MCAP, Parquet, CSV,
-    OSI, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote there. Subfolders that cannot
-    be read, links to folders elsewhere and dead links are among what is returned: `read_trace` says why they cannot be judged.
+    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder that is one drive (`folders.KINDS`:
+    canonical tables, rosbag2, Argoverse 2, 123D) is taken as it is; any other is searched, with subfolders, for such folders and MCAP,
+    Parquet, CSV, OSI, ScenarioNet, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote
+    there. Subfolders that cannot be read, links to folders elsewhere and dead links are among what is returned: `read_trace` says why
+    they cannot be judged.
     `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.

@@ -42,8 +42,14 @@ KINDS: Final = (
     FolderKind("argoverse2-forecasting", ("scenario_*.parquet",), ("log_map_archive_*.json", "scenario_*.parquet")),
     FolderKind(
         "123d",
-        ("ego_state_se3.arrow",),
-        ("box_detections_se3.arrow", "ego_state_se3.arrow", "map.arrow", "sync.arrow", "traffic_lights.arrow"),
+        ("ego_state_se3.arrow", "sync.arrow"),
+        (
+            "box_detections_se3.arrow",
+            "ego_state_se3.arrow",
+            "map.arrow",
+            "sync.arrow",
+            "traffic_light_detections.arrow",
+        ),
     ),
 )
 """The first kind whose marks a folder has is its kind."""

@@ -106,7 +106,7 @@ def _reader(source: MapSource) -> str:
         looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
         raise MapError(
             f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
-            "CommonRoad (<commonRoad>), Lanelet2 (<osm>) and SUMO networks (<net>)"
+            "CommonRoad (<commonRoad>), Lanelet2 (<osm>), SUMO networks (<net>) and maps of 123D (Arrow)"
         )
     return READERS[root.lower()]
 

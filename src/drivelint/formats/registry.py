@@ -9,6 +9,7 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.argoverse2 import forecasting, sensor
 from drivelint.formats.commonroad import scenario
+from drivelint.formats.d123 import reader as d123
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.film import reader as film
 from drivelint.formats.folders import is_drive_folder
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 READERS: Final[tuple[Reader, ...]] = (
     film,
     canonical,
+    d123,
     mcap,
     osi_file,
     scenario,
@@ -76,7 +78,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: give the folder")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
-        "SUMO's floating car data, a CommonRoad scenario, or the folder of a log of Argoverse 2 or 123D"
+        "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"
     )
 
 

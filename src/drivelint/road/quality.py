@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
+SIGNS_UNMAPPED: Final = "signs_unmapped"
+"""The check of a map that has no stop and give-way signs, whether they stand there or not."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
 

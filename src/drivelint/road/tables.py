@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 
 from drivelint.road.geo_reference import GeoFrame, why_unusable
 from drivelint.road.map_reader import MapTables
+from drivelint.road.quality import SIGNS_UNMAPPED
 from drivelint.sql.store import owned_table
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ def map_tables(
         "handedness": side[0], "handedness_source": side[1], "geo_reference": geo.reference if geo else None,
         **{f"geo_offset_{part}": getattr(geo, part, None) for part in ("x_m", "y_m", "z_m", "yaw_rad")},
         "geo_usable": trouble is None if geo else None,
+        "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED for row in quality.rows),
     }  # fmt: skip
     about = owned_table("environment", name, [environment])
     found = owned_table("map_quality", name, quality.sorted_rows())

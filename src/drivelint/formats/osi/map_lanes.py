@@ -20,12 +20,12 @@ from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi.schema import message_class
 from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
 from drivelint.road.driving_side import choose_side
+from drivelint.road.line_heights import heights_beside
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from drivelint.arrays import Floats
     from drivelint.formats.osi.map_logical import LogicalLane
     from drivelint.formats.osi.map_physical import PhysicalLane
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
@@ -59,7 +59,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
     heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
-        lane.z = _height(heights[lane.lanelet_id], lane.line.centre - request.offset)
+        lane.z = heights_beside(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option counts whatever the lanes say
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
@@ -84,18 +84,14 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
         s = stations(drawn.centre)
         points = resampled(drawn.centre, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
-        heights = [_height(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)]
+        heights = [
+            heights_beside(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)
+        ]
         level = np.abs(points[over, 2] - heights)
         same = level < _SAME_SURFACE_M
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
     return covers
-
-
-def _height(line: Floats, points: Floats) -> Floats:
-    """Return the height of a line (n, 3) beside points (m, 2)."""
-    at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
-    return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)
 
 
 def _why_none(truth: Any, quality: MapQuality) -> str:

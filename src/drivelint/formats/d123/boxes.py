@@ -1,0 +1,182 @@
+"""The boxes of a 123D log (`box_detections_se3.arrow`): one row per frame, a list of boxes in each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
+from drivelint.formats.coordinate_frames import Poses, unit_quaternions
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, lengths, modality, vectors
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.arrays import Codes, Indices, Mask, Times
+    from drivelint.formats.d123.arrow_files import Modality
+
+_COLUMNS: Final = {
+    "bounding_box_se3": pa.list_(pa.list_(pa.float64(), 10)),  # centre, quaternion w x y z, length, width, height
+    "track_token": pa.list_(pa.string()),
+    "label": pa.list_(pa.int32()),
+    "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
+}
+SAME_MPS: Final = 1e-6
+"""A recorded velocity is measured; one that is the way between the boxes before and after to this is not."""
+_LEAST_COMPARED: Final = 20
+_LEAST_SHARE: Final = 0.99
+
+
+def read_boxes(folder: Path) -> Modality | None:
+    """Return the file of boxes, or None where the log has none. Errors: as `modality`."""
+    return modality(folder, BOXES, _COLUMNS)
+
+
+def malformed_rows(boxes: Modality) -> Mask:
+    """Say of which frames the lists cannot be understood: they differ in length, or a box has no track."""
+    counts = [lengths(boxes.columns[name]) for name in _COLUMNS]
+    bad = np.any([n != counts[0] for n in counts[1:]], axis=0) | (counts[0] < 0)
+    tokens = boxes.columns["track_token"]
+    nameless = pc.fill_null(pc.equal(tokens.flatten(), ""), True)
+    if pc.any(nameless).as_py():
+        parents = integers(pc.list_parent_indices(tokens))
+        bad[parents[np.asarray(nameless.to_numpy(zero_copy_only=False), np.bool_)]] = True
+    return np.asarray(bad, np.bool_)
+
+
+def box_states(
+    boxes: Modality, rows: Indices, t_ns: Times, about: facts.Dataset
+) -> tuple[States, list[QualityFinding], list[str]]:
+    """Return the boxes of these rows, none of them malformed, as states at times `t_ns`, (rows,), with findings and notes."""
+    columns = {name: _of_rows(boxes.columns[name], rows) for name in _COLUMNS}
+    frame = np.repeat(np.arange(len(rows)), lengths(columns["track_token"]))
+    flat = {name: lists.flatten() for name, lists in columns.items()}
+    labels, findings, own = _classes(boxes, integers(flat["label"]))
+    notes = []
+    if own.any():
+        notes.append(
+            f"{int(own.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own"
+        )
+        keep = np.flatnonzero(~own)
+        flat, frame, labels = {name: values.take(keep) for name, values in flat.items()}, frame[keep], labels[keep]
+    tracks = flat["track_token"].dictionary_encode()
+    box, velocity = vectors(flat["bounding_box_se3"]), vectors(flat["velocity_3d"])
+    given = ~is_null(flat["velocity_3d"])
+    odd = ~np.isfinite(box).all(axis=1) | (given & ~np.isfinite(velocity).all(axis=1))
+    if odd.any():
+        box, velocity = (np.where(np.isfinite(values), values, np.nan) for values in (box, velocity))
+    turn = unit_quaternions(box[:, [4, 5, 6, 3]])
+    numbers = {name: box[:, k].copy() for k, name in enumerate(STATE_COLUMNS[:3])}
+    numbers["yaw_rad"] = Poses(box[:, :3], turn).yaw
+    numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
+    numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
+    states = States(
+        [str(token) for token in tracks.dictionary.to_pylist()],
+        integers(tracks.indices).astype(np.int32),
+        t_ns[frame],
+        numbers,
+        {"actor_class": labels},
+        np.asarray(odd, np.bool_),
+    )
+    if not about.box_velocities_global:
+        _forget_velocities(states, np.ones(len(states), np.bool_))
+        notes.append("velocities of boxes are not read: this data set's are along the boxes' own axes in 123D")
+    else:
+        findings += _without_untold_velocities(states, frame)
+    return states, findings, notes
+
+
+def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
+    """Return the lists of these rows; all of them in their order need no copy."""
+    if len(rows) == len(lists) and np.array_equal(rows, np.arange(len(lists))):
+        return lists
+    return lists.take(pa.array(rows))
+
+
+def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
+    """Return the class of each box, -1: not known; findings; and which boxes are the ego's own."""
+    qualified = str(boxes.metadata.get("box_detection_label_class", ""))
+    module, _, enumeration = qualified.rpartition(".")
+    of_package = not module or module.startswith("py123d.")
+    codes, none_own = facts.label_classes(enumeration) if of_package else None, np.zeros(len(numbers), np.bool_)
+    if codes is None:
+        message = f"what {len(numbers)} boxes are is not known: their labels are numbers of {qualified or 'an enumeration without a name'}"
+        finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []
+        return np.full(len(numbers), -1, np.int8), finding, none_own
+    inside = (numbers >= 0) & (numbers < len(codes))
+    found = np.where(inside, codes[np.where(inside, numbers, 0)], -2).astype(np.int8)
+    unknown = found == -2
+    findings = []
+    if unknown.any():
+        which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(numbers[unknown]).tolist()])
+        message = f"labels that {enumeration} does not have ({which}) of {int(unknown.sum())} boxes: what these are is not known"
+        findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
+    ego_number = facts.LABELS[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
+    own = (numbers == ego_number) & inside
+    return np.maximum(found, -1).astype(np.int8), findings, np.asarray(own, np.bool_)
+
+
+def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFinding]:
+    """Forget velocities that nobody measured: a zero that stands for none, and the way from box to box.
+
+    Converters write zero for "none", in a whole log or where a box has no neighbour in time, and may fill velocities in from
+    the boxes before and after. States in the order of the frames; changed in place.
+    """
+    v = states.velocity
+    zero = (v == 0.0).all(axis=0)
+    counts = np.bincount(states.actor, minlength=len(states.ids))
+    alone = zero & (counts[states.actor] == 1)
+    _forget_velocities(states, alone)
+    told = ~np.isnan(v).any(axis=0) & ~alone
+    if not told.any():
+        return []
+    if zero[told].all():
+        if not _moves(states):
+            return []  # whoever is recorded stands: zero is what it says
+        why = "velocity (0, 0, 0) of all {n} boxes, though they move, stands for none"
+    elif _way_between_boxes(states, frame, told):
+        why = "velocities of {n} boxes are the way between the boxes before and after, filled in by the converter: they are not read"
+    else:
+        return []
+    findings = states.findings(told, "velocity_not_recorded", "info", why)
+    _forget_velocities(states, told)
+    return findings
+
+
+def _forget_velocities(states: States, rows: Mask) -> None:
+    for name in ("vx_mps", "vy_mps"):
+        states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
+
+
+def _moves(states: States, least_m: float = 0.5) -> bool:
+    """Say whether any actor's places are further apart than this."""
+    n = len(states.ids)
+    for values in states.place:
+        low, high = np.full(n, np.inf), np.full(n, -np.inf)
+        np.fmin.at(low, states.actor, values)
+        np.fmax.at(high, states.actor, values)
+        if (high - low > least_m).any():
+            return True
+    return False
+
+
+def _way_between_boxes(states: States, frame: Indices, told: Mask) -> bool:
+    """Say whether the velocities are those of the way from the box one frame before to the one after, nearly everywhere."""
+    order = np.lexsort((frame, states.actor))
+    actor, at = states.actor[order], frame[order]
+    in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)
+    middle = np.flatnonzero(in_row & told[order[1:-1]]) + 1
+    if len(middle) < _LEAST_COMPARED:
+        return False
+    before, here, after = order[middle - 1], order[middle], order[middle + 1]
+    span_s = (states.t_ns[after] - states.t_ns[before]) * 1e-9
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = np.asarray((states.place[:, after] - states.place[:, before]) / span_s, np.float64)
+    off = np.hypot(*(way - states.velocity[:, here]))
+    moving = np.hypot(*way) > SAME_MPS
+    return bool(moving.any() and (off[moving] <= SAME_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SHARE)

@@ -1,0 +1,156 @@
+"""The ego of a 123D log (`ego_state_se3.arrow`): the pose of its IMU, and in the metadata how its box lies around that."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_SIZE, SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
+from drivelint.errors import TraceError
+from drivelint.formats.coordinate_frames import Poses, rotated, unit_quaternions
+from drivelint.formats.d123.arrow_files import EGO_STATE, is_null, modality, vectors
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from drivelint.arrays import Floats, Indices, Mask, Times
+    from drivelint.formats.d123 import facts
+    from drivelint.formats.d123.arrow_files import Modality
+
+_COLUMNS: Final = {
+    "imu_se3": pa.list_(pa.float64(), 7),  # place, quaternion w x y z
+    "dynamic_state_se3": pa.list_(pa.float64(), 9),  # velocity, acceleration, angular velocity along the ego's axes
+}
+EGO_ID: Final = "ego"
+_TURNS_RAD: Final = 0.02
+_LEAST_COMPARED: Final = 20
+_LEAST_SHARE: Final = 0.99
+_SAME_MPS: Final = 1e-6
+
+
+class EgoBox(NamedTuple):
+    """How the ego's box lies: its centre in the frame of the IMU, place (3,) and quaternion x y z w (4,); its sizes, NaN: not known."""
+
+    place: Floats
+    turn: Floats
+    sizes: Floats
+
+
+def read_ego(folder: Path) -> Modality:
+    """Return the file of ego states. Errors: as `modality`, and `TraceError` where it has no row."""
+    found = modality(folder, EGO_STATE, _COLUMNS)
+    if found is None or not found.n:
+        raise TraceError(f"{folder / EGO_STATE}.arrow: it has no state of the ego: convert the log again")
+    return found
+
+
+def ego_id(taken: Iterable[str]) -> str:
+    """Return an id for the ego that no box has."""
+    name, others = EGO_ID, set(taken)
+    while name in others:
+        name += "_vehicle"
+    return name
+
+
+def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) -> tuple[EgoBox, list[QualityFinding]]:
+    """Return how the ego's box lies, with findings. Errors: `TraceError` for metadata that do not say it.
+
+    `forward_m`: the user's word for how far its centre is ahead, used where the metadata contradict themselves.
+    """
+    said = ego.metadata
+    centre, axle = (_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
+    sizes = np.array([_length(said.get(key)) for key in ("length", "width", "height")])
+    findings = []
+    wheel_base = _length(said.get("wheel_base"))
+    if not math.isnan(wheel_base) and np.hypot(*(centre[:2] - axle[:2])) < 0.1 * wheel_base:
+        # a box's middle lies between the axles: one of the two is not what it says
+        sizes[:] = np.nan
+        centre[0] += forward_m
+        message = (
+            "the metadata put the middle of the ego's box on its rear axle: where its box lies is not known: say its size, and how far "
+            "its middle is ahead of the recorded place: --ego-size LENGTH,WIDTH,AHEAD"
+        )
+        findings.append(QualityFinding("reference_point", "warning", message, actor_id=name))
+    elif not about.ego_size_recorded and not np.isnan(sizes[:2]).any():
+        model = said.get("vehicle_name") or "its model"
+        message = f"the ego's size is the one that 123D has for {model}, not recorded"
+        findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=name))
+    return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
+
+
+def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about: facts.Dataset, name: str) -> States:
+    """Return the states of the middle of the ego's box at these rows, at times `t_ns`, (rows,)."""
+    n = len(rows)
+    poses, motion = vectors(ego.columns["imu_se3"]), vectors(ego.columns["dynamic_state_se3"])
+    turn = unit_quaternions(poses[:, [4, 5, 6, 3]])
+    velocity = _centre_velocity(ego, Poses(poses[:, :3], turn), motion, box)[rows]
+    odd = ~np.isfinite(poses[rows]).all(axis=1)
+    odd |= ~is_null(ego.columns["dynamic_state_se3"])[rows] & ~np.isfinite(motion[rows, :3]).all(axis=1)
+    imu = Poses(poses[rows, :3], turn[rows])
+    middle = imu.compose(Poses(np.tile(box.place, (n, 1)), np.tile(box.turn, (n, 1))))
+    place = np.where(np.isfinite(middle.place), middle.place, np.nan)
+    numbers = {column: place[:, k].copy() for k, column in enumerate(STATE_COLUMNS[:3])}
+    numbers |= {"yaw_rad": middle.yaw, "vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
+    numbers |= {column: np.full(n, size) for column, size in zip(SIZE_COLUMNS, box.sizes.tolist(), strict=True)}
+    kind = np.full(n, ACTOR_CLASSES.index(about.ego_class), np.int8)
+    return States([name], np.zeros(n, np.int32), t_ns, numbers, {"actor_class": kind}, np.asarray(odd, np.bool_))
+
+
+def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> Floats:
+    """Return the velocity of the middle of the box along the map's axes, (n, 3), NaN: not known.
+
+    That of the IMU is recorded, and how fast the ego turns; where the log turns and says that it does not, nobody knows how fast. A
+    velocity that is the way from pose to pose was filled in by the converter.
+    """
+    nothing = np.full((len(motion), 3), np.nan)
+    velocity, turning = motion[:, :3], motion[:, 6:9]
+    told = np.asarray(np.isfinite(velocity).all(axis=1), np.bool_)
+    if not told.any():
+        return nothing
+    outward = rotated(imu.turn, velocity)
+    if _way_between_poses(ego, imu, outward, told):
+        return nothing
+    still = told & (velocity == 0.0).all(axis=1)
+    if still[told].all():
+        return np.where(told[:, None], np.zeros_like(velocity), np.nan)
+    yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
+    if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[told] != 0.0).any() and box.place[:2].any():
+        return nothing
+    swing = rotated(imu.turn, np.cross(turning, box.place))
+    return np.where(told[:, None], outward + swing, np.nan)
+
+
+def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, told: Mask) -> bool:
+    """Say whether the velocities are those of the way from the pose before to the one after, nearly everywhere."""
+    t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
+    if len(t_us) - 2 < _LEAST_COMPARED:
+        return False
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = (imu.place[2:] - imu.place[:-2]) / ((t_us[2:] - t_us[:-2]) * 1e-6)[:, None]
+    off = np.linalg.norm(way - velocity[1:-1], axis=1)
+    length = np.linalg.norm(way, axis=1)
+    moving = told[1:-1] & (length > _SAME_MPS) & np.isfinite(length)
+    return bool(moving.any() and (off[moving] <= _SAME_MPS * (1.0 + length[moving])).mean() >= _LEAST_SHARE)
+
+
+def _pose(ego: Modality, key: str) -> Floats:
+    """Return a pose of the metadata, (7,). Errors: `TraceError` where it is none."""
+    try:
+        pose = np.array(ego.metadata.get(key), np.float64)
+    except (TypeError, ValueError):
+        pose = np.empty(0)
+    if pose.shape != (7,) or not np.isfinite(pose).all() or not np.linalg.norm(pose[3:]) > 0.5:
+        raise TraceError(
+            f"{ego.path}: its metadata have no pose {key!r}: where the ego's box lies is not known: convert the log again"
+        )
+    pose[3:] /= np.linalg.norm(pose[3:])
+    return pose
+
+
+def _length(value: Any) -> float:
+    """Return a length in metres, NaN: it says none."""
+    return float(value) if isinstance(value, int | float) and 0.0 < value < math.inf else math.nan

@@ -1,0 +1,184 @@
+"""Maps of 123D (`map.arrow`, `maps/<data set>/<data set>_<location>.arrow`): lanes by their bounds, junctions, lights, crossings."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.errors import MapError
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.map_furniture import crossing_rows, light_rows, report_unread, road_lines
+from drivelint.formats.d123.map_layers import Intersection, Lane, LaneGroup, Layers, points_of
+from drivelint.formats.d123.markings import lane_marks
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, map_from_bounds, side_driven_on
+from drivelint.road.driving_side import choose_side
+from drivelint.road.line_heights import heights_beside
+from drivelint.road.overlapping_lanes import mark_junctions
+from drivelint.road.quality import MapQuality
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.arrays import Floats, Indices
+    from drivelint.road.boundary_lanes import Mark, SpeedLimitSpan
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+
+_NOT_DRIVEN: Final = frozenset({"biking"})
+_MOST_POINTS: Final = 200  # of a bound, to see which way a lane runs
+_FASTEST_MPS: Final = 45.0  # 160 km/h: a higher one is none, or in another unit
+
+
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the file is none of 123D's, of a version that is not read, or has no lane."""
+    layers, quality = Layers.of_source(source), MapQuality()
+    about = facts.dataset(layers.info.dataset)
+    lanes = _lanes(layers, quality)
+    bounds = {str(name): (lane.left_boundary, lane.right_boundary) for name, lane in lanes.items()}
+    marks = lane_marks(bounds, road_lines(layers, quality), about)
+    intersections = layers.features("INTERSECTION", Intersection, quality)
+    junctions = _junctions(lanes, layers.features("LANE_GROUP", LaneGroup, quality), intersections)
+    followers = _followers(lanes)
+    bounded = [
+        _bounded(
+            name,
+            lane,
+            lanes=lanes,
+            followers=followers[name],
+            marks=marks[str(name)],
+            junction=junctions.get(name),
+            quality=quality,
+        )
+        for name, lane in lanes.items()
+    ]
+    built = build_lanes(bounded, request.offset, quality)
+    if not any(lane.drivable for lane in built):
+        first = next((row["message"] for row in quality.rows if row["check_id"] == "invalid_lane"), "it has no lane")
+        raise MapError(
+            f"map {source.name} has no lane for vehicles that can be built: {first}: give another with --map"
+        )
+    if layers.said.get("map_has_z"):
+        _set_heights(built, lanes, request.offset)
+    if not intersections:
+        mark_junctions(built)
+    by_place = about.side_driven_on(layers.info.location)
+    side = choose_side([("option", request.side), ("attribute", by_place), ("lanes", side_driven_on(built))], quality)
+    lit = {name for name, number in junctions.items() if intersections[number].intersection_type == facts.SIGNALLED}
+    furniture = {
+        "traffic_signal": light_rows(built, lit | layers.light_lanes),
+        "crossing": crossing_rows(layers, built, request.offset, quality),
+    }
+    report_unread(layers, about, quality)
+    return map_from_bounds(source, request, built, furniture, quality, kind="123d", side=side)
+
+
+def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
+    """Return the lanes with their bounds as arrays, (n, 2) or (n, 3), in the order of the map."""
+    found = {}
+    for name, lane in layers.features("LANE", Lane, quality).items():
+        try:
+            lane.left_boundary, lane.right_boundary = points_of(lane.left_boundary), points_of(lane.right_boundary)
+        except ValueError as error:
+            quality.add("invalid_lane", "error", str(name), f"lanelet {name} is left out: {error}")
+            continue
+        found[name] = lane
+    return found
+
+
+def _junctions(
+    lanes: Mapping[int, Lane], groups: Mapping[int, LaneGroup], intersections: Mapping[int, Intersection]
+) -> dict[int, int]:
+    """Return lane -> the intersection that its group is part of."""
+    of_group: dict[int, int] = {}
+    for name, within in groups.items():
+        if within.intersection_id is not None and within.intersection_id in intersections:
+            of_group[name] = within.intersection_id
+    for number, intersection in intersections.items():
+        for name in intersection.lane_group_ids or ():
+            of_group.setdefault(name, number)
+    found = {}
+    for name, lane in lanes.items():
+        group = lane.lane_group_id
+        if group is not None and group in of_group:
+            found[name] = of_group[group]
+    return found
+
+
+def _followers(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
+    """Return lane -> the lanes that it leads to: those that it names, and those that name it as the one before."""
+    found: dict[int, set[str]] = defaultdict(set)
+    for name, lane in lanes.items():
+        found[name].update(map(str, lane.successor_ids or ()))
+        for before in lane.predecessor_ids or ():
+            found[before].add(str(name))
+    return found
+
+
+def _bounded(
+    name: int,
+    lane: Lane,
+    *,
+    lanes: Mapping[int, Lane],
+    followers: set[str],
+    marks: tuple[Mark, ...],
+    junction: int | None,
+    quality: MapQuality,
+) -> BoundedLane:
+    """Return a lane as it is built."""
+    kind, road_type = facts.LANE_TYPES.get(lane.lane_type, ("driving", None))
+    if lane.lane_type not in facts.LANE_TYPES:
+        message = f"type {lane.lane_type} of lanelet {name} is not known: it is taken as a lane for vehicles"
+        quality.add("unknown_word", "warning", str(name), message)
+    limits, limit_source = _limits(name, lane.speed_limit_mps, quality)
+    beside = [
+        (None, None) if other is None or other not in lanes else (str(other), _runs_against(lane, lanes[other]))
+        for other in (lane.left_lane_id, lane.right_lane_id)
+    ]
+    (left_id, left_against), (right_id, right_against) = beside
+    return BoundedLane(
+        str(name), lane.left_boundary[:, :2], lane.right_boundary[:, :2], kind, kind not in _NOT_DRIVEN,
+        road_type=road_type, junction_id=None if junction is None else str(junction), successors=tuple(sorted(followers)),
+        left_id=left_id, left_against=left_against, right_id=right_id, right_against=right_against,
+        marks=marks, limits=limits, limit_source=limit_source,
+    )  # fmt: skip
+
+
+def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tuple[SpeedLimitSpan, ...], str]:
+    """Return the limit of a lane, if the map says one, and what says it."""
+    if limit_mps is None or math.isnan(limit_mps):
+        return (), "lane"
+    if 0.0 < limit_mps <= _FASTEST_MPS:
+        return ((0.0, 1.0, limit_mps),), "lane"
+    quality.add("invalid_speed", "warning", str(name), f"{limit_mps:g} m/s is no speed limit: taken as unknown")
+    return ((0.0, 1.0, None),), "unread"
+
+
+def _runs_against(lane: Lane, other: Lane) -> bool:
+    """Say whether a lane beside another is driven the other way, by their directions where they are nearest to each other."""
+    (own, along), (its, its_along) = _pieces(lane), _pieces(other)
+    near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
+    i, j = np.unravel_index(int(np.argmin(near)), near.shape)
+    return bool(along[i] @ its_along[j] < 0.0)
+
+
+def _pieces(lane: Lane) -> tuple[Floats, Floats]:
+    """Return the middles (n, 2) and directions (n, 2) of the pieces of both bounds of a lane."""
+    lines = [bound[_some(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
+    middles = np.vstack([(line[1:] + line[:-1]) / 2.0 for line in lines])
+    return middles, np.vstack([np.diff(line, axis=0) for line in lines])
+
+
+def _some(n: int) -> Indices:
+    """Return the numbers of at most some of n points, the first and the last with them."""
+    return np.unique(np.linspace(0, n - 1, min(n, _MOST_POINTS)).astype(np.intp))
+
+
+def _set_heights(built: Sequence[BoundedLane], lanes: Mapping[int, Lane], offset: tuple[float, float]) -> None:
+    """Set the heights of the middles of lanes: between those of both bounds beside them."""
+    for lane in built:
+        source = lanes[int(lane.lanelet_id)]
+        pairs = ((source.left_boundary, lane.line.left), (source.right_boundary, lane.line.right))
+        if all(bound.shape[1] == 3 for bound, _ in pairs):
+            lane.z = np.mean([heights_beside(bound, points - offset) for bound, points in pairs], axis=0)

@@ -1,0 +1,98 @@
+"""The traffic lights of a 123D log (`traffic_light_detections.arrow`): a state for a lane, whose number is the light's id."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.arrays import spelled
+from drivelint.drive.lost_time import times_of_lost_rows
+from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.arrow_files import LIGHTS, integers, lengths, modality
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.arrays import Codes, Indices, Times
+    from drivelint.drive.trace import LostTime
+    from drivelint.formats.d123.arrow_files import Modality
+
+_COLUMNS: Final = {"lane_id": pa.list_(pa.int64()), "status": pa.list_(pa.int32())}
+
+
+class LightStates(NamedTuple):
+    """The rows of `signal_state`, the lanes that they are for, findings, and what could not be read."""
+
+    rows: pa.Table
+    lanes: tuple[int, ...]
+    findings: list[QualityFinding]
+    lost: list[LostTime]
+
+
+def read_lights(folder: Path) -> Modality | None:
+    """Return the file of lights, or None where the log has none. Errors: as `modality`."""
+    return modality(folder, LIGHTS, _COLUMNS)
+
+
+def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightStates:
+    """Return the states of the lights, `t_ns`: the times of the rows."""
+    counts = [lengths(lights.columns[name]) for name in _COLUMNS]
+    bad = (counts[0] != counts[1]) | (counts[0] < 0)
+    findings, lost = [], []
+    if bad.any():
+        what = "frames of traffic lights whose lanes and states differ in number"
+        findings.append(
+            QualityFinding("malformed_row", "warning", f"{what}: {int(bad.sum())}: left out", int(bad.sum()))
+        )
+        lost = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, what)
+    good = pa.array(~bad)
+    lane, status = (integers(lights.columns[name].filter(good).flatten()) for name in _COLUMNS)
+    lanes, which = np.unique(lane, return_inverse=True)
+    codes, unknown = _codes(status)
+    findings += unknown
+    if about.steady_for_flashing:
+        codes, doubtful = _without_doubtful_colours(codes, which, len(lanes))
+        findings += doubtful
+    rows = pa.table(
+        {
+            "signal_id": spelled(which.astype(np.int32), [str(number) for number in lanes.tolist()]),
+            "t_ns": np.repeat(t_ns[~bad], counts[0][~bad]),
+            "state": spelled(codes, SIGNAL_STATES),
+        }
+    )
+    return LightStates(rows, tuple(lanes.tolist()), findings, lost)
+
+
+def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
+    """Return codes of `SIGNAL_STATES`, -1: unknown, and a finding on numbers that stand for no state."""
+    codes = facts.light_codes()
+    inside = (status >= 0) & (status < len(codes))
+    if inside.all():
+        return np.asarray(codes[status], np.int8), []
+    n = int((~inside).sum())
+    which = listed([str(number) for number in np.unique(status[~inside]).tolist()])
+    message = f"states of traffic lights that 123D does not have ({which}): {n}: they are not known"
+    found = np.where(inside, codes[np.where(inside, status, 0)], -1).astype(np.int8)
+    return found, [QualityFinding("unknown_light_state", "warning", message, n)]
+
+
+def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Codes, list[QualityFinding]]:
+    """Forget the colour of lights that never change it: one that flashes is written as one that is on."""
+    lit = codes >= 0
+    shown = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
+    shown[light[lit], codes[lit]] = True
+    doubtful = (
+        (shown.sum(axis=1) == 1) & ~shown[:, SIGNAL_STATES.index("green")] & ~shown[:, SIGNAL_STATES.index("off")]
+    )
+    if not doubtful.any():
+        return codes, []
+    message = (
+        f"traffic lights that are red or amber in all of the log: {int(doubtful.sum())}: they may flash, which 123D writes alike: their "
+        "state is not known"
+    )
+    finding = QualityFinding("flashing_or_steady", "warning", message, int(doubtful.sum()))
+    return np.where(doubtful[light], np.int8(-1), codes), [finding]

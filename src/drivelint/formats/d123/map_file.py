@@ -1,0 +1,80 @@
+"""Finds the map of a 123D log: `map.arrow` beside its files, or that of its place, which many logs share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+import pyarrow as pa
+
+from drivelint.drive.trace import QualityFinding
+from drivelint.errors import MapError
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.arrow_files import METADATA_KEY
+from drivelint.formats.d123.map_layers import LIGHT_LANES_KEY, Intersection, LaneGroup, Layers
+from drivelint.formats.map_registry import read_source
+from drivelint.road.quality import MapQuality
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.formats.d123.arrow_files import LogInfo
+
+OWN_MAP: Final = "map.arrow"
+
+
+def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | None, list[QualityFinding], list[str]]:
+    """Return the log's map, its lanes with lights noted in it, with findings and notes; None: there is none that can be used.
+
+    py123d has a data root: `logs/<split>/<log>` and, for places that many logs share, `maps/<data set>/<data set>_<location>.arrow`.
+    `lit`: the lanes for which the log has states of lights.
+    """
+    shared = shared_map(folder, info)
+    path = next((path for path in (folder / OWN_MAP, shared) if path is not None and path.is_file()), None)
+    if path is None:
+        looked = " nor at ".join(str(each) for each in (folder / OWN_MAP, shared) if each is not None)
+        return None, [], [f"the log has no map: there is none at {looked}: give one with --map"]
+    try:
+        source = read_source(path)
+        layers = Layers.of_source(source)
+    except MapError as error:
+        return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {error}")], []
+    if not layers.count("LANE"):
+        return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {path.name} has no lanes")], []
+    notes = [] if path.name == OWN_MAP else [f"the map of the place is {path.name} under {path.parent.parent}"]
+    if set(lit) <= _signalled_lanes(layers):
+        return source.content, [], notes
+    return _with_light_lanes(layers, lit), [], notes
+
+
+def shared_map(folder: Path, info: LogInfo) -> Path | None:
+    """Return where the map of a log's place would lie, by its data root; None: the log names no place."""
+    names = (info.dataset, info.location)
+    if any(not name or name in {".", ".."} or "/" in name or "\\" in name or "\0" in name for name in names):
+        return None
+    root = folder.resolve().parents
+    return root[2] / "maps" / info.dataset / f"{info.dataset}_{info.location}.arrow" if len(root) > 2 else None
+
+
+def _signalled_lanes(layers: Layers) -> set[int]:
+    """Return the lanes that the map says to have lights: see `lanes.py`."""
+    quality = MapQuality()  # the map's reader reports what cannot be read
+    intersections = layers.features("INTERSECTION", Intersection, quality)
+    signalled = {name for name, said in intersections.items() if said.intersection_type == facts.SIGNALLED}
+    return {
+        lane
+        for group in layers.features("LANE_GROUP", LaneGroup, quality).values()
+        if group.intersection_id in signalled
+        for lane in group.lane_ids or ()
+    }
+
+
+def _with_light_lanes(layers: Layers, lit: Sequence[int]) -> bytes:
+    """Return the map as a file of its own, which says for which lanes there are lights."""
+    said = {METADATA_KEY: layers.packed_said, LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
+    rows = layers.rows.replace_schema_metadata(said)
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_file(sink, rows.schema) as writer:
+        writer.write_table(rows)
+    return bytes(memoryview(sink.getvalue()))

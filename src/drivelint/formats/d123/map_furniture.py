@@ -1,0 +1,93 @@
+"""What lies on and beside the lanes of a 123D map: lights, crossings, road lines, and what of it is not read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.map_layers import Line
+from drivelint.formats.d123.markings import RoadLine
+from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
+from drivelint.road.quality import SIGNS_UNMAPPED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.arrays import Floats
+    from drivelint.formats.d123.map_layers import Layers
+    from drivelint.road.quality import MapQuality
+    from drivelint.road.tables import Rows
+
+_READ: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
+_LEVEL_M: Final = 3.0  # what lies so far above or below a lane is not on it
+
+
+def road_lines(layers: Layers, quality: MapQuality) -> list[RoadLine]:
+    """Return the road lines in the order of the map."""
+    types = layers.features("ROAD_LINE", Line, quality)
+    return [
+        RoadLine(types[name].road_line_type, points)
+        for name, points in layers.outlines("ROAD_LINE", quality).items()
+        if name in types
+    ]
+
+
+def light_rows(lanes: Sequence[BoundedLane], lit: set[int]) -> Rows:
+    """Return a row of `traffic_signal` for each lane that has a light of its own: it stands where the lane begins.
+
+    In Waymo's data the stopping points of lights are the first points of their lanes. The light's id is the lane's, as in the log.
+    """
+    rows = [
+        signal_row(
+            lane, 0.0, lane.line.centre[0], signal_id=lane.lanelet_id, kind="traffic_light", dynamic=True,
+            turns=["left", "right", "straight", "u_turn"],
+        )
+        for lane in lanes
+        if int(lane.lanelet_id) in lit
+    ]  # fmt: skip
+    return sorted(rows, key=lambda row: str(row["signal_id"]))
+
+
+def crossing_rows(
+    layers: Layers, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> Rows:
+    """Return the rows of `crossing`; a lane on another level is not crossed."""
+    outlines = layers.outlines("CROSSWALK", quality)
+    rows = crossings([_walk(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    heights = {
+        str(name): float(ring[:, 2].mean())
+        for name, ring in outlines.items()
+        if ring.shape[1] == 3 and layers.said.get("map_has_z")
+    }
+    return [row for row in rows if _on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))]
+
+
+def _walk(name: int, ring: Floats) -> BoundedLane:
+    """Return the outline of a crossing as two bounds, one after the other around it."""
+    half = (len(ring) + 1) // 2
+    return BoundedLane(str(name), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
+
+
+def _on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
+    s = (row["s_start_m"] + row["s_end_m"]) / 2.0
+    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _LEVEL_M
+
+
+def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> None:
+    """Report what a map of 123D does not say, the layers that are not read, and what of the lanes the converter estimates."""
+    message = "a map of 123D has no signs: what governs a way into a junction without a light is not known"
+    quality.add(SIGNS_UNMAPPED, "info", None, message)
+    counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ}
+    unread = [f"{n} of {name.lower().replace('_', ' ')}" for name, n in counts.items() if n]
+    if unread:
+        message = f"objects of layers that are not read: {', '.join(unread)}"
+        quality.add("layers_unread", "info", None, message, sum(counts.values()))
+    if layers.unknown:
+        message = f"layers that 123D does not have: {', '.join(map(str, layers.unknown))}: their objects are not read"
+        quality.add("unknown_word", "warning", None, message, len(layers.unknown))
+    if about.estimated_bounds:
+        message = f"the converter estimates bounds {about.estimated_bounds}: whoever is beside them may be within, and the other way round"
+        quality.add("estimated_bounds", "warning", None, message)

@@ -1,0 +1,129 @@
+"""The markings of the lanes of a 123D map, from its road lines, which belong to no lane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import shapely
+
+from drivelint.formats.d123 import facts
+from drivelint.road.boundary_lanes import Mark, both_marks, resampled, stations
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.arrays import Floats, Indices, Mask
+
+_NEAR_M: Final = 0.1  # a painted line is about as wide
+_PIECE_M: Final = 2.0
+_OF_TWO_SIDES: Final = frozenset({"broken_solid", "solid_broken"})
+"""Markings that differ by the side from which they are seen: known only where it is known whose line it is."""
+_UNKNOWN: Final = -1
+_WORDS: Final = tuple(sorted({word for word in facts.MARKINGS.values() if word is not None}))
+
+
+class RoadLine(NamedTuple):
+    """A road line: the number of its type, and its points (n, 2) or (n, 3)."""
+
+    type_number: int
+    points: Floats
+
+
+Bounds = tuple["Floats", "Floats"]
+"""The left and the right bound of a lane."""
+
+
+def lane_marks(
+    bounds: Mapping[str, Bounds], lines: Sequence[RoadLine], about: facts.Dataset
+) -> dict[str, tuple[Mark, ...]]:
+    """Return the marks of each lane, by its id; `bounds` in the order of the map."""
+    if about.lines_of_lanes and (marks := _by_order(bounds, lines)) is not None:
+        return marks
+    return _by_place(bounds, lines, about)
+
+
+def _by_order(bounds: Mapping[str, Bounds], lines: Sequence[RoadLine]) -> dict[str, tuple[Mark, ...]] | None:
+    """Return the marks where the lines are the lanes' own bounds, one after the other; None: they are not."""
+    marks: dict[str, tuple[Mark, ...]] = {}
+    k = 0
+    for name, sides in bounds.items():
+        words = []
+        for bound in sides:
+            if k < len(lines) and np.array_equal(lines[k].points, bound):
+                words.append(facts.MARKINGS.get(lines[k].type_number))
+                k += 1
+            else:
+                words.append("none")  # lines that are not painted are left out
+        marks[name] = both_marks(*words)
+    return marks if k == len(lines) else None
+
+
+def _by_place(
+    bounds: Mapping[str, Bounds], lines: Sequence[RoadLine], about: facts.Dataset
+) -> dict[str, tuple[Mark, ...]]:
+    """Return the marks where a line runs along a bound, piece by piece; not known where there is none, or several that differ."""
+    if not lines:
+        return dict.fromkeys(bounds, both_marks(None, None))
+    codes = np.array([_code(line, about) for line in lines], np.int64)
+    tree = shapely.STRtree([shapely.LineString(line.points[:, :2]) for line in lines])
+    samples = [_sampled(bound) for sides in bounds.values() for bound in sides]
+    counts = [len(points) // 2 for points in samples]
+    pieces = _piece_codes(np.concatenate(samples), np.cumsum([0, *(len(points) for points in samples)]), tree, codes)
+    of_bound = np.split(pieces, np.cumsum(counts)[:-1])
+    return {
+        name: (*_runs("left", of_bound[2 * i]), *_runs("right", of_bound[2 * i + 1])) for i, name in enumerate(bounds)
+    }
+
+
+def _code(line: RoadLine, about: facts.Dataset) -> int:
+    """Return the index of a line's marking in `_WORDS`."""
+    word = facts.MARKINGS.get(line.type_number)
+    unsure = {facts.LINE_NUMBERS[name] for name in about.unsure_lines}
+    if word is None or word in _OF_TWO_SIDES or line.type_number in unsure:
+        return _UNKNOWN
+    return _WORDS.index(word)
+
+
+def _sampled(bound: Floats) -> Floats:
+    """Return points along a bound, (2 k + 1, 2): the ends and the middles of k equal pieces."""
+    s = stations(bound)
+    k = max(1, int(np.ceil(s[-1] / _PIECE_M)))
+    return resampled(bound[:, :2], s, np.linspace(0.0, s[-1], 2 * k + 1))
+
+
+def _piece_codes(points: Floats, starts: Indices, tree: shapely.STRtree, codes: Indices) -> Indices:
+    """Return the code of each piece: that of the lines near both its ends and its middle, if they agree.
+
+    `starts`: where the points of each bound begin, and where the last ends.
+    """
+    n = len(codes)
+    at, line = tree.query(shapely.points(points), predicate="dwithin", distance=_NEAR_M)
+    keys = np.sort(at.astype(np.int64) * n + line)
+    within = np.arange(len(points)) - np.repeat(starts[:-1], np.diff(starts))
+    middles = np.flatnonzero(within % 2 == 1)
+    is_middle = np.zeros(len(points), np.bool_)
+    is_middle[middles] = True
+    some = keys[is_middle[keys // n]]
+    along = some[_are_among(some - n, keys) & _are_among(some + n, keys)]
+    piece = np.searchsorted(middles, along // n)
+    lowest, highest = np.full(len(middles), np.iinfo(np.int64).max), np.full(len(middles), _UNKNOWN - 1)
+    np.minimum.at(lowest, piece, codes[along % n])
+    np.maximum.at(highest, piece, codes[along % n])
+    return np.where(lowest == highest, lowest, _UNKNOWN)
+
+
+def _are_among(values: Indices, ordered: Indices) -> Mask:
+    """Say which values are among the others, which are in order."""
+    at = np.minimum(np.searchsorted(ordered, values), max(len(ordered) - 1, 0))
+    return np.asarray(ordered[at] == values, np.bool_) if len(ordered) else np.zeros(len(values), np.bool_)
+
+
+def _runs(side: str, pieces: Indices) -> list[Mark]:
+    """Return the marks of one side: pieces one after the other that are marked alike are one."""
+    begins = np.flatnonzero(np.r_[True, pieces[1:] != pieces[:-1]])
+    ends = np.r_[begins[1:], len(pieces)]
+    return [
+        Mark(side, b / len(pieces), e / len(pieces), None if pieces[b] == _UNKNOWN else _WORDS[pieces[b]])
+        for b, e in zip(begins.tolist(), ends.tolist(), strict=True)
+    ]

@@ -1,0 +1,174 @@
+"""Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of whoever is around it, lights, and its map.
+
+A log has a table of frames (`sync.arrow`), which says which row of each file belongs to which frame. The ego's poses may be far denser than
+the boxes; the ego's steps are the frames that have both, as nobody knows who is around it in between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.lost_time import times_of_lost_rows
+from drivelint.drive.trace import QualityFinding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.d123 import boxes as box_file
+from drivelint.formats.d123 import ego as ego_file
+from drivelint.formats.d123 import facts
+from drivelint.formats.d123.arrow_files import BOXES, EGO_STATE, SYNC, integers, path_of, sync_table
+from drivelint.formats.d123.clock import clock
+from drivelint.formats.d123.lights import light_states, read_lights
+from drivelint.formats.d123.map_file import find_map
+from drivelint.formats.folders import folder_kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    import pyarrow as pa
+
+    from drivelint.arrays import Indices, Mask, Times
+    from drivelint.formats.d123.arrow_files import LogInfo, Modality
+    from drivelint.formats.probe import Probe
+
+NAME: Final = "123d"
+formats: Final = {NAME: ("123D log (Arrow files of py123d)", "the vehicle of ego_state_se3.arrow")}
+takes_mapping: Final = False
+_NO_ROAD_USERS: Final = QualityFinding(
+    "no_road_users",
+    "warning",
+    f"the log has no {BOXES}.arrow: who is around the ego is not recorded: rules that look at others than the ego are unknown",
+)
+_ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
+_MALFORMED: Final = (
+    "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
+)
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept a folder with the ego's states and the table of frames."""
+    return probe.path.is_dir() and folder_kind(probe.path) == NAME
+
+
+def read(probe: Probe) -> Recording:
+    """Read a log.
+
+    Errors: `TraceError` for a damaged file, a column that is missing or of another type, a version that is not read, and a log without
+    a frame that can be used.
+    """
+    folder = probe.path
+    sync, info = sync_table(folder)
+    about = facts.dataset(info.dataset)
+    ego, boxes, lights = ego_file.read_ego(folder), box_file.read_boxes(folder), read_lights(folder)
+    files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
+    time = clock(folder, [sync["timestamp_us"], *files], utc=about.utc)
+    frames = _frames(folder, sync, ego, boxes)
+    recording = Recording(NAME, _NOBODY, sensor_range_m=about.sensor_range_m, notes=[_origin(info), *time.notes])
+    recording.notes += frames.notes
+    if frames.malformed.any():
+        n = int(frames.malformed.sum())
+        recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))
+        t_ns = time.nanoseconds(integers(sync["timestamp_us"]))
+        recording.lost += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
+    others: list[States] = []
+    if boxes is None:
+        recording.findings.append(_NO_ROAD_USERS)
+    else:
+        t_ns = time.nanoseconds(integers(boxes.columns["timestamp_us"])[frames.box_rows])
+        states, findings, notes = box_file.box_states(boxes, frames.box_rows, t_ns, about)
+        others.append(states)
+        recording.findings += findings
+        recording.notes += notes
+    name = ego_file.ego_id(others[0].ids if others else ())
+    forward_m = 0.0 if probe.options.ego_size is None else probe.options.ego_size.forward_m
+    box, findings = ego_file.ego_box(ego, about, name, forward_m)
+    recording.findings += findings
+    t_ns = time.nanoseconds(frames.ego_us)
+    own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
+    recording.states, recording.ego_ids = _joined(own, others), [name]
+    lit: tuple[int, ...] = ()
+    if lights is not None:
+        shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
+        recording.signals, lit = shown.rows, shown.lanes
+        recording.findings += shown.findings
+        recording.lost += shown.lost
+    recording.embedded_map, findings, notes = find_map(folder, info, lit)
+    recording.findings += findings
+    recording.notes += notes
+    return recording
+
+
+_NOBODY: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))
+
+
+class _Frames(NamedTuple):
+    """The rows of the ego's file and of the boxes' that are one frame each, which frames are left out, and notes.
+
+    `ego_us`: the time of each of the ego's rows.
+    """
+
+    ego_rows: Indices
+    ego_us: Times
+    box_rows: Indices
+    malformed: Mask
+    notes: list[str]
+
+
+def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Modality | None) -> _Frames:
+    """Return the frames that have the ego and boxes, if the log has boxes at all. Errors: `TraceError` if there is none."""
+    ego_rows = integers(sync[EGO_STATE])
+    box_rows = integers(sync[BOXES]) if boxes is not None and BOXES in sync else np.full(len(ego_rows), -1)
+    whole, malformed = ego_rows >= 0, ego_rows >= ego.n
+    notes = []
+    if boxes is not None:
+        if n := int((whole & (box_rows < 0)).sum()):
+            notes.append(
+                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, as nobody knows who was there"
+            )
+        if n := boxes.n - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n)])):
+            notes.append(f"{n} of {boxes.n} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")
+        whole &= box_rows >= 0
+        malformed |= box_rows >= boxes.n
+        bad_rows = np.append(box_file.malformed_rows(boxes), False)
+        malformed |= bad_rows[np.where(malformed, -1, box_rows)]
+    malformed &= whole
+    chosen = np.flatnonzero(whole & ~malformed)
+    if not len(chosen):
+        raise TraceError(
+            f"{path_of(folder, SYNC)}: no frame has the ego and boxes that can be read: nothing can be judged: convert the log again"
+        )
+    ego_rows, box_rows = ego_rows[chosen], box_rows[chosen]
+    moments = integers(ego.columns["timestamp_us"])
+    ego_us = moments[ego_rows]
+    if boxes is not None:
+        ego_rows, ego_us = _ego_at(integers(boxes.columns["timestamp_us"])[box_rows], moments, ego_rows)
+    return _Frames(ego_rows, ego_us, box_rows, np.asarray(malformed, np.bool_), notes)
+
+
+def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices, Times]:
+    """Return for boxes of these times the row of the ego nearest in time, and its time. `moments`: the times of all its rows.
+
+    The row that a frame names may be a later one: the first after the frame's time. Converters round times, so that the ego's and the
+    boxes' differ by a microsecond where they are one.
+    """
+    if (np.diff(moments) < 0).any():
+        return frames_own, moments[frames_own]
+    after = np.clip(np.searchsorted(moments, box_us), 1, max(len(moments) - 1, 1))
+    before, after = after - 1, np.minimum(after, len(moments) - 1)
+    rows = np.where(box_us - moments[before] <= moments[after] - box_us, before, after)
+    return rows, np.where(np.abs(moments[rows] - box_us) <= _ROUNDED_US, box_us, moments[rows])
+
+
+def _joined(own: States, others: list[States]) -> States:
+    """Return the states of the ego and of the others."""
+    if not others:
+        return own
+    ids = [*own.ids, *others[0].ids]
+    return States.joined([replace(own, ids=ids), replace(others[0], ids=ids, actor=others[0].actor + np.int32(1))])
+
+
+def _origin(info: LogInfo) -> str:
+    place = "" if info.location is None else f", {info.location}"
+    return f"data set {info.dataset or 'without a name'}{place}; written by py123d {info.version}"

@@ -1,0 +1,19 @@
+"""Heights along the lines of a map."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from drivelint.road.boundary_lanes import stations
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats
+
+
+def heights_beside(line: Floats, points: Floats) -> Floats:
+    """Return the height of a line (n, 3) beside points (m, 2)."""
+    at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
+    return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)
