@@ -1,0 +1,159 @@
+"""Scenarios of ScenarioNet: one drive per pickle, of its tracks, the states of its lights and the ego that it names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.arrays import spelled
+from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.scenarionet import sources
+from drivelint.formats.scenarionet.ego_clock import ego_times
+from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
+from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
+from drivelint.formats.scenarionet.unpickle import PickleError
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.formats.probe import Probe
+    from drivelint.formats.scenarionet.scenario import Scenario
+
+formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
+takes_mapping: Final = False
+_PROTOCOLS: Final = (2, 3, 4, 5)
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept a pickle by its first byte and its protocol."""
+    return len(probe.head) > 2 and probe.head[0] == 0x80 and probe.head[1] in _PROTOCOLS and _is_dict(probe.head)
+
+
+def _is_dict(head: bytes) -> bool:
+    """Say whether a pickle begins with a dict, behind the frame that protocols 4 and 5 have."""
+    return head[2:3] == b"}" or (head[2:3] == b"\x95" and head[11:12] == b"}")
+
+
+def read(probe: Probe) -> Recording:
+    """Read a scenario. Errors: `TraceError` for a pickle that is damaged, holds something else, or more than numbers and texts."""
+    content = probe.path.read_bytes()
+    try:
+        return _recording(read_scenario(content), content)
+    except PickleError as error:
+        raise TraceError(f"{probe.path}: {error}") from error
+
+
+def _recording(scenario: Scenario, content: bytes) -> Recording:
+    dataset, t_s = scenario.dataset, times_s(scenario.metadata)
+    tracks = read_tracks(scenario, t_s, len(content))
+    findings = [*sources.turn_boxes(tracks, dataset), *sources.drop_differences(tracks), *sources.drop_false_stops(tracks)]
+    even = sources.interpolated(tracks, dataset)
+    if even.any():
+        findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
+    times, of_ego, notes = _ego(tracks, scenario, even)
+    if not dataset.sizes:
+        tracks.size[:] = np.nan
+        notes.append("sizes are guesses of ScenarioNet for this data set: they count as unknown")
+    recording = Recording("scenarionet", _states(tracks, times), findings=[*findings, *of_ego], notes=notes)
+    recording.ego_ids = [] if tracks.ego is None else [tracks.ids[tracks.ego]]
+    recording.signals, unknown = _signals(scenario, t_s)
+    recording.findings += unknown
+    recording.sensor_range_m = dataset.sensor_range_m
+    if any("LANE" in str(feature.get("type")) for feature in scenario.features.values()):
+        recording.embedded_map = content
+    return recording
+
+
+def _ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[Floats, list[QualityFinding], list[str]]:
+    """Bring the ego's box to where it is and when, in place; return the times of all states (n, T), findings and notes."""
+    dataset, ego = scenario.dataset, tracks.ego
+    times = np.broadcast_to(tracks.t_s, tracks.present.shape)
+    named = scenario.metadata.get("sdc_id")
+    if ego is None:
+        return times, [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
+    findings, notes = [], []
+    if dataset.ego_message_s is not None and not even[ego] and tracks.present[ego].all():
+        found = ego_times(tracks.place[ego, :, :2], tracks.t_s, dataset.ego_message_s)
+        times = times.copy()
+        times[ego] = found.t_s
+        # the frames' places are only those that the stream does not have: two sources of one time would be two tracks
+        late = found.t_s[found.seam :] <= found.t_s[: found.seam].max() + dataset.ego_message_s
+        tracks.present[ego, found.seam :] &= ~late
+        findings = _of_clock(tracks.ids[ego], found.lost, found.shift_s, dataset.ego_message_s)
+    if dataset.ego_ahead_m:
+        heading = tracks.heading[ego]
+        tracks.place[ego, :, 0] += dataset.ego_ahead_m * np.cos(heading)
+        tracks.place[ego, :, 1] += dataset.ego_ahead_m * np.sin(heading)
+        tracks.place[ego, :, 2] += tracks.size[ego, :, 2] / 2.0
+        notes.append(
+            f"the ego's positions are its rear axle's on the ground: the middle of its box is {dataset.ego_ahead_m:g} m ahead and "
+            "half its height above"
+        )
+    return times, findings, notes
+
+
+def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[QualityFinding]:
+    if not lost and not np.isfinite(shift_s):
+        return []
+    steps = f"{lost} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
+    parts = [steps] if lost else []
+    if np.isfinite(shift_s):
+        parts.append(f"its last positions, which are of the annotated frames, tell that it begins {shift_s:.2f} s after these")
+    message = (
+        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: so its times are set; against the "
+        "others' they are known to about 0.1 s"
+    )
+    return [QualityFinding("ego_clock", "warning", message, max(lost, 1), actor_id=ego)]
+
+
+def _states(tracks: Tracks, times: Floats) -> States:
+    actor, step = np.nonzero(tracks.present)
+    place, velocity, size = (values[actor, step] for values in (tracks.place, tracks.velocity, tracks.size))
+    heading = tracks.heading[actor, step]
+    numbers = {
+        "x_m": place[:, 0], "y_m": place[:, 1], "z_m": place[:, 2], "yaw_rad": heading,
+        "vx_mps": velocity[:, 0], "vy_mps": velocity[:, 1],
+        "length_m": size[:, 0], "width_m": size[:, 1], "height_m": size[:, 2],
+    }  # fmt: skip
+    odd = ~np.isfinite(place[:, :2]).all(axis=1) | ~np.isfinite(heading) | np.isinf(velocity).any(axis=1)
+    numbers = {name: np.where(np.isinf(values), np.nan, values) for name, values in numbers.items()}
+    return States(
+        tracks.ids, actor.astype(np.int32), _nanoseconds(times[actor, step]), numbers, {"actor_class": tracks.kinds[actor]}, odd
+    )
+
+
+def _nanoseconds(t_s: Floats) -> Times:
+    return np.round(t_s * 1e9).astype(np.int64)
+
+
+def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
+    """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
+    ids, codes, unread = [], [], set()
+    for name, light in scenario.lights.items():
+        state = light.get("state")
+        words = state.get("object_state") if isinstance(state, dict) else None
+        words = words.tolist() if isinstance(words, np.ndarray) else words
+        if not isinstance(words, list) or len(words) != len(t_s):
+            where = f"dynamic_map_states[{name[:100]!r}]['state']['object_state']"
+            raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
+        known = [LIGHTS.get(word) if isinstance(word, str) else None for word in words]
+        unread |= {str(w)[:100] for w, k in zip(words, known, strict=True) if k is None and w and "UNKNOWN" not in str(w)}
+        ids.append(name)
+        codes.append([-1 if word is None else SIGNAL_STATES.index(word) for word in known])
+    if not ids:
+        return None, []
+    lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))
+    table = pa.table(
+        {
+            "signal_id": spelled(lights, ids),
+            "t_ns": np.tile(_nanoseconds(t_s), len(ids)),
+            "state": spelled(np.concatenate(codes).astype(np.int8), SIGNAL_STATES),
+        }
+    )
+    if not unread:
+        return table, []
+    message = f"lights have states that are not known: {listed(sorted(unread))}"
+    return table, [QualityFinding("unknown_word", "warning", message, len(unread))]
