@@ -6,14 +6,13 @@ import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-import shapely
-
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.geo_reference import tangent_plane
+from drivelint.road.overlap import mark_junctions
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -43,7 +42,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     lanes = build_lanes(_lanes(layers, quality), request.offset, quality)
     if not lanes:
         raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
-    _junctions(lanes)
+    mark_junctions(lanes)
     regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
     by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
     said = by_region.pop() if len(by_region) == 1 else None
@@ -136,29 +135,3 @@ def _marking(bound: Any, *, near_left: bool) -> str | None:
         first_solid = (style == "solid_dashed") != bool(bound.inverted())
         return "solid_broken" if first_solid == near_left else "broken_solid"
     return _LINES.get(style)
-
-
-def _junctions(lanes: Sequence[BoundedLane]) -> None:
-    """Mark lanes for driving whose areas overlap another's, that do not lie side by side, as parts of one junction."""
-    driven = [lane for lane in lanes if lane.drivable]
-    areas = [lane.line.polygon for lane in driven]
-    tree = shapely.STRtree(areas)
-    parent = list(range(len(driven)))
-
-    def root(i: int) -> int:
-        while parent[i] != i:
-            i = parent[i]
-        return i
-
-    overlaps: set[int] = set()
-    for i, j in sorted(
-        {(int(min(a, b)), int(max(a, b))) for a, b in tree.query(areas, predicate="intersects").T if a != b}
-    ):
-        a, b = driven[i], driven[j]
-        if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
-            continue
-        if shapely.area(shapely.intersection(areas[i], areas[j])) > 1.0:
-            overlaps |= {i, j}
-            parent[max(root(i), root(j))] = min(root(i), root(j))
-    for i in sorted(overlaps):
-        driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"

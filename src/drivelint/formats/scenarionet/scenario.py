@@ -26,7 +26,8 @@ class Dataset(NamedTuple):
 
     `sensor_range_m`: how far the recorder sees everybody. `steps_per_keyframe`: boxes are interpolated between every so many steps (0:
     they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period, counted and not timed.
-    `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width.
+    `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width. The others: whether what
+    the scenarios have of it was in the data set, and is no constant of the converter.
     """
 
     sensor_range_m: float = 50.0
@@ -38,6 +39,7 @@ class Dataset(NamedTuple):
     markings: bool = True
     speed_limits: bool = True
     heights: bool = True
+    stop_points: bool = True
     sides: Mapping[str, str] = {}
 
     def side_driven_on(self, place: str) -> str | None:
