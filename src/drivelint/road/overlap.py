@@ -10,6 +10,7 @@ import shapely
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
 
 _LEAST_M2: Final = 1.0
@@ -17,10 +18,11 @@ _LEVEL_M: Final = 3.0
 """As far apart in height, lanes lie over each other and not across (as in `driving_side`)."""
 
 
-def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0) -> None:
+def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, least_angle_rad: float = 0.0) -> None:
     """Mark lanes whose areas overlap another's, that do not lie side by side, as parts of one junction.
 
-    `least_share`: of the smaller one's area; less of it is the inaccuracy of bounds. Lanes at different heights do not meet.
+    `least_share`: of the smaller one's area; less of it is the inaccuracy of bounds. `least_angle_rad`: between two lanes where they
+    cross, or where they have parted or not yet joined; lanes at a smaller one split or merge. Lanes at different heights do not meet.
     """
     driven = [lane for lane in lanes if lane.drivable]
     areas = [lane.line.polygon for lane in driven]
@@ -40,15 +42,39 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0) ->
         if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
             continue
         common = shapely.intersection(areas[i], areas[j])
-        least_m2 = max(_LEAST_M2, least_share * min(areas[i].area, areas[j].area))
-        if common.area > least_m2 and not abs(_height(a, common) - _height(b, common)) >= _LEVEL_M:
-            overlaps |= {i, j}
-            parent[max(root(i), root(j))] = min(root(i), root(j))
+        if common.area <= max(_LEAST_M2, least_share * min(areas[i].area, areas[j].area)):
+            continue
+        if _apart_m(a, b, common) >= _LEVEL_M or _angle_rad(a, b, common) < least_angle_rad:
+            continue
+        overlaps |= {i, j}
+        parent[max(root(i), root(j))] = min(root(i), root(j))
     for i in sorted(overlaps):
         driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
 
 
-def _height(lane: BoundedLane, area: shapely.Geometry) -> float:
-    """Return the height of a lane (m) where it lies on an area; NaN: not known."""
+def _apart_m(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
+    """Return how far apart two lanes are in height where they overlap; NaN: not known."""
+    return abs(float(np.subtract(*(_at(lane, common, lane.z[:, None])[0] for lane in (a, b)))))
+
+
+def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
+    """Return the angle between two lanes where they overlap, or at their other ends where they begin or end together."""
+    first, second = (_at(lane, common, lane.line.tangent) for lane in (a, b))
+    across = abs(float(first[0] * second[1] - first[1] * second[0]))
+    angle = float(np.arcsin(min(across, 1.0)))  # two that run against each other on the same ground do not cross
+    if set(a.successors) & set(b.successors):
+        angle = max(angle, _between(a.line.tangent[0], b.line.tangent[0]))
+    if np.hypot(*(a.line.centre[0] - b.line.centre[0])) < 1.0:
+        angle = max(angle, _between(a.line.tangent[-1], b.line.tangent[-1]))
+    return angle
+
+
+def _between(one: Floats, other: Floats) -> float:
+    return float(np.arccos(np.clip(one @ other, -1.0, 1.0)))
+
+
+def _at(lane: BoundedLane, area: shapely.Geometry, values: Floats) -> Floats:
+    """Return the values (n, k) along a lane where it passes the middle of an area, (k,)."""
     middle = area.centroid
-    return float(np.interp(lane.line.station(np.array([middle.x, middle.y])), lane.line.s, lane.z))
+    s = lane.line.station(np.array([middle.x, middle.y]))
+    return np.array([np.interp(s, lane.line.s, column) for column in values.T])

@@ -31,9 +31,9 @@ KINDS: Final = {
 _SPACING_M: Final = 4.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
 _INSET_M: Final = 0.5  # a polygon's ends may be cut aslant: beside a lane's ends one looks this far inside
-_REACH_M: Final = 5.0  # a line that a lane refers to and that is farther from its middle is another's bound
-_LEAST_M: Final = 0.8  # a line nearer to the middle than this is none that bounds the lane
-_BESIDE_M: Final = 3.75  # and of lines to which no lane refers, one farther than this
+_OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
+_REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
+_LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
 _LANES_APART_M: Final = (2.2, 6.0)  # the middles of two lanes that run beside each other
 _PARALLEL: Final = float(np.cos(np.radians(10.0)))
 
@@ -137,7 +137,7 @@ def _of_polygon(lane: CentreLine, area: shapely.Polygon) -> None:
     place = np.column_stack([np.interp(s, lane.s, column) for column in lane.line.T])
     inside = shapely.contains(area, shapely.points(place))
     for side in (0, 1):
-        crossed = shapely.intersection(_rays(lane, side, 2 * _REACH_M, place), area.exterior)
+        crossed = shapely.intersection(_rays(lane, side, _OUTLINE_M, place), area.exterior)
         lane.half[:, side] = np.where(inside, shapely.distance(shapely.points(place), crossed), np.nan)
 
 
@@ -166,9 +166,9 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
 def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
     """Measure to the nearest line or edge beside each point, whatever lane it belongs to."""
     for side in (0, 1):
-        rays = _rays(lane, side, _BESIDE_M, lane.line)
+        rays = _rays(lane, side, _REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
-            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], _BESIDE_M, _LEAST_M)
+            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], _REACH_M, _LEAST_M)
 
 
 def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, reach_m: float, least_m: float) -> None:

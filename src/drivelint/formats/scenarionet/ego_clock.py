@@ -1,4 +1,4 @@
-"""When the ego was where, of a data set that counts the messages of a stream instead of timing them.
+"""Where the ego was when, of a data set that counts the messages of a stream instead of timing them.
 
 The messages come with one period, and every few of them is a step. Where some were lost, a step takes longer than it says, and the ego
 seems to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high.
@@ -29,22 +29,27 @@ _LAST_STEPS: Final = 20
 _MOST_SHIFT_S: Final = 0.5
 
 
-class EgoTimes(NamedTuple):
-    """The times of the ego's steps (T,); `lost`: messages that are missing; `shift_s`: the stream begins so much after the frames (NaN: not
-    known). Steps from `seam` on are those of the frames; T: none is."""
+class EgoTrack(NamedTuple):
+    """The ego's places (T, 2) and headings (T,) at the steps, NaN where the stream has none.
 
-    t_s: Floats
+    `lost`: messages that are missing. `shift_s`: so much after the frames the stream begins; NaN: not known.
+    """
+
+    place: Floats
+    heading: Floats
     lost: int
     shift_s: float
-    seam: int
 
 
-def ego_times(place: Floats, t_s: Floats, message_s: float) -> EgoTimes:
-    """Return when the ego was at its places (T, 2), which are said to be of the times `t_s` (T,)."""
+def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -> EgoTrack:
+    """Return where the ego was at the steps (T,), of places (T, 2) and headings (T,) that are counted messages.
+
+    Between two messages, 0.1 s apart, it goes straight on: at 5 m/s2 that is 6 mm off.
+    """
     n, period = len(t_s), np.diff(t_s)
     way = np.hypot(*np.diff(place, axis=0).T)
     if n < 2 * _BESIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
-        return EgoTimes(t_s, 0, np.nan, n)
+        return EgoTrack(place, heading, 0, np.nan)
     usual = _usual(way / period)
     moving = usual > _LEAST_MPS
     longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_s
@@ -52,14 +57,18 @@ def ego_times(place: Floats, t_s: Floats, message_s: float) -> EgoTimes:
     lost = np.where((whole >= 1) & (whole <= _MOST_LOST) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
     seam = _seam(place, usual * period, moving)
     lost[seam - 1 :] = 0.0
-    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * lost)]
-    if seam == n:
-        return EgoTimes(stream, int(lost.sum()), np.nan, n)
-    shift = t_s[seam] - _time_at(place[seam], place[:seam], stream[:seam])
-    if not abs(shift) <= _MOST_SHIFT_S:
-        shift = np.nan
-    times = np.r_[stream[:seam] + np.nan_to_num(shift), t_s[seam:]]
-    return EgoTimes(times, int(lost.sum()), float(shift), seam)
+    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * lost)][:seam]
+    shift = t_s[seam] - _time_at(place[seam], place[:seam], stream) if seam < n else np.nan
+    shift = shift if abs(shift) <= _MOST_SHIFT_S else np.nan
+    if not lost.any() and np.isnan(shift):
+        return EgoTrack(place, heading, 0, np.nan)
+    stream += np.nan_to_num(shift)
+    inside = (t_s >= stream[0] - 1e-9) & (t_s <= stream[-1] + 1e-9)
+    columns = [*place[:seam].T, np.unwrap(heading[:seam])]
+    timed = np.column_stack([np.where(inside, np.interp(t_s, stream, column), np.nan) for column in columns])
+    later = (t_s > stream[-1]) & (np.arange(n) >= seam)  # the stream has ended, the frames go on
+    timed[later] = np.column_stack([place, heading])[later]
+    return EgoTrack(timed[:, :2], timed[:, 2], int(lost.sum()), float(shift))
 
 
 def _usual(speed: Floats) -> Floats:

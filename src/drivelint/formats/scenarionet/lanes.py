@@ -36,6 +36,7 @@ _MARKINGS: Final = {
 }  # fmt: skip
 """What stands between ROAD_LINE_ and the colour -> marking; of a double line that may be passed from one side, nobody says which."""
 _OVERLAP_SHARE: Final = 0.1  # of the smaller lane's ground: less is the inaccuracy of bounds
+_CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
 _MPH: Final = 0.44704
 _KMH: Final = 1.0 / 3.6
 _FASTEST_MPS: Final = 60.0
@@ -61,7 +62,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         centre = centres[lane.lanelet_id]
         lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
     find_neighbours(lanes)
-    mark_junctions(lanes, least_share=_OVERLAP_SHARE)
+    mark_junctions(lanes, least_share=_OVERLAP_SHARE, least_angle_rad=_CROSSING_RAD)
     said = scenario.dataset.side_driven_on(scenario.place)
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
     beside = furniture(scenario, lanes, request.offset, quality)

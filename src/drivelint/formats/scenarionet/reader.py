@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import pyarrow as pa
@@ -11,7 +11,7 @@ from drivelint.arrays import spelled
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.scenarionet import sources
-from drivelint.formats.scenarionet.ego_clock import ego_times
+from drivelint.formats.scenarionet.ego_clock import timed_track
 from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
 from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
 from drivelint.formats.scenarionet.unpickle import PickleError
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
 takes_mapping: Final = False
 _PROTOCOLS: Final = (2, 3, 4, 5)
+_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in LIGHTS.items()}
 
 
 def accepts(probe: Probe) -> bool:
@@ -53,11 +54,11 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     even = sources.interpolated(tracks, dataset)
     if even.any():
         findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
-    times, of_ego, notes = _ego(tracks, scenario, even)
+    of_ego, notes = _place_ego(tracks, scenario, even)
     if not dataset.sizes:
         tracks.size[:] = np.nan
         notes.append("sizes are guesses of ScenarioNet for this data set: they count as unknown")
-    recording = Recording("scenarionet", _states(tracks, times), findings=[*findings, *of_ego], notes=notes)
+    recording = Recording("scenarionet", _states(tracks), findings=[*findings, *of_ego], notes=notes)
     recording.ego_ids = [] if tracks.ego is None else [tracks.ids[tracks.ego]]
     recording.signals, unknown = _signals(scenario, t_s)
     recording.findings += unknown
@@ -67,22 +68,19 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     return recording
 
 
-def _ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[Floats, list[QualityFinding], list[str]]:
-    """Bring the ego's box to where it is and when, in place; return the times of all states (n, T), findings and notes."""
+def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[QualityFinding], list[str]]:
+    """Bring the ego's box to where it is and when, in place; return findings and notes. `even`: whose positions are interpolated."""
     dataset, ego = scenario.dataset, tracks.ego
-    times = np.broadcast_to(tracks.t_s, tracks.present.shape)
-    named = scenario.metadata.get("sdc_id")
     if ego is None:
-        return times, [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
-    findings, notes = [], []
+        named = scenario.metadata.get("sdc_id")
+        return [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
+    findings: list[QualityFinding] = []
+    notes: list[str] = []
     if dataset.ego_message_s is not None and not even[ego] and tracks.present[ego].all():
-        found = ego_times(tracks.place[ego, :, :2], tracks.t_s, dataset.ego_message_s)
-        times = times.copy()
-        times[ego] = found.t_s
-        # the frames' places are only those that the stream does not have: two sources of one time would be two tracks
-        late = found.t_s[found.seam :] <= found.t_s[: found.seam].max() + dataset.ego_message_s
-        tracks.present[ego, found.seam :] &= ~late
-        findings = _of_clock(tracks.ids[ego], found.lost, found.shift_s, dataset.ego_message_s)
+        timed = timed_track(tracks.place[ego, :, :2], tracks.heading[ego], tracks.t_s, dataset.ego_message_s)
+        tracks.place[ego, :, :2], tracks.heading[ego] = timed.place, timed.heading
+        tracks.present[ego] = np.isfinite(timed.heading)
+        findings = _of_clock(tracks.ids[ego], timed.lost, timed.shift_s, dataset.ego_message_s)
     if dataset.ego_ahead_m:
         heading = tracks.heading[ego]
         tracks.place[ego, :, 0] += dataset.ego_ahead_m * np.cos(heading)
@@ -92,7 +90,7 @@ def _ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[Floats, list[Q
             f"the ego's positions are its rear axle's on the ground: the middle of its box is {dataset.ego_ahead_m:g} m ahead and "
             "half its height above"
         )
-    return times, findings, notes
+    return findings, notes
 
 
 def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[QualityFinding]:
@@ -103,13 +101,13 @@ def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[Qua
     if np.isfinite(shift_s):
         parts.append(f"its last positions, which are of the annotated frames, tell that it begins {shift_s:.2f} s after these")
     message = (
-        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: so its times are set; against the "
-        "others' they are known to about 0.1 s"
+        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
+        "which are known to about 0.1 s against the others'"
     )
     return [QualityFinding("ego_clock", "warning", message, max(lost, 1), actor_id=ego)]
 
 
-def _states(tracks: Tracks, times: Floats) -> States:
+def _states(tracks: Tracks) -> States:
     actor, step = np.nonzero(tracks.present)
     place, velocity, size = (values[actor, step] for values in (tracks.place, tracks.velocity, tracks.size))
     heading = tracks.heading[actor, step]
@@ -121,7 +119,7 @@ def _states(tracks: Tracks, times: Floats) -> States:
     odd = ~np.isfinite(place[:, :2]).all(axis=1) | ~np.isfinite(heading) | np.isinf(velocity).any(axis=1)
     numbers = {name: np.where(np.isinf(values), np.nan, values) for name, values in numbers.items()}
     return States(
-        tracks.ids, actor.astype(np.int32), _nanoseconds(times[actor, step]), numbers, {"actor_class": tracks.kinds[actor]}, odd
+        tracks.ids, actor.astype(np.int32), _nanoseconds(tracks.t_s)[step], numbers, {"actor_class": tracks.kinds[actor]}, odd
     )
 
 
@@ -131,18 +129,19 @@ def _nanoseconds(t_s: Floats) -> Times:
 
 def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
-    ids, codes, unread = [], [], set()
+    ids, codes = [], []
+    seen: set[Any] = set()
     for name, light in scenario.lights.items():
         state = light.get("state")
         words = state.get("object_state") if isinstance(state, dict) else None
         words = words.tolist() if isinstance(words, np.ndarray) else words
-        if not isinstance(words, list) or len(words) != len(t_s):
+        if not isinstance(words, list) or len(words) != len(t_s) or not {*map(type, words)} <= {str, type(None)}:
             where = f"dynamic_map_states[{name[:100]!r}]['state']['object_state']"
             raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
-        known = [LIGHTS.get(word) if isinstance(word, str) else None for word in words]
-        unread |= {str(w)[:100] for w, k in zip(words, known, strict=True) if k is None and w and "UNKNOWN" not in str(w)}
         ids.append(name)
-        codes.append([-1 if word is None else SIGNAL_STATES.index(word) for word in known])
+        codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
+        seen.update(words)
+    unread = {word[:100] for word in seen - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
     if not ids:
         return None, []
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))
@@ -150,7 +149,7 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
         {
             "signal_id": spelled(lights, ids),
             "t_ns": np.tile(_nanoseconds(t_s), len(ids)),
-            "state": spelled(np.concatenate(codes).astype(np.int8), SIGNAL_STATES),
+            "state": spelled(np.concatenate(codes), SIGNAL_STATES),
         }
     )
     if not unread:
