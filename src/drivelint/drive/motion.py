@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import displacements, extent, known_motion, track_starts
+from drivelint.drive.order import displacements, extent, known_motion, steps_between, track_starts
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
 from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
 
@@ -94,9 +94,13 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         if not which.any():
             continue
         rows = np.repeat(which, np.diff(np.r_[starts, len(states)]))
-        motion = derive_velocities(states.t_ns, states.actor, states.place, step)
-        numbers["vx_mps"], numbers["vy_mps"] = np.where(rows, motion.v_mps, states.velocity)
-        findings += _filtered(states, rows & motion.filtered)
+        lacking = states.take(rows)
+        of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns)
+        motion = derive_velocities(lacking.t_ns, lacking.actor, lacking.place, of_lacking)
+        velocity, filtered = states.velocity, rows.copy()
+        velocity[:, rows], filtered[rows] = motion
+        numbers["vx_mps"], numbers["vy_mps"] = velocity
+        findings += _filtered(states, filtered)
         text = why + " ({ids}): velocity is derived from positions"
         findings += states.findings(rows, "velocity_derived", "warning", text)
     return findings

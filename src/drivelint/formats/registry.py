@@ -17,6 +17,7 @@ from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.osi import reader as osi_file
 from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
+from drivelint.formats.scenarionet import reader as scenarionet
 from drivelint.formats.search import why_not_followed, why_not_here
 from drivelint.formats.sumo import fcd
 from drivelint.formats.tables import canonical, mapped_table
@@ -32,6 +33,7 @@ READERS: Final[tuple[Reader, ...]] = (
     canonical,
     d123,
     mcap,
+    scenarionet,
     osi_file,
     scenario,
     fcd,
@@ -40,7 +42,7 @@ READERS: Final[tuple[Reader, ...]] = (
     mapped_table,  # last: it accepts any text without markup
 )
 """The first that accepts a file reads it."""
-FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1"}
+FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
 """Suffix -> how each file with it must begin, behind a byte order mark if there is one: another one is refused as damaged."""
 UNPROTECTED: Final = QualityFinding(
     "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"

@@ -1,4 +1,4 @@
-"""Finds the junctions of a map that names none: where lanes for driving lie over each other."""
+"""Junctions of maps that name none: lanes for driving that lie across each other."""
 
 from __future__ import annotations
 
@@ -10,14 +10,20 @@ import shapely
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
 
-_LEAST_AREA_M2: Final = 1.0
-_LEVEL_M: Final = 3.0  # as far apart in height, lanes do not meet
+_LEAST_M2: Final = 1.0
+_LEVEL_M: Final = 3.0
+"""As far apart in height, lanes lie over each other and not across (as in `driving_side`)."""
 
 
-def mark_junctions(lanes: Sequence[BoundedLane]) -> None:
-    """Mark lanes for driving whose areas overlap another's, that do not lie side by side, as parts of one junction."""
+def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, least_angle_rad: float = 0.0) -> None:
+    """Mark lanes whose areas overlap another's, that do not lie side by side, as parts of one junction.
+
+    `least_share`: of the smaller one's area; less of it is the inaccuracy of bounds. `least_angle_rad`: between two lanes where they
+    cross, or where they have parted or not yet joined; lanes at a smaller one split or merge. Lanes at different heights do not meet.
+    """
     driven = [lane for lane in lanes if lane.drivable]
     areas = [lane.line.polygon for lane in driven]
     tree = shapely.STRtree(areas)
@@ -36,15 +42,39 @@ def mark_junctions(lanes: Sequence[BoundedLane]) -> None:
         if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
             continue
         common = shapely.intersection(areas[i], areas[j])
-        if shapely.area(common) > _LEAST_AREA_M2 and not _on_another_level(a, b, common):
-            overlaps |= {i, j}
-            parent[max(root(i), root(j))] = min(root(i), root(j))
+        if common.area <= max(_LEAST_M2, least_share * min(areas[i].area, areas[j].area)):
+            continue
+        if _apart_m(a, b, common) >= _LEVEL_M or _angle_rad(a, b, common) < least_angle_rad:
+            continue
+        overlaps |= {i, j}
+        parent[max(root(i), root(j))] = min(root(i), root(j))
     for i in sorted(overlaps):
         driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
 
 
-def _on_another_level(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> bool:
-    """Say whether one lane lies above the other where both are; a height that is not known is any."""
-    place = shapely.get_coordinates(shapely.point_on_surface(common))[0]
-    heights = [float(np.interp(lane.line.station(place), lane.line.s, lane.z)) for lane in (a, b)]
-    return abs(heights[0] - heights[1]) >= _LEVEL_M
+def _apart_m(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
+    """Return how far apart two lanes are in height where they overlap; NaN: not known."""
+    return abs(float(np.subtract(*(_at(lane, common, lane.z[:, None])[0] for lane in (a, b)))))
+
+
+def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
+    """Return the angle between two lanes where they overlap, or at their other ends where they begin or end together."""
+    first, second = (_at(lane, common, lane.line.tangent) for lane in (a, b))
+    across = abs(float(first[0] * second[1] - first[1] * second[0]))
+    angle = float(np.arcsin(min(across, 1.0)))  # two that run against each other on the same ground do not cross
+    if set(a.successors) & set(b.successors):
+        angle = max(angle, _between(a.line.tangent[0], b.line.tangent[0]))
+    if np.hypot(*(a.line.centre[0] - b.line.centre[0])) < 1.0:
+        angle = max(angle, _between(a.line.tangent[-1], b.line.tangent[-1]))
+    return angle
+
+
+def _between(one: Floats, other: Floats) -> float:
+    return float(np.arccos(np.clip(one @ other, -1.0, 1.0)))
+
+
+def _at(lane: BoundedLane, area: shapely.Geometry, values: Floats) -> Floats:
+    """Return the values (n, k) along a lane where it passes the middle of an area, (k,)."""
+    middle = area.centroid
+    s = lane.line.station(np.array([middle.x, middle.y]))
+    return np.array([np.interp(s, lane.line.s, column) for column in values.T])

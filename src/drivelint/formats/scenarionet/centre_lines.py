@@ -1,0 +1,223 @@
+"""The lanes of a scenario as centre lines with what lies beside them: how far it is to either side, where the scenario tells it.
+
+A lane's polygon tells both sides; else the lines and edges that the lane refers to, or where no lane refers to any, those that lie
+beside it; else the middle between two lanes that run beside each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import shapely
+
+from drivelint.formats.scenarionet.scenario import points
+from drivelint.formats.scenarionet.unpickle import PickleError
+from drivelint.road.boundary_lanes import FARTHEST_M, stations
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.arrays import Floats, Mask
+    from drivelint.formats.scenarionet.scenario import Scenario
+    from drivelint.road.quality import MapQuality
+
+KINDS: Final = {
+    "LANE_SURFACE_STREET": "driving", "LANE_SURFACE_UNSTRUCTURE": "driving", "LANE_FREEWAY": "driving", "LANE_UNKNOWN": "driving",
+    "LANE_BIKE_LANE": "biking",
+}  # fmt: skip
+"""Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
+_SPACING_M: Final = 4.0
+_SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
+_INSET_M: Final = 0.5  # a polygon's ends may be cut aslant: beside a lane's ends one looks this far inside
+_OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
+_REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
+_LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
+_LANES_APART_M: Final = (2.2, 6.0)  # the middles of two lanes that run beside each other
+_PARALLEL: Final = float(np.cos(np.radians(10.0)))
+
+
+@dataclass(eq=False)
+class CentreLine:
+    """A lane: `line` (n, 2) in the direction of travel, its stations `s` (n,) and unit normals to the left, heights `z` (n,).
+
+    `half` (n, 2): from the middle to the left and to the right bound; NaN: not known.
+    """
+
+    lane_id: str
+    feature: Mapping[str, Any]
+    kind: str
+    line: Floats
+    s: Floats
+    z: Floats
+    normal: Floats
+    half: Floats
+    before: tuple[str, ...] = field(default=())
+    after: tuple[str, ...] = field(default=())
+
+    @property
+    def ends(self) -> Floats:
+        """Direction of travel (2, 2) at the begin and at the end."""
+        return np.column_stack([self.normal[[0, -1], 1], -self.normal[[0, -1], 0]])
+
+
+def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
+    """Return the lanes that have a centre line, without widths; report in `quality` those that have none."""
+    found = {}
+    for name, feature in scenario.features.items():
+        kind = KINDS.get(str(feature.get("type")))
+        if kind is None:
+            continue
+        try:
+            line = points(feature.get("polyline"), f"map_features[{name[:100]!r}]['polyline']")
+            found[name] = _centre_line(name, feature, kind, line, heights=scenario.dataset.heights)
+        except PickleError as error:
+            quality.add("invalid_lane", "error", name, f"lane {name} is left out: {error}")
+    return found
+
+
+def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats, *, heights: bool) -> CentreLine:
+    if line.shape[1] < 2 or not (np.abs(line[:, :2]) < FARTHEST_M).all():
+        raise PickleError("its centre line has a point without a place")
+    line = line[np.r_[True, np.hypot(*np.diff(line[:, :2], axis=0).T) > 0.01]]
+    if len(line) < 2:
+        raise PickleError("its centre line has fewer than two points")
+    own = stations(line)
+    whole = shapely.LineString(line[:, :2])
+    corners = np.unique(shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M)))))
+    pieces = np.maximum(1, np.ceil(np.diff(corners) / _SPACING_M)).astype(int)
+    s = np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)), own[-1:]])
+    at = np.column_stack([np.interp(s, own, column) for column in line.T])
+    way = np.diff(at[:, :2], axis=0)
+    way /= np.hypot(*way.T)[:, None]
+    tangent = np.vstack([way[:1], way[:-1] + way[1:], way[-1:]])
+    tangent /= np.maximum(np.hypot(*tangent.T), 1e-6)[:, None]
+    z = at[:, 2] if heights and at.shape[1] > 2 else np.full(len(s), np.nan)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    return CentreLine(name, feature, kind, at[:, :2], s, z, normal, np.full((len(s), 2), np.nan))
+
+
+def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
+    """Find how far it is from each lane's middle to its sides, in place."""
+    lines = {
+        name: _line(feature, name)
+        for name, feature in scenario.features.items()
+        if str(feature.get("type")).startswith(("ROAD_LINE", "ROAD_EDGE", "UNKNOWN")) and "polyline" in feature
+    }
+    referring = any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right"))
+    tree = shapely.STRtree(list(lines.values()))
+    for name, lane in lanes.items():
+        if "polygon" in lane.feature:
+            outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+            if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
+                _of_polygon(lane, shapely.Polygon(outline))
+        elif referring:
+            _of_references(lane, lines)
+        elif len(lines):
+            _of_lines(lane, tree)
+    _of_parallel_lanes([lane for lane in lanes.values() if np.isnan(lane.half).any()], list(lanes.values()))
+
+
+def _line(feature: Mapping[str, Any], name: str) -> shapely.LineString:
+    line = points(feature["polyline"], f"map_features[{name[:100]!r}]['polyline']")[:, :2]
+    sound = len(line) > 1 and bool((np.abs(line) < FARTHEST_M).all())
+    return shapely.LineString(line) if sound else shapely.LineString()
+
+
+def _rays(lane: CentreLine, side: int, reach_m: float, place: Floats) -> Any:
+    out = lane.normal * (reach_m if side == 0 else -reach_m)
+    return shapely.linestrings(np.stack([place, place + out], axis=1))
+
+
+def _of_polygon(lane: CentreLine, area: shapely.Polygon) -> None:
+    """Measure from the middle to where a polygon ends, beside the ends of the lane from a little inside."""
+    inset = min(_INSET_M, lane.s[-1] / 4)
+    s = np.clip(lane.s, inset, lane.s[-1] - inset)
+    place = np.column_stack([np.interp(s, lane.s, column) for column in lane.line.T])
+    inside = shapely.contains(area, shapely.points(place))
+    for side in (0, 1):
+        crossed = shapely.intersection(_rays(lane, side, _OUTLINE_M, place), area.exterior)
+        lane.half[:, side] = np.where(inside, shapely.distance(shapely.points(place), crossed), np.nan)
+
+
+def _of_references(lane: CentreLine, lines: Mapping[str, shapely.LineString]) -> None:
+    """Measure to the lines and edges that the lane names, each on its part of the lane."""
+    for side, at, name in boundary_spans(lane):
+        line = lines.get(name)
+        if line is not None:
+            _nearer(lane, side, at, line, _REACH_M, 0.0)
+
+
+def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
+    """Yield for each boundary that a lane names its side (0 left, 1 right), the points (n,) that it lies beside, and its id."""
+    own = points(lane.feature["polyline"], "polyline")
+    own_s = stations(own)
+    for side, key in enumerate(("left_boundaries", "right_boundaries")):
+        for span in lane.feature.get(key) or ():
+            try:
+                first, last = (own_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
+                name = str(span["boundary_feature_id"])
+            except (KeyError, ValueError, TypeError, IndexError):
+                continue
+            yield side, (lane.s >= first - 0.3) & (lane.s <= last + 0.3), name
+
+
+def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
+    """Measure to the nearest line or edge beside each point, whatever lane it belongs to."""
+    for side in (0, 1):
+        rays = _rays(lane, side, _REACH_M, lane.line)
+        for i in np.unique(tree.query(rays, predicate="intersects")[1]):
+            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], _REACH_M, _LEAST_M)
+
+
+def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, reach_m: float, least_m: float) -> None:
+    """Take the distance to a line where it is the nearest so far, for the points `at` which it may lie."""
+    crossed = shapely.intersection(_rays(lane, side, reach_m, lane.line), line)
+    far = np.asarray(shapely.distance(shapely.points(lane.line), crossed), np.float64)
+    lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
+
+
+def _of_parallel_lanes(lanes: Sequence[CentreLine], others: Sequence[CentreLine]) -> None:
+    """Take the middle between two lanes that run beside each other, whichever way, for the bound of which nobody tells.
+
+    Lanes that fork or join run beside each other, too, but share ground.
+    """
+    tree = shapely.STRtree([shapely.LineString(lane.line) for lane in others])
+    least, most = _LANES_APART_M
+    for lane in lanes:
+        for side in (0, 1):
+            unknown = np.flatnonzero(np.isnan(lane.half[:, side]))
+            rays = _rays(lane, side, most, lane.line)[unknown]
+            for k, i in tree.query(rays, predicate="intersects").T:
+                other, at = others[i], int(unknown[k])
+                if other is lane or not {*lane.before, *lane.after}.isdisjoint((*other.before, *other.after)):
+                    continue
+                place = shapely.intersection(rays[k], tree.geometries[i])
+                far = float(shapely.distance(shapely.Point(lane.line[at]), place))
+                near = int(np.argmin(np.hypot(*(other.line - lane.line[at]).T)))
+                if least <= far <= most and abs(float(lane.normal[at] @ other.normal[near])) > _PARALLEL:
+                    lane.half[at, side] = np.fmin(lane.half[at, side], far / 2.0)
+
+
+def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
+    """Give the sides of which nobody tells the width of what the lane joins, in place; return lane -> share of its sides that is so found.
+
+    At its ends a lane is as wide as those that it continues or leads to, and between it widens evenly. One side of which nothing is known
+    is as far from the middle as the other.
+    """
+    unknown = {name: float(np.isnan(lane.half).mean()) for name, lane in lanes.items()}
+    for _ in range(2):  # a lane between two that have no widths either
+        for lane in lanes.values():
+            for end, joined, theirs in ((0, lane.before, -1), (-1, lane.after, 0)):
+                known = [lanes[name].half[theirs] for name in joined if name in lanes]
+                known = [half for half in known if np.isfinite(half).all()]
+                if known:
+                    lane.half[end] = np.where(np.isnan(lane.half[end]), np.mean(known, axis=0), lane.half[end])
+    for lane in lanes.values():
+        for side in (0, 1):
+            at = np.isfinite(lane.half[:, side])
+            if at.any():
+                lane.half[:, side] = np.interp(lane.s, lane.s[at], lane.half[at, side])
+        lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
+    return {name: share for name, share in unknown.items() if share > 0.0}

@@ -1,0 +1,100 @@
+"""Where the ego was when, of a data set that counts the messages of a stream instead of timing them.
+
+The messages come with one period, and every few of them is a step. Where some were lost, a step takes longer than it says, and the ego
+seems to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high.
+The steps over lost messages get their time back. At the end of the drive, where messages run short, the ego's last places are those of
+the annotated frames, as everybody else's are: they tell how the stream's clock lies to that of the frames.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats
+
+_LEAST_MPS: Final = 2.0
+"""Below it, a lost message moves the ego by less than 4 cm, and noise of 2 cm hides it."""
+_BESIDE: Final = 4
+"""A step is compared with so many on each side."""
+_TOLERANCE: Final = 0.4
+"""A step is longer by a whole number of messages, give or take this share of one."""
+_MOST_LOST: Final = 10
+_BACK_SHARE: Final = 0.6
+"""A step that leads less far than this share of the usual one, between two that do, is the seam between two sources."""
+_LAST_STEPS: Final = 20
+"""The seam lies so near to the end: the stream lacks as many steps as messages were lost in it, and no more."""
+_MOST_SHIFT_S: Final = 0.5
+
+
+class EgoTrack(NamedTuple):
+    """The ego's places (T, 2) and headings (T,) at the steps, NaN where the stream has none.
+
+    `lost`: messages that are missing. `shift_s`: so much after the frames the stream begins; NaN: not known.
+    """
+
+    place: Floats
+    heading: Floats
+    lost: int
+    shift_s: float
+
+
+def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -> EgoTrack:
+    """Return where the ego was at the steps (T,), of places (T, 2) and headings (T,) that are counted messages.
+
+    Between two messages, 0.1 s apart, it goes straight on: at 5 m/s2 that is 6 mm off.
+    """
+    n, period = len(t_s), np.diff(t_s)
+    way = np.hypot(*np.diff(place, axis=0).T)
+    if n < 2 * _BESIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
+        return EgoTrack(place, heading, 0, np.nan)
+    usual = _usual(way / period)
+    moving = usual > _LEAST_MPS
+    longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_s
+    whole = np.round(longer)
+    lost = np.where((whole >= 1) & (whole <= _MOST_LOST) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
+    seam = _seam(place, usual * period, moving)
+    lost[seam - 1 :] = 0.0
+    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * lost)][:seam]
+    shift = t_s[seam] - _time_at(place[seam], place[:seam], stream) if seam < n else np.nan
+    shift = shift if abs(shift) <= _MOST_SHIFT_S else np.nan
+    if not lost.any() and np.isnan(shift):
+        return EgoTrack(place, heading, 0, np.nan)
+    stream += np.nan_to_num(shift)
+    inside = (t_s >= stream[0] - 1e-9) & (t_s <= stream[-1] + 1e-9)
+    columns = [*place[:seam].T, np.unwrap(heading[:seam])]
+    timed = np.column_stack([np.where(inside, np.interp(t_s, stream, column), np.nan) for column in columns])
+    later = (t_s > stream[-1]) & (np.arange(n) >= seam)  # the stream has ended, the frames go on
+    timed[later] = np.column_stack([place, heading])[later]
+    return EgoTrack(timed[:, :2], timed[:, 2], int(lost.sum()), float(shift))
+
+
+def _usual(speed: Floats) -> Floats:
+    """Return the median of each speed's neighbours, with itself."""
+    padded = np.pad(speed, _BESIDE, mode="reflect")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1), axis=1), np.float64)
+
+
+def _seam(place: Floats, usual_m: Floats, moving: Floats) -> int:
+    """Return the first step (1 ... T - 1) that is not of the stream; T: all are."""
+    n = len(place)
+    step = np.diff(place, axis=0)
+    ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
+    short = (step[1:] * ahead).sum(axis=1) < _BACK_SHARE * usual_m[1:]
+    found = np.flatnonzero(short & moving[1:]) + 2
+    found = found[found > n - 1 - _LAST_STEPS]
+    return int(found[0]) if len(found) else n
+
+
+def _time_at(point: Floats, place: Floats, t_s: Floats) -> float:
+    """Return when a track passes a point, at its last steps, by the nearest place on it; a straight line goes on beyond its end."""
+    first = max(0, len(place) - _LAST_STEPS)
+    a, b = place[first:-1], place[first + 1 :]
+    way = b - a
+    share = ((point - a) * way).sum(axis=1) / np.maximum((way * way).sum(axis=1), 1e-12)
+    share = np.r_[np.clip(share[:-1], 0.0, 1.0), np.maximum(share[-1:], 0.0)]
+    near = int(np.argmin(np.hypot(*(a + share[:, None] * way - point).T)))
+    t0, t1 = t_s[first + near], t_s[first + near + 1]
+    return float(t0 + share[near] * (t1 - t0))

@@ -1,0 +1,122 @@
+"""What stands beside and lies across the lanes of a scenario: its lights, stop signs and crossings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import shapely
+
+from drivelint.formats.scenarionet.scenario import numbers, points
+from drivelint.formats.scenarionet.unpickle import PickleError
+from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
+from drivelint.road.tables import crossing_row
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.arrays import Floats
+    from drivelint.formats.scenarionet.scenario import Scenario
+    from drivelint.road.boundary_lanes import BoundedLane
+    from drivelint.road.quality import MapQuality
+    from drivelint.road.tables import Rows
+
+_STANDS_FAR_M: Final = 30.0  # a stop sign farther from its lane's middle is another's
+
+
+def furniture(
+    scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> dict[str, Rows]:
+    """Return rows of `traffic_signal`, `stop_line` and `crossing`; report in `quality` what holds for no lane."""
+    by_id = {lane.lanelet_id: lane for lane in lanes}
+    signals = [*_lights(scenario, by_id, offset, quality), *_stop_signs(scenario, by_id, offset, quality)]
+    return {
+        "traffic_signal": sorted(signals, key=lambda row: (row["signal_id"], row["lanelet_id"])),
+        "stop_line": [],
+        "crossing": _crossings(scenario, lanes, offset, quality),
+    }
+
+
+def _lights(
+    scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> Rows:
+    """Return a row for each light: it is called as its states are, and holds from its stop point, or without one the lane's begin."""
+    rows, lost = [], []
+    for name, light in scenario.lights.items():
+        lane = lanes.get(str(light.get("lane", name)))
+        if lane is None:
+            lost.append(name)
+            continue
+        place = _place(light.get("stop_point"), offset) if scenario.dataset.stop_points else None
+        s = 0.0 if place is None else lane.line.station(place)
+        where = lane.line.centre[0] if place is None else place
+        rows.append(signal_row(lane, s, where, signal_id=name, kind="traffic_light", dynamic=True))
+    _report_lost(lost, "lights", quality)
+    return rows
+
+
+def _stop_signs(
+    scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> Rows:
+    rows, lost = [], []
+    for name, feature in scenario.features.items():
+        if feature.get("type") != "STOP_SIGN":
+            continue
+        place = _place(feature.get("position"), offset)
+        held = feature.get("lane")
+        held = [lanes[str(i)] for i in held if str(i) in lanes] if isinstance(held, (list, tuple)) else []
+        near = [lane for lane in held if place is not None and _far(lane, place) <= _STANDS_FAR_M]
+        if place is None or not near:
+            lost.append(name)
+            continue
+        rows += [signal_row(lane, lane.line.station(place), place, signal_id=name, kind="stop") for lane in near]
+    _report_lost(lost, "stop signs", quality)
+    return rows
+
+
+def _far(lane: BoundedLane, place: Floats) -> float:
+    return float(np.hypot(*(lane.line.centre - place).T).min())
+
+
+def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
+    """Return x and y of a place, moved by the map's offset; None: it is not said, or cannot be."""
+    try:
+        place = numbers(value, "a place").reshape(-1)[:2]
+    except PickleError:
+        return None
+    return place + offset if len(place) == 2 and bool((np.abs(place) < FARTHEST_M).all()) else None
+
+
+def _report_lost(names: list[str], what: str, quality: MapQuality) -> None:
+    if names:
+        message = f"{what} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
+        quality.add("signal_without_lane", "warning", None, message, len(names))
+
+
+def _crossings(
+    scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+) -> Rows:
+    """Return a row for each crossing and lane for driving that it lies across."""
+    driven = [lane for lane in lanes if lane.drivable]
+    lines = [shapely.LineString(lane.line.centre) for lane in driven]
+    tree = shapely.STRtree(lines)
+    rows: Rows = []
+    for name, feature in scenario.features.items():
+        if feature.get("type") != "CROSSWALK":
+            continue
+        try:
+            outline = points(feature.get("polygon"), f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+        except PickleError:
+            outline = np.empty((0, 2))
+        if len(outline) < 3 or not (np.abs(outline) < FARTHEST_M).all():
+            quality.add("invalid_lane", "error", name, f"crossing {name} is left out: it has no outline")
+            continue
+        area = shapely.Polygon(outline + offset).buffer(0.0)
+        crossed = tree.query(area, predicate="intersects")
+        if not len(crossed):
+            quality.add("object_without_lane", "info", None, f"crossing {name} lies across no lane that vehicles drive on")
+        for i in crossed:
+            common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
+            s = shapely.line_locate_point(lines[i], shapely.points(common))
+            rows.append(crossing_row(name, driven[i].lanelet_id, s, None))
+    return sorted(rows, key=lambda row: (row["crossing_id"], row["lanelet_id"]))

@@ -1,0 +1,144 @@
+"""The map of a ScenarioNet scenario: its lanes, their markings and limits, and the lights, stop signs and crossings on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import shapely
+
+from drivelint.errors import MapError
+from drivelint.formats.scenarionet.centre_lines import (
+    boundary_spans,
+    fill_unknown_sides,
+    measure_sides,
+    read_centre_lines,
+)
+from drivelint.formats.scenarionet.furniture import furniture
+from drivelint.formats.scenarionet.lane_graph import find_neighbours, link
+from drivelint.formats.scenarionet.scenario import numbers, read_scenario
+from drivelint.formats.scenarionet.unpickle import PickleError
+from drivelint.road.boundary_lanes import BoundedLane, Mark, build_lanes, map_from_bounds, side_driven_on
+from drivelint.road.driving_side import choose_side
+from drivelint.road.overlapping_lanes import mark_junctions
+from drivelint.road.quality import MapQuality
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.arrays import Floats
+    from drivelint.formats.scenarionet.centre_lines import CentreLine
+    from drivelint.formats.scenarionet.scenario import Scenario
+    from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+
+_MARKINGS: Final = {
+    "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
+}  # fmt: skip
+"""What stands between ROAD_LINE_ and the colour -> marking; of a double line that may be passed from one side, nobody says which."""
+_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's ground: less is the inaccuracy of bounds
+_CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
+_MPH: Final = 0.44704
+_KMH: Final = 1.0 / 3.6
+_FASTEST_MPS: Final = 60.0
+
+
+def read(source: MapSource, request: MapOptions) -> MapTables:
+    """Return the map's tables; `MapError` where the pickle is damaged, holds no scenario, or no lane of it can be built."""
+    quality = MapQuality()
+    try:
+        scenario = read_scenario(source.content)
+        centres = read_centre_lines(scenario, quality)
+        link(centres)
+        measure_sides(centres, scenario)
+    except PickleError as error:
+        raise MapError(f"map {source.name}: {error}") from error
+    guessed = fill_unknown_sides(centres)
+    lanes = build_lanes(_bounded(centres, scenario, quality), request.offset, quality)
+    if not any(lane.drivable for lane in lanes):
+        first = next((row["message"] for row in quality.rows), "it has none")
+        raise MapError(f"map {source.name} has no lane for driving that can be built: {first}: give --map")
+    _report_guessed(centres, guessed, quality)
+    for lane in lanes:
+        centre = centres[lane.lanelet_id]
+        lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
+    find_neighbours(lanes)
+    mark_junctions(lanes, least_share=_OVERLAP_SHARE, least_angle_rad=_CROSSING_RAD)
+    said = scenario.dataset.side_driven_on(scenario.place)
+    side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
+    beside = furniture(scenario, lanes, request.offset, quality)
+    return map_from_bounds(source, request, lanes, beside, quality, kind="scenarionet", side=side)
+
+
+def _stations_on(centre: CentreLine, places: Floats) -> Floats:
+    line = shapely.LineString(centre.line)
+    return np.asarray(shapely.line_locate_point(line, shapely.points(places)), np.float64)
+
+
+def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
+    """Return the lanes with their bounds; report in `quality` those of which nothing tells the width."""
+    found = []
+    for name, lane in centres.items():
+        if np.isnan(lane.half).any():
+            message = f"lane {name} is left out: neither it nor what it joins has bounds, and so it has no width"
+            quality.add("invalid_lane", "error", name, message)
+            continue
+        found.append(
+            BoundedLane(
+                name,
+                lane.line + lane.normal * lane.half[:, :1],
+                lane.line - lane.normal * lane.half[:, 1:],
+                lane.kind,
+                lane.kind == "driving",
+                road_type="motorway" if lane.feature.get("type") == "LANE_FREEWAY" else None,
+                successors=lane.after,
+                limit_source="lane",
+                marks=_marks(lane, scenario) if scenario.dataset.markings else (),
+                limits=_limits(lane) if scenario.dataset.speed_limits else (),
+            )
+        )
+    return found
+
+
+def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
+    """Return the markings of the lines that a lane names, along the parts that they lie beside; none: it names none."""
+    marks = []
+    for side, at, name in boundary_spans(lane):
+        if not at.any():
+            continue
+        begin, end = (float(lane.s[at][k] / lane.s[-1]) for k in (0, -1))
+        if end > begin:
+            word = str(scenario.features.get(name, {}).get("type"))
+            marking = next((marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None)
+            marks.append(Mark(("left", "right")[side], begin, end, marking))
+    known = {mark.side for mark in marks}
+    marks += [Mark(side, 0.0, 1.0, None) for side in ("left", "right") if side not in known]
+    return tuple(sorted(marks, key=lambda mark: (mark.side, mark.begin)))
+
+
+def _limits(lane: CentreLine) -> tuple[tuple[float, float, float | None], ...]:
+    for key, unit in (("speed_limit_mph", _MPH), ("speed_limit_kmh", _KMH)):
+        limit = _number(lane.feature.get(key)) * unit
+        if 0.0 < limit < _FASTEST_MPS:
+            return ((0.0, 1.0, limit),)
+    return ()
+
+
+def _number(value: Any) -> float:
+    try:
+        found = numbers(value, "a number")
+    except PickleError:
+        return 0.0
+    return float(found) if found.size == 1 else 0.0
+
+
+def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, float], quality: MapQuality) -> None:
+    """Say of how many lanes, and along how much of them, the width is that of the lanes that they join, or of one side alone."""
+    of = {name: share for name, share in guessed.items() if np.isfinite(centres[name].half).all()}
+    if of:
+        whole = sum(float(lane.s[-1]) for lane in centres.values())
+        part = sum(share * float(centres[name].s[-1]) for name, share in of.items())
+        message = (
+            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: it is taken "
+            "to be as wide as the lanes that it joins, or as on its other side"
+        )
+        quality.add("assumed_width", "info", None, message, len(of))

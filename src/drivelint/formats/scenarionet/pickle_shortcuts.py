@@ -1,0 +1,112 @@
+"""Parts of a pickle that are read at once, for speed: arrays, and lists of points. Most of a scenario is such.
+
+Each pattern is the operations that CPython's and numpy's picklers write for one value, named as `pickletools` names them. What differs
+is read operation by operation.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.formats.scenarionet.pickled_numpy import NumberType, array_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.arrays import Floats
+
+
+class Points(NamedTuple):
+    """A list of points that was read at once: they are tuples or lists of two or three numbers.
+
+    `first`: the number under which the file may refer to the first of them.
+    """
+
+    points: Floats
+    are_tuples: bool
+    first: int
+
+    def as_list(self) -> list[Any]:
+        """Return the points as they stand in the file."""
+        return [tuple(row) if self.are_tuples else row for row in self.points.tolist()]
+
+    def row(self, number: int) -> Any:
+        """Return the point to which the file refers by this number."""
+        found = self.points[number - self.first].tolist()
+        return tuple(found) if self.are_tuples else found
+
+
+def _point(first: int, size: int, k: int) -> np.dtype[Any]:
+    """Return the type of a point of k numbers, of which the first stands `first` bytes after its begin."""
+    places = [first + 9 * i for i in range(k)]
+    return np.dtype({"names": list("xyz"[:k]), "formats": [">f8"] * k, "offsets": places, "itemsize": size})
+
+
+_LISTS: Final = (
+    # MEMOIZE, MARK, then BINFLOAT thrice, TUPLE3 and MEMOIZE for each point, APPENDS
+    (re.compile(rb"\x94\((?:G.{8}G.{8}G.{8}\x87\x94)+e", re.DOTALL), _point(1, 29, 3), True),
+    # MEMOIZE, MARK, then EMPTY_LIST, MEMOIZE, MARK, BINFLOAT twice and APPENDS for each point, APPENDS
+    (re.compile(rb"\x94\((?:\]\x94\(G.{8}G.{8}e)+e", re.DOTALL), _point(4, 22, 2), False),
+)
+_BEGIN: Final = 2  # bytes of a list before its first point; one is behind its last
+
+
+def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
+    """Return the points of a list of which the file has at this place all but EMPTY_LIST, and where it ends; None: it is none.
+
+    `count`: the number that the file will give the list.
+    """
+    for pattern, point, are_tuples in _LISTS:
+        if match := pattern.match(content, at):
+            n = (match.end() - at - _BEGIN - 1) // point.itemsize
+            rows = np.frombuffer(content, point, n, at + _BEGIN)
+            points = np.column_stack([rows[name] for name in point.names or ()])
+            return Points(points, are_tuples, count + 1), match.end()
+    return None
+
+
+_REFERENCE: Final = rb"(?:h.|j.{4})"
+_ARRAY: Final = re.compile(
+    # the name numpy.ndarray, BININT1 0, TUPLE1, MEMOIZE, the byte b, TUPLE3, MEMOIZE, REDUCE, MEMOIZE
+    rb"(" + _REFERENCE + rb")K\x00\x85\x94" + _REFERENCE + rb"\x87\x94R\x94"
+    # MARK, BININT1 1, the shape, a tuple of it, MEMOIZE, the type, NEWTRUE or NEWFALSE, the length of the bytes
+    rb"\(K\x01((?:K.|M.{2}|J.{4}){1,3})[\x85\x86\x87]\x94(" + _REFERENCE + rb")([\x88\x89])(C.|B.{4})",
+    re.DOTALL,
+)  # fmt: skip
+_ARRAY_END: Final = b"\x94t\x94b"  # behind the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
+ARRAY_COUNT: Final = 6
+"""So many values of an array the file gives a number: the third (`ARRAY_NUMBER` from 0) is the array; to the others it never refers."""
+ARRAY_NUMBER: Final = 2
+
+
+def array_at(content: bytes, at: int, memo: Mapping[int, Any]) -> tuple[np.ndarray[Any, Any], int] | None:
+    """Return the array of which the file has at this place all but the function that makes it, and where it ends; None: it is none.
+
+    Errors: as `array_of`.
+    """
+    match = _ARRAY.match(content, at)
+    if match is None:
+        return None
+    _, shape, kind, order, size = match.groups()
+    begin = match.end()
+    end = begin + int.from_bytes(size[1:], "little")
+    if content[end : end + len(_ARRAY_END)] != _ARRAY_END:
+        return None
+    number_type = memo.get(int.from_bytes(kind[1:], "little"))
+    if type(number_type) is not NumberType:
+        return None
+    state = (1, _integers(shape), number_type, order == b"\x88", content[begin:end])
+    return array_of(state), end + len(_ARRAY_END)
+
+
+def _integers(code: bytes) -> tuple[int, ...]:
+    """Return the integers of BININT1, BININT2 and BININT one after another."""
+    found, at = [], 0
+    while at < len(code):
+        width = {0x4B: 1, 0x4D: 2, 0x4A: 4}[code[at]]
+        found.append(int.from_bytes(code[at + 1 : at + 1 + width], "little"))
+        at += 1 + width
+    return tuple(found)

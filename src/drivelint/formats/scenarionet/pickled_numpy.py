@@ -1,0 +1,109 @@
+"""The names that a pickle may call for, and the numpy arrays, numbers and containers that are made by them."""
+
+from __future__ import annotations
+
+from math import prod
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_NUMPY: Final = ("numpy.core", "numpy._core")  # before numpy 2, and since
+_BUILTINS: Final = ("builtins", "__builtin__")  # Python 3's name, and Python 2's, which protocol 2 writes
+_NAMES: Final = {
+    **{(f"{core}.multiarray", "_reconstruct"): "array" for core in _NUMPY},
+    **{(f"{core}.multiarray", "scalar"): "scalar" for core in _NUMPY},
+    **{(f"{core}.numeric", "_frombuffer"): "view" for core in _NUMPY},
+    ("numpy", "ndarray"): "type",
+    ("numpy", "dtype"): "number type",
+    ("collections", "defaultdict"): "dict",
+    ("collections", "OrderedDict"): "dict",
+    ("_codecs", "encode"): "encode",
+    **{(module, name): "list" for module in _BUILTINS for name in ("set", "frozenset", "list")},
+    **{(module, name): "bytes" for module in _BUILTINS for name in ("bytes", "bytearray")},
+    **{(module, name): "type" for module in _BUILTINS for name in ("int", "long", "float", "bool", "str", "unicode")},
+    **{(module, "dict"): "dict" for module in _BUILTINS},
+}
+"""(module, name) in a file -> what it stands for here; a set is a list of its members, in the order of the file."""
+_KINDS: Final = "biufUS"
+"""Kinds of numpy types that are read: numbers and texts."""
+_EMPTY: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
+_OBJECTS: Final = "it holds an array of Python objects, which is refused: write numbers"
+
+
+class PickleError(ValueError):
+    """A pickle that is damaged, cut off, or holds something else than plain values; caught where the file is named."""
+
+
+class Name(NamedTuple):
+    """A name that the file gives, as it stands for something here."""
+
+    meaning: str
+
+
+def name_of(module: Any, name: Any) -> Name:
+    """Return what a name of the file stands for. Errors: `PickleError` for one that is refused."""
+    meaning = _NAMES.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
+    if meaning is None:
+        what = f"{str(module)[:100]}.{str(name)[:100]}"
+        raise PickleError(f"it calls for {what!r}, which is refused: only numpy arrays and plain values are read")
+    return Name(meaning)
+
+
+class NumberType:
+    """A numpy type: its code, such as f8, and its byte order, which the file gives later."""
+
+    def __init__(self, code: Any) -> None:
+        if not (isinstance(code, str) and code[:1] in _KINDS and code[1:].isdecimal()):
+            raise PickleError(_OBJECTS)
+        self.code = code
+        self.numpy = np.dtype(code)
+
+    def set_state(self, state: Any) -> None:
+        """Give the type its byte order. Errors: `PickleError` for a type with fields."""
+        _, order, *structure = state
+        if order not in {"<", ">", "|", "="} or any(part is not None for part in structure[:3]):
+            raise PickleError(_OBJECTS)
+        self.numpy = np.dtype(order + self.code)
+
+
+class Array:
+    """An array of which the content follows; `memo`: the number under which the file will refer to it."""
+
+    def __init__(self, memo: int | None) -> None:
+        self.memo = memo
+
+
+def array_of(state: Any) -> np.ndarray[Any, Any]:
+    """Return the array that a state (version, shape, type, is Fortran's, bytes) gives. Errors: `PickleError`."""
+    _, shape, kind, is_fortran, raw = state
+    return _view(raw, kind, shape, "F" if is_fortran else "C")
+
+
+def made(meaning: str, arguments: tuple[Any, ...]) -> Any:
+    """Return what a name with these arguments stands for, but for arrays without content and bytes from texts."""
+    if meaning == "number type":
+        return NumberType(arguments[0])
+    if meaning == "scalar":
+        kind, raw = arguments
+        return _view(raw, kind, (1,), "C")[0].item()
+    if meaning == "view":
+        raw, kind, shape, order = arguments
+        return _view(raw, kind, shape, order)
+    # an empty container, or the one that the file gives as its content; the default of a dict is not kept
+    given = next((value for value in arguments if not isinstance(value, (Name, str))), None)
+    if given is not None and type(given).__name__ != meaning:
+        raise TypeError(f"a {meaning} made of something else")
+    return _EMPTY[meaning]() if given is None else given
+
+
+def _view(raw: Any, kind: Any, shape: Any, order: Any) -> np.ndarray[Any, Any]:
+    if type(kind) is not NumberType or type(raw) is not bytes or order not in {"C", "F"}:
+        raise PickleError(_OBJECTS)
+    if type(shape) is not tuple or {*map(type, shape)} - {int} or min(shape, default=0) < 0:
+        raise TypeError("an array without a shape")
+    if prod(shape) * kind.numpy.itemsize != len(raw):
+        raise ValueError(f"an array is of another size than its shape {shape} says")
+    return np.ndarray(shape, kind.numpy, raw, order=order)

@@ -1,0 +1,158 @@
+"""Scenarios of ScenarioNet: one drive per pickle, of its tracks, the states of its lights and the ego that it names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.arrays import spelled
+from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, States
+from drivelint.errors import TraceError
+from drivelint.formats.scenarionet import sources
+from drivelint.formats.scenarionet.ego_clock import timed_track
+from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
+from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
+from drivelint.formats.scenarionet.unpickle import PickleError
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.formats.probe import Probe
+    from drivelint.formats.scenarionet.scenario import Scenario
+
+formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
+takes_mapping: Final = False
+_PROTOCOLS: Final = (2, 3, 4, 5)
+_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in LIGHTS.items()}
+
+
+def accepts(probe: Probe) -> bool:
+    """Accept a pickle by its first byte and its protocol."""
+    return len(probe.head) > 2 and probe.head[0] == 0x80 and probe.head[1] in _PROTOCOLS and _is_dict(probe.head)
+
+
+def _is_dict(head: bytes) -> bool:
+    """Say whether a pickle begins with a dict, behind the frame that protocols 4 and 5 have."""
+    return head[2:3] == b"}" or (head[2:3] == b"\x95" and head[11:12] == b"}")
+
+
+def read(probe: Probe) -> Recording:
+    """Read a scenario. Errors: `TraceError` for a pickle that is damaged, holds something else, or more than numbers and texts."""
+    content = probe.path.read_bytes()
+    try:
+        return _recording(read_scenario(content), content)
+    except PickleError as error:
+        raise TraceError(f"{probe.path}: {error}") from error
+
+
+def _recording(scenario: Scenario, content: bytes) -> Recording:
+    dataset, t_s = scenario.dataset, times_s(scenario.metadata)
+    tracks = read_tracks(scenario, t_s, len(content))
+    findings = [*sources.turn_boxes(tracks, dataset), *sources.drop_differences(tracks), *sources.drop_false_stops(tracks)]
+    even = sources.interpolated(tracks, dataset)
+    if even.any():
+        findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
+    of_ego, notes = _place_ego(tracks, scenario, even)
+    if not dataset.sizes:
+        tracks.size[:] = np.nan
+        notes.append("sizes are guesses of ScenarioNet for this data set: they count as unknown")
+    recording = Recording("scenarionet", _states(tracks), findings=[*findings, *of_ego], notes=notes)
+    recording.ego_ids = [] if tracks.ego is None else [tracks.ids[tracks.ego]]
+    recording.signals, unknown = _signals(scenario, t_s)
+    recording.findings += unknown
+    recording.sensor_range_m = dataset.sensor_range_m
+    if any("LANE" in str(feature.get("type")) for feature in scenario.features.values()):
+        recording.embedded_map = content
+    return recording
+
+
+def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[QualityFinding], list[str]]:
+    """Bring the ego's box to where it is and when, in place; return findings and notes. `even`: whose positions are interpolated."""
+    dataset, ego = scenario.dataset, tracks.ego
+    if ego is None:
+        named = scenario.metadata.get("sdc_id")
+        return [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
+    findings: list[QualityFinding] = []
+    notes: list[str] = []
+    if dataset.ego_message_s is not None and not even[ego] and tracks.present[ego].all():
+        timed = timed_track(tracks.place[ego, :, :2], tracks.heading[ego], tracks.t_s, dataset.ego_message_s)
+        tracks.place[ego, :, :2], tracks.heading[ego] = timed.place, timed.heading
+        tracks.present[ego] = np.isfinite(timed.heading)
+        findings = _of_clock(tracks.ids[ego], timed.lost, timed.shift_s, dataset.ego_message_s)
+    if dataset.ego_ahead_m:
+        heading = tracks.heading[ego]
+        tracks.place[ego, :, 0] += dataset.ego_ahead_m * np.cos(heading)
+        tracks.place[ego, :, 1] += dataset.ego_ahead_m * np.sin(heading)
+        tracks.place[ego, :, 2] += tracks.size[ego, :, 2] / 2.0
+        notes.append(
+            f"the ego's positions are its rear axle's on the ground: the middle of its box is {dataset.ego_ahead_m:g} m ahead and "
+            "half its height above"
+        )
+    return findings, notes
+
+
+def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[QualityFinding]:
+    if not lost and not np.isfinite(shift_s):
+        return []
+    steps = f"{lost} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
+    parts = [steps] if lost else []
+    if np.isfinite(shift_s):
+        parts.append(f"its last positions, which are of the annotated frames, tell that it begins {shift_s:.2f} s after these")
+    message = (
+        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
+        "which are known to about 0.1 s against the others'"
+    )
+    return [QualityFinding("ego_clock", "warning", message, max(lost, 1), actor_id=ego)]
+
+
+def _states(tracks: Tracks) -> States:
+    actor, step = np.nonzero(tracks.present)
+    place, velocity, size = (values[actor, step] for values in (tracks.place, tracks.velocity, tracks.size))
+    heading = tracks.heading[actor, step]
+    numbers = {
+        "x_m": place[:, 0], "y_m": place[:, 1], "z_m": place[:, 2], "yaw_rad": heading,
+        "vx_mps": velocity[:, 0], "vy_mps": velocity[:, 1],
+        "length_m": size[:, 0], "width_m": size[:, 1], "height_m": size[:, 2],
+    }  # fmt: skip
+    odd = ~np.isfinite(place[:, :2]).all(axis=1) | ~np.isfinite(heading) | np.isinf(velocity).any(axis=1)
+    numbers = {name: np.where(np.isinf(values), np.nan, values) for name, values in numbers.items()}
+    return States(
+        tracks.ids, actor.astype(np.int32), _nanoseconds(tracks.t_s)[step], numbers, {"actor_class": tracks.kinds[actor]}, odd
+    )
+
+
+def _nanoseconds(t_s: Floats) -> Times:
+    return np.round(t_s * 1e9).astype(np.int64)
+
+
+def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
+    """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
+    ids, codes = [], []
+    seen: set[Any] = set()
+    for name, light in scenario.lights.items():
+        state = light.get("state")
+        words = state.get("object_state") if isinstance(state, dict) else None
+        words = words.tolist() if isinstance(words, np.ndarray) else words
+        if not isinstance(words, list) or len(words) != len(t_s) or not {*map(type, words)} <= {str, type(None)}:
+            where = f"dynamic_map_states[{name[:100]!r}]['state']['object_state']"
+            raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
+        ids.append(name)
+        codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
+        seen.update(words)
+    unread = {word[:100] for word in seen - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
+    if not ids:
+        return None, []
+    lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))
+    table = pa.table(
+        {
+            "signal_id": spelled(lights, ids),
+            "t_ns": np.tile(_nanoseconds(t_s), len(ids)),
+            "state": spelled(np.concatenate(codes), SIGNAL_STATES),
+        }
+    )
+    if not unread:
+        return table, []
+    message = f"lights have states that are not known: {listed(sorted(unread))}"
+    return table, [QualityFinding("unknown_word", "warning", message, len(unread))]

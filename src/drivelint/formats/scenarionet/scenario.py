@@ -1,0 +1,119 @@
+"""A scenario as ScenarioNet defines it (MetaDrive's `ScenarioDescription`): its parts, checked, and what is known of its data set."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.formats.scenarionet.unpickle import PickleError, load
+from drivelint.resources import toml_beside
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.arrays import Floats
+
+_FACTS: Final = toml_beside(__file__, "datasets.toml")
+CLASSES: Final[dict[str, str]] = _FACTS["classes"]
+LIGHTS: Final[dict[str, str]] = _FACTS["lights"]
+_LONGEST_S: Final = 1e9
+
+
+class Dataset(NamedTuple):
+    """What is known of a data set; the defaults are for one of which nothing is. See datasets.toml.
+
+    `sensor_range_m`: how far the recorder sees everybody. `steps_per_keyframe`: boxes are interpolated between every so many steps (0:
+    they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period, counted and not timed.
+    `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width. The others: whether what
+    the scenarios have of it was in the data set, and is no constant of the converter.
+    """
+
+    sensor_range_m: float = 50.0
+    steps_per_keyframe: int = 0
+    ego_message_s: float | None = None
+    ego_ahead_m: float = 0.0
+    ego_box_m: tuple[float, ...] = ()
+    sizes: bool = True
+    markings: bool = True
+    speed_limits: bool = True
+    heights: bool = True
+    stop_points: bool = True
+    sides: Mapping[str, str] = {}
+
+    def side_driven_on(self, place: str) -> str | None:
+        """Return lht or rht at a place, which the scenario names; None: not known."""
+        return next((side for begin, side in self.sides.items() if place.startswith(begin)), None)
+
+
+class Scenario(NamedTuple):
+    """The parts of a scenario; each track, light and feature is a dict."""
+
+    dataset: Dataset
+    metadata: dict[str, Any]
+    tracks: dict[str, dict[str, Any]]
+    lights: dict[str, dict[str, Any]]
+    features: dict[str, dict[str, Any]]
+
+    @property
+    def place(self) -> str:
+        """The name of the place, such as singapore-onenorth; empty: not known."""
+        return str(self.metadata.get("map", ""))
+
+
+def read_scenario(content: bytes) -> Scenario:
+    """Return the scenario that a pickle holds. Errors: `PickleError` where it is damaged, or holds something else."""
+    found = load(content)
+    parts = {name: _part(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")}
+    facts = _FACTS.get(str(parts["metadata"].get("dataset", "")).lower(), {})
+    named = [_each_a_dict(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
+    return Scenario(Dataset(**facts), parts["metadata"], *named)
+
+
+def _part(found: Any, name: str) -> dict[str, Any]:
+    if not isinstance(found, dict) or not isinstance(found.get(name), dict):
+        raise PickleError(f"it holds no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
+    return dict(found[name])
+
+
+def _each_a_dict(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:
+    for key, value in part.items():
+        if not isinstance(value, dict):
+            raise PickleError(f"{name}[{str(key)[:100]!r}] is no dict: write the scenario again")
+    return {str(key): value for key, value in part.items()}
+
+
+def times_s(metadata: Mapping[str, Any]) -> Floats:
+    """Return the times of the steps (T,) in seconds. Errors: `PickleError`."""
+    t_s = numbers(metadata.get("ts"), "metadata['ts']").reshape(-1)
+    if not len(t_s) or not (np.abs(t_s) < _LONGEST_S).all():
+        raise PickleError("metadata['ts'] is no list of times in seconds: write the scenario again")
+    return t_s
+
+
+def numbers(value: Any, where: str) -> Floats:
+    """Return numbers, one or an array of them, as an array. Errors: `PickleError` naming `where` they stand."""
+    if isinstance(value, (list, tuple)):
+        plain = [each for each in value if isinstance(each, (int, float))]
+        value = np.array(plain, np.float64) if len(plain) == len(value) else points(value, where)
+    if isinstance(value, (int, float)):
+        return np.float64(value).reshape(())
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+        return value.astype(np.float64)
+    raise PickleError(f"{where} is no array of numbers: write the scenario again")
+
+
+def points(value: Any, where: str) -> Floats:
+    """Return points (n, k), given as an array or as a list of them. Errors: `PickleError` naming `where` they stand."""
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf" and value.ndim == 2:
+        return value.astype(np.float64)
+    rows = value if isinstance(value, (list, tuple)) else ()
+    rows = [row.tolist() if isinstance(row, np.ndarray) else row for row in rows]
+    widths = {len(row) if isinstance(row, (list, tuple)) else 0 for row in rows}
+    if len(widths) == 1 and (k := widths.pop()) in {1, 2, 3}:
+        try:
+            return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * k).reshape(-1, k)
+        except (TypeError, ValueError):
+            pass  # a text, or a list of lists
+    raise PickleError(f"{where} is no list of points: write the scenario again")

@@ -1,0 +1,170 @@
+"""What data sets write of a motion that is no measurement of it, told by the numbers themselves wherever they tell it.
+
+Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0
+at an end of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are
+in each other's place moves along its short side.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats, Mask
+    from drivelint.formats.scenarionet.scenario import Dataset
+    from drivelint.formats.scenarionet.tracks import Tracks
+
+_LONG_KINDS: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_VEHICLES, "trailer", "bicycle"))
+_MOVING_MPS: Final = 0.5
+_SAME_MPS: Final = 0.02
+_SAME_SHARE: Final = 0.01
+"""A velocity is a difference of the positions if it is this near to it: clocks that were rounded to a step change it by less than 0.1 %."""
+_MOST: Final = 0.9
+_LEAST_SAMPLES: Final = 20
+_EVEN_M: Final = 1e-4
+_WIDER: Final = 1.2
+"""A box that is this much wider than long is no estimate of a square one."""
+_MOVED_M: Final = 2.0
+_ALONG: Final = np.cos(np.radians(30.0))
+
+
+def drop_differences(tracks: Tracks) -> list[QualityFinding]:
+    """Make velocities unknown that are differences of the positions, in place: those of the ego, and those of all others.
+
+    `finish_trace` derives better ones, which are those of the step itself.
+    """
+    is_ego = np.arange(len(tracks.ids)) == tracks.ego
+    findings = []
+    for group, whose in ((is_ego, "the ego"), (~is_ego, "the others")):
+        if (when := _difference(tracks, group)) is None:
+            continue
+        n = int((group[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
+        tracks.velocity[group] = np.nan
+        message = (
+            f"velocities of {whose} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
+            "they are derived anew"
+        )
+        findings.append(QualityFinding("velocity_dropped", "warning", message, n))
+    return findings
+
+
+def _difference(tracks: Tracks, group: Mask) -> str | None:
+    """Return early or late where the velocities of these actors are differences of the positions; None: they are not."""
+    steps = tracks.steps_m[group] / np.diff(tracks.t_s)[:, None]
+    speed = np.hypot(*np.moveaxis(steps, 2, 0))
+    moving = np.nan_to_num(speed) > _MOVING_MPS
+    if moving.sum() < _LEAST_SAMPLES:
+        return None
+    velocity = tracks.velocity[group]
+    limit = _SAME_MPS + _SAME_SHARE * speed
+    for when, side in (("early", velocity[:, :-1]), ("late", velocity[:, 1:])):
+        same = np.hypot(*np.moveaxis(side - steps, 2, 0)) < limit
+        if same[moving].mean() > _MOST:
+            return when
+    return None
+
+
+def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
+    """Make the last velocity of a track unknown, in place, where it is 0 though the actor moves."""
+    ends = tracks.present.copy()
+    ends[:, :-1] &= ~tracks.present[:, 1:]
+    speed = np.zeros(ends.shape)
+    speed[:, 1:] = np.nan_to_num(np.hypot(*np.moveaxis(tracks.steps_m, 2, 0)) / np.diff(tracks.t_s))
+    false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > 2 * _MOVING_MPS)
+    if not false.any():
+        return []
+    tracks.velocity[false] = np.nan
+    ids = [tracks.ids[i] for i in np.flatnonzero(false.any(axis=1))]
+    message = f"the last velocity of {listed(ids)} is 0 although the positions move: it is unknown"
+    return [QualityFinding.of_actors("velocity_unknown", "warning", message, ids)]
+
+
+def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
+    """Say of each actor (n,) whether its positions are interpolated between keyframes: they lie evenly on straight lines."""
+    every = dataset.steps_per_keyframe
+    if not every or len(tracks.t_s) < every + 1:
+        return np.zeros(len(tracks.ids), np.bool_)
+    off = np.abs(np.diff(tracks.steps_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
+    between = np.arange(1, len(tracks.t_s) - 1) % every != 0
+    return ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+
+
+def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:
+    """Give these actors the velocities that their keyframes tell, in place, and say that their accelerations are not known.
+
+    At a keyframe it is the mean from the keyframe before to the one after, as nuScenes' own `box_velocity` has it, and between two it
+    changes evenly.
+    """
+    key = np.arange(0, len(tracks.t_s), every)
+    place, t_s = tracks.place[rows][:, key, :2], tracks.t_s[key]
+    velocity = np.full(place.shape, np.nan)
+    slope = np.diff(place, axis=1) / np.diff(t_s)[:, None]
+    velocity[:, :-1] = slope
+    velocity[:, 1:] = np.where(np.isfinite(velocity[:, 1:]), velocity[:, 1:], slope)
+    velocity[:, 1:-1] = np.where(
+        np.isfinite(slope[:, 1:] + slope[:, :-1]),
+        (place[:, 2:] - place[:, :-2]) / (t_s[2:] - t_s[:-2])[:, None],
+        velocity[:, 1:-1],
+    )
+    step = np.arange(len(tracks.t_s))
+    before = np.minimum(step // every, len(key) - 1)
+    after = np.minimum(before + 1, len(key) - 1)
+    share = ((step % every) / every)[:, None]
+    between = np.where(share > 0.0, velocity[:, before] * (1.0 - share) + velocity[:, after] * share, velocity[:, before])
+    between[~tracks.present[rows]] = np.nan
+    tracks.velocity[rows] = between
+    moved = _spread_m(tracks)[rows] > _MOVED_M
+    period_s = float(np.median(np.diff(t_s)))
+    return [
+        QualityFinding(
+            "velocity_filtered",
+            "warning",
+            f"the positions of {name} are known every {period_s:g} s and interpolated between: its velocity is a mean over "
+            f"{2 * period_s:g} s, its acceleration is not known",
+            actor_id=name,
+        )
+        for name in (tracks.ids[i] for i in np.flatnonzero(rows)[moved])
+    ]
+
+
+def _spread_m(tracks: Tracks) -> Floats:
+    """Return how far apart the places of each actor (n,) are at most, along an axis."""
+    seen = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
+    with np.errstate(invalid="ignore"):
+        spread = np.fmax.reduce(seen, axis=1) - np.fmin.reduce(seen, axis=1)
+    return np.asarray(np.nan_to_num(spread).max(axis=1), np.float64)
+
+
+def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
+    """Exchange length and width, in place, of long kinds of actors that move along their short side.
+
+    So are the ego's, if they are those that the data set is known to exchange. Where nothing tells, they are unknown.
+    """
+    long_kind = np.isin(tracks.kinds, list(_LONG_KINDS))
+    n = np.maximum(tracks.present.sum(axis=1), 1)
+    length, width = (np.nansum(tracks.size[..., k], axis=1) / n for k in (0, 1))
+    told: dict[str, list[str]] = {}
+    for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
+        if _moves_ahead(tracks, int(i)):
+            why = "length and width of {} are in each other's place, as its motion along the short side shows: they are exchanged"
+        elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):
+            why = "length and width of {} are in each other's place, as always in this data set: they are exchanged"
+        else:
+            why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
+        tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]
+        told.setdefault(why, []).append(tracks.ids[i])
+    return [QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids) for why, ids in told.items()]
+
+
+def _moves_ahead(tracks: Tracks, i: int) -> bool:
+    """Say whether an actor moves along its heading, forwards or backwards."""
+    steps = tracks.steps_m[i]
+    heading = tracks.heading[i, :-1]
+    way = np.hypot(*steps.T)
+    along = np.abs(steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading))
+    return bool(np.nansum(way) > _MOVED_M and np.nansum(along) > _ALONG * np.nansum(way))

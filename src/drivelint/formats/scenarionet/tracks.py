@@ -1,0 +1,102 @@
+"""The tracks of a scenario as arrays over actors and steps: what is not valid is not there, whatever numbers stand in its place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.formats.scenarionet.scenario import CLASSES, numbers
+from drivelint.formats.scenarionet.unpickle import PickleError
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Codes, Floats, Mask
+    from drivelint.formats.scenarionet.scenario import Scenario
+
+_SIZES: Final = ("length", "width", "height")
+
+
+@dataclass
+class Tracks:
+    """n actors over T steps. `ego`: which one is the ego; None: no track is.
+
+    `t_s` (T,), `present` (n, T), `place` (n, T, 3), `heading` (n, T), `velocity` (n, T, 2), `size` (n, T, 3): length, width, height;
+    NaN where not known. `kinds` (n,): indices of ACTOR_CLASSES, -1: not known.
+    """
+
+    ids: list[str]
+    ego: int | None
+    t_s: Floats
+    present: Mask
+    place: Floats
+    heading: Floats
+    velocity: Floats
+    size: Floats
+    kinds: Codes
+
+    @cached_property
+    def steps_m(self) -> Floats:
+        """How far each actor goes (n, T - 1, 2) from step to step, as it was read; NaN where it is not there at both."""
+        steps: Floats = np.diff(self.place[..., :2], axis=1)
+        return steps
+
+
+def read_tracks(scenario: Scenario, t_s: Floats, size_of_file: int) -> Tracks:
+    """Return the tracks of a scenario. Errors: `PickleError` for a track whose arrays are not as long as the scenario."""
+    ids, n, steps = list(scenario.tracks), len(scenario.tracks), len(t_s)
+    if n * steps > size_of_file:
+        raise PickleError(f"its {n} tracks of {steps} steps are more than the file can hold: write the scenario again")
+    ego = str(scenario.metadata.get("sdc_id"))
+    tracks = Tracks(
+        ids,
+        ids.index(ego) if ego in scenario.tracks else None,
+        t_s,
+        np.zeros((n, steps), np.bool_),
+        *(np.full(shape, np.nan) for shape in ((n, steps, 3), (n, steps), (n, steps, 2), (n, steps, 3))),
+        kinds=np.array([_kind(track) for track in scenario.tracks.values()], np.int8),
+    )
+    for i, (name, track) in enumerate(scenario.tracks.items()):
+        state = track.get("state")
+        if not isinstance(state, dict):
+            raise PickleError(f"tracks[{name[:100]!r}] has no dict 'state': write the scenario again")
+        _fill(tracks, i, state, f"tracks[{name[:100]!r}]['state']")
+    absent = ~tracks.present
+    for values in (tracks.place, tracks.heading, tracks.velocity, tracks.size):
+        values[absent] = np.nan
+    return tracks
+
+
+def _fill(tracks: Tracks, i: int, state: dict[str, Any], where: str) -> None:
+    steps = len(tracks.t_s)
+    place = _column(state, "position", steps, where)
+    tracks.place[i, :, : place.shape[1]] = place[:, :3]
+    tracks.heading[i] = _column(state, "heading", steps, where)[:, 0]
+    if "velocity" in state:
+        tracks.velocity[i] = _column(state, "velocity", steps, where)[:, :2]
+    tracks.present[i] = _column(state, "valid", steps, where)[:, 0] > 0.5 if "valid" in state else True
+    for k, name in enumerate(_SIZES):
+        if name in state:
+            tracks.size[i, :, k] = _column(state, name, steps, where)[:, 0]
+
+
+def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
+    """Return an array of a state as (steps, k): one number of it stands for every step. Errors: `PickleError`."""
+    values = numbers(state.get(name), f"{where}[{name!r}]")
+    least = {"position": 2, "velocity": 2}.get(name, 1)
+    if least == 1 and values.size == 1:
+        return np.broadcast_to(values.reshape(1, 1), (steps, 1))
+    if values.ndim > 2 or len(values) != steps or values.size < steps * least:
+        shape = f"of the shape {values.shape}"
+        raise PickleError(f"{where}[{name!r}] is {shape}, and the scenario has {steps} steps: write it again")
+    return values.reshape(steps, -1)
+
+
+def _kind(track: dict[str, Any]) -> int:
+    """Return the class of a track, by the word of its data set if that is known, else by ScenarioNet's."""
+    own = track.get("metadata")
+    words = (own.get("type") if isinstance(own, dict) else None, track.get("type"))
+    found = next((CLASSES[word] for word in words if isinstance(word, str) and word in CLASSES), None)
+    return -1 if found is None else ACTOR_CLASSES.index(found)
