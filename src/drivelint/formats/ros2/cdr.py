@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES, parse, short_type_name
+from drivelint.formats.ros2.types import (
+    NUMPY_CODES,
+    SEQUENCE,
+    TEXT_TYPES,
+    parse,
+    short_type_name,
+    whole_number_constants,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -189,6 +196,7 @@ class Decoder:
         """Compile the definition; of `tree` is kept what the definition has. Errors: `TraceError` where it is not understood."""
         self._path, self._name = path, schema.name
         types = parse(path, schema.name, schema.data)
+        self.constants = whole_number_constants(path, schema.name, schema.data)
         self._program = _Compiler(types).program(short_type_name(schema.name), tree)
 
     def table(self, packets: Sequence[Packet]) -> Table:
