@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drivelint.drive.ego import SIZE_DIFFERENCE_M
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Times
     from drivelint.drive.trace import EgoSize, IngestOptions
     from drivelint.formats.ros2.log import Topics
+    from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
@@ -137,15 +139,20 @@ def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[
     is_centre = ahead_m != 0.0
     for topic, batches in odometry.items():
         rows[topic] = join_batches([ros_ego.odometry(table, log_ns, box, ahead_m) for table, log_ns in batches])
-        is_centre |= box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches)
+        if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):
+            log.findings += _other_centre(box, ahead_m)
+            is_centre = True
     if box is not None and rows:
-        length, width, _ = box.size
-        ahead, left, _ = box.centre
-        log.notes.append(
-            f"the ego's box is that of {box.source}: {length:.2f} m by {width:.2f} m, its centre {ahead:.2f} m ahead and {left:.2f} m "
-            "left of base_link"
-        )
+        log.notes.append(f"the ego's box is that of {box.source}: {box.described()}")
     return rows, is_centre
+
+
+def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
+    said = box.centre[0]
+    if ahead_m == 0.0 or abs(ahead_m - said) <= SIZE_DIFFERENCE_M:
+        return []
+    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, the log {said:g} m, which counts"
+    return [QualityFinding("ego_size", "warning", message)]
 
 
 def _no_road_users(log: Log) -> QualityFinding:

@@ -45,6 +45,12 @@ class VehicleBox(NamedTuple):
     source: str
     """The node or topic that says so."""
 
+    def described(self) -> str:
+        """Return the box in words."""
+        (length, width, _), (ahead, left, _) = self.size, self.centre
+        side = f" and {abs(left):.2f} m to the {'left' if left > 0.0 else 'right'}" if abs(left) >= 0.005 else ""
+        return f"{length:.2f} m by {width:.2f} m, its centre {ahead:.2f} m ahead of base_link{side}"
+
 
 def at_axle(frames: NDArray[Any]) -> Mask:
     """Say which frames are that of the axle, whatever a robot's name stands before it."""

@@ -1,7 +1,8 @@
 """What of the messages before a window still holds in it, by what their channel is for.
 
-Road users and odometry hold at their time alone, traffic lights until the next message. Transforms, maps, parameters, reports and declared
-events are rare or hold for a while: the first ones of a channel are kept, and the last. Entities of a scene hold until they are replaced, deleted or expired, see `mcap_scene`.
+Road users and odometry hold at their time alone, traffic lights until the next message. Transforms, maps, parameters, reports
+and declared events are rare or hold for a while: the first ones of a channel are kept, and the last. Entities of a scene hold until
+they are replaced, deleted or expired, see `mcap_scene`.
 """
 
 from __future__ import annotations
