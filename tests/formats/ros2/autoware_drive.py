@@ -70,15 +70,15 @@ def scene() -> Scene:
     for x, ends in ((155.0, (60.0, 6.0, -6.0, -60.0)), (159.5, (-60.0, -6.0, 6.0, 60.0))):
         for k in range(3):
             street.lane((x, ends[k]), (x, ends[k + 1]))
-    walk = (street.way([(x, -9.0), (x, 9.0)], "zebra_marking") for x in (OUT + 20.0, OUT + 23.0))
-    street.lanelet(*walk, subtype="crosswalk")
+    left, right = (street.way([(x, -9.0), (x, 9.0)], "zebra_marking") for x in (OUT + 20.0, OUT + 23.0))
+    street.lanelet(left, right, subtype="crosswalk")
     return Scene(street.text(), number)
 
 
 def others(t_s: float, n: int, **paths: int) -> Sequence[dict[str, Any]]:
     """Return a lead, somebody who comes, a pedestrian that stands by, and more that stand far off: n predicted objects."""
     way = SPEED * (t_s - T0)
-    standing = {
+    standing: dict[str, Any] = {
         "classes": [{"label": 7, "probability": 0.9}],
         "shape": {"type": 1, "dimensions": ros.xyz(0.6, 0.6, 1.7)},
     }

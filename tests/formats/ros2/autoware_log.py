@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from tests.formats.ros2 import ros_log as ros
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
 _SHAPE = "uint8 BOUNDING_BOX=0\nuint8 CYLINDER=1\nuint8 POLYGON=2\n"
@@ -153,7 +153,7 @@ def element(color: int, shape: int = CIRCLE, status: int = ON) -> dict[str, Any]
 
 def lights(
     t_s: float,
-    groups: dict[int, Sequence[dict[str, Any]]],
+    groups: Mapping[int, Sequence[dict[str, Any]]],
     topic: str = "/perception/traffic_light_recognition/traffic_signals",
 ) -> ros.Message:
     rows = [{"traffic_light_group_id": number, "elements": list(of)} for number, of in groups.items()]
@@ -161,7 +161,7 @@ def lights(
     return topic, name, t_s, {"stamp": ros.stamp(t_s), "traffic_light_groups": rows}
 
 
-def parameters(t_s: float, node: str = "/planning/behavior_path_planner", **values: float) -> list[ros.Message]:
+def parameters(t_s: float, node: str = "/planning/behavior_path_planner", /, **values: float) -> list[ros.Message]:
     """Return the events of a node that declares its parameters one by one."""
     return [
         (

@@ -152,7 +152,12 @@ def test_a_report_that_was_sent_often_is_carried_in_part(tmp_path: Path) -> None
 def test_autoware(tmp_path: Path) -> None:
     """The parameters of the vehicle were sent once, after many others; a light that was seen early is not carried on."""
     others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_FIRST + 50)]
-    found = [*others, *autoware.parameters(T0 + 0.01, **autoware.PARAMETERS), *ego(n=80, child="base_link")]
+    found = [
+        *others,
+        *autoware.parameters(T0 + 0.01, **autoware.PARAMETERS),
+        *autoware.parameters(T0 + 2.6, "/node_0", rate=1.0),
+    ]
+    found += ego(n=80, child="base_link")
     for k, t_s in enumerate(ticks(80)):
         shown = {7: [autoware.element(autoware.RED if k < 60 else autoware.GREEN)]} | (
             {8: [autoware.element(1)]} if k < 3 else {}
