@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
@@ -50,6 +51,7 @@ Types = dict[str, list[Field]]
 """Full name (`package/Name`) -> its members in order."""
 
 
+@lru_cache(maxsize=1024)  # asked for every message
 def message_kind(schema: str) -> str:
     """Return the type of a schema's messages: of Autoware's older packages the newer one, which has the same fields."""
     name = short_type_name(schema)
