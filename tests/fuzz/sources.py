@@ -18,7 +18,7 @@ from tests.formats.commonroad import scenario_text
 from tests.formats.foxglove import foxglove_log as fox
 from tests.formats.logs import LONG, cars
 from tests.formats.osi import osi_log
-from tests.formats.ros2 import ros_drive, ros_log
+from tests.formats.ros2 import autoware_log, ros_drive, ros_log
 from tests.formats.sumo import fcd_text
 from tests.shared_data import ROOT
 
@@ -148,6 +148,18 @@ def ros(folder: Path) -> list[Source]:
         *(ros_log.tracks(t_s, ros_log.track(3, 50.0 + t_s, 9.0, speed=1.0)) for t_s in ros_drive.ticks(20)),
     ]
     autoware = _single(ros_log.write(folder / "autoware.mcap", tracked), protected=True)
+    predicted = [
+        *autoware_log.parameters(ros_drive.T0, **autoware_log.PARAMETERS),
+        *ros_drive.ego(n=20, child="base_link"),
+    ]
+    for t_s in ros_drive.ticks(20):
+        outline = {"type": 2, "footprint": {"points": [ros_log.xyz(1.0, 1.0), ros_log.xyz(), ros_log.xyz(2.0)]}}
+        someone = (
+            autoware_log.prediction(3, 50.0 + t_s, 9.0, speed=1.0),
+            autoware_log.prediction(4, 9.0, 9.0, shape=outline),
+        )
+        predicted += [autoware_log.predictions(t_s, *someone), autoware_log.lights(t_s, {7: [autoware_log.element(1)]})]
+    predictions = _single(autoware_log.write(folder / "predictions.mcap", predicted), protected=True)
     names = ["drive_0.mcap", "drive_1.mcap"]
     half = len(messages) // 2
     parts = (messages[:half], messages[half:])
@@ -155,7 +167,7 @@ def ros(folder: Path) -> list[Source]:
     listed = "".join(f"    - {name}\n" for name in names)
     text = f"rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n  relative_file_paths:\n{listed}"
     # its description has no checksum, but names files and no data
-    return [one, autoware, Source("bag", {**files, "metadata.yaml": text.encode()}, "")]
+    return [one, autoware, predictions, Source("bag", {**files, "metadata.yaml": text.encode()}, "")]
 
 
 def parquet(folder: Path) -> list[Source]:

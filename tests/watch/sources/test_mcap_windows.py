@@ -10,9 +10,11 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 from drivelint.watch.sources.mcap_file import McapFile
+from drivelint.watch.sources.mcap_memory import MOST_FIRST
 from tests.formats.foxglove import foxglove_log as scenes
 from tests.formats.logs import at, read
 from tests.formats.osi import osi_file, osi_log
+from tests.formats.ros2 import autoware_log as autoware
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, ego, others, ticks
 from tests.shared_data import ROOT, shared
@@ -145,6 +147,35 @@ def test_a_report_that_was_sent_often_is_carried_in_part(tmp_path: Path) -> None
     carried = drained(McapFile(path, idle_s=0.0))
     assert len(carried) < 100 + 200 + 210
     assert [row["value"] for row in read(path).tables["declared_event"].to_pylist()][-1] == "on"
+
+
+def test_autoware(tmp_path: Path) -> None:
+    """The parameters of the vehicle were sent once, after many others; a light that was seen early is not carried on."""
+    others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_FIRST + 50)]
+    found = [
+        *others,
+        *autoware.parameters(T0 + 0.01, **autoware.PARAMETERS),
+        *autoware.parameters(T0 + 2.6, "/node_0", rate=1.0),
+    ]
+    found += ego(n=80, child="base_link")
+    for k, t_s in enumerate(ticks(80)):
+        shown = {7: [autoware.element(autoware.RED if k < 60 else autoware.GREEN)]} | (
+            {8: [autoware.element(1)]} if k < 3 else {}
+        )
+        found += [
+            autoware.predictions(t_s, autoware.prediction(2, 20.0 + 10.0 * (t_s - T0), 5.0, 0.0, 10.0)),
+            autoware.lights(t_s, shown),
+        ]
+    path = autoware.write(tmp_path / "log.mcap", sorted(found, key=lambda message: message[2]))
+    source = McapFile(path, idle_s=0.0)
+    frames = drained(source)
+    for start in (0, 100, 180):
+        begin = len(frames) - 3 * 80 + start
+        window = assert_window_is_span(source, frames, tmp_path, slice(begin, begin + 60), EDGE_NS)
+        sizes = {row["actor_id"]: row["length_m"] for row in window.tables["actor"].to_pylist()}
+        assert sizes["ego"] == pytest.approx(4.89)
+    late = [row for row in window.tables["signal_state"].to_pylist() if row["state"] is not None]
+    assert {row["signal_id"] for row in late} == {"7"}
 
 
 def messages(frames: list[Frame]) -> list[Message]:

@@ -13,7 +13,8 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.ros2 import cdr
-from drivelint.formats.ros2.objects import HEADER, stamps
+from drivelint.formats.ros2.messages import HEADER
+from drivelint.formats.ros2.objects import stamps
 from drivelint.formats.ros2.types import short_type_name
 
 if TYPE_CHECKING:

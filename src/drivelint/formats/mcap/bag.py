@@ -12,6 +12,7 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_summary
+from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
 from drivelint.formats.ros2.types import message_kind
 
 if TYPE_CHECKING:
@@ -21,21 +22,7 @@ if TYPE_CHECKING:
 METADATA_FILE = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
-ROAD_USERS: Final = "road users"
-ODOMETRY: Final = "odometry"
-ROS_ROLES: Final = {
-    "derived_object_msgs/ObjectArray": ROAD_USERS,
-    "autoware_perception_msgs/TrackedObjects": ROAD_USERS,
-    "vision_msgs/Detection3DArray": ROAD_USERS,
-    "nav_msgs/Odometry": ODOMETRY,
-    "tf2_msgs/TFMessage": "frames",
-    "carla_msgs/CarlaEgoVehicleInfo": "ego",
-    "carla_msgs/CarlaWorldInfo": "map",
-    "autoware_vehicle_msgs/TurnIndicatorsReport": "lights",
-    "autoware_vehicle_msgs/HazardLightsReport": "lights",
-    "autoware_vehicle_msgs/ControlModeReport": "declared events",
-    "autoware_vehicle_msgs/Engage": "declared events",
-}
+ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
 FOXGLOVE_ROLES: Final = {
     "foxglove.SceneUpdate": ROAD_USERS,
     "foxglove.FrameTransform": "frames",
@@ -143,7 +130,7 @@ def message_family(path: Path) -> str:
         if found & OSI_SCHEMAS:
             return "osi"
         for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
-            if {roles.get(schema) for schema in found} & {ROAD_USERS, ODOMETRY}:
+            if {roles.get(schema) for schema in found} & {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
                 return name
     return "none"
 

@@ -2,18 +2,27 @@
 
 A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence
 for its first items, then its second ones, and so on. So strings and sequences may be of any length, and no message is
-read by itself. Rules of alignment: CDR of the OMG (XCDR1), positions counted behind the four bytes of the header.
+read by itself. The steps only find where everything stands; what is kept is then read for all items at once. Rules of
+alignment: CDR of the OMG (XCDR1), positions counted behind the four bytes of the header.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.formats.ros2.types import NUMPY_CODES, SEQUENCE, TEXT_TYPES, parse, short_type_name
+from drivelint.formats.ros2.types import (
+    NUMPY_CODES,
+    SEQUENCE,
+    TEXT_TYPES,
+    parse,
+    short_type_name,
+    whole_number_constants,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +46,7 @@ BYTE_ORDERS: Final = {0: ">", 1: "<"}
 MAX_KEPT_NUMBERS = 3
 """How many numbers of a sequence are kept: a box has three dimensions."""
 _MAX_ALIGN = 8
+_PADS: Final = [b"\0" * n for n in range(_MAX_ALIGN)]
 _TEXT = "S1"
 _SIZES: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
 """Type of a member that is no message -> its bytes; 0: not always the same."""
@@ -104,6 +114,17 @@ class _Numbers:
 class _Items:
     keep: str | None
     program: list[Any]
+
+
+@dataclass
+class _Walk:
+    """Where steps stand, by the number of the step: of n messages or items, where what is kept begins and how much there is."""
+
+    n: int
+    parent: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    start: dict[int, Offsets] = field(default_factory=dict)
+    length: dict[int, Offsets] = field(default_factory=dict)
+    children: dict[int, _Walk] = field(default_factory=dict)
 
 
 class _Compiler:
@@ -189,6 +210,7 @@ class Decoder:
         """Compile the definition; of `tree` is kept what the definition has. Errors: `TraceError` where it is not understood."""
         self._path, self._name = path, schema.name
         types = parse(path, schema.name, schema.data)
+        self.constants = whole_number_constants(path, schema.name, schema.data)
         self._program = _Compiler(types).program(short_type_name(schema.name), tree)
 
     def table(self, packets: Sequence[Packet]) -> Table:
@@ -210,70 +232,89 @@ class _Batch:
             odd = next(i for i, head in enumerate(heads) if head in wrong)
             header = packets[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
-        padded = -(-sizes // _MAX_ALIGN) * _MAX_ALIGN
-        self._start = np.cumsum(padded) - padded
+        # four bytes before the first header bring its body, and so every other one, to a multiple of eight
+        padded = -(-(sizes + HEADER_BYTES) // _MAX_ALIGN) * _MAX_ALIGN
+        self._start = np.cumsum(padded) - padded + 2 * HEADER_BYTES
         self._end = self._start + sizes
-        bodies = [p.data[HEADER_BYTES:] + b"\0" * int(n) for p, n in zip(packets, padded - sizes, strict=True)]
-        self._bytes = np.frombuffer(b"".join([*bodies, b"\0" * _MAX_ALIGN]), np.uint8)
+        pads = [_PADS[n] for n in (padded - sizes - HEADER_BYTES).tolist()]
+        pieces = chain.from_iterable((packet.data, pad) for packet, pad in zip(packets, pads, strict=True))
+        joined = b"".join([b"\0" * HEADER_BYTES, *pieces, b"\0" * (2 * _MAX_ALIGN - HEADER_BYTES)])
+        self._bytes = np.frombuffer(joined, np.uint8)
         order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
         self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
         messages = np.arange(len(self._packets))
-        cursor, table = self._run(program, self._start.copy(), messages)
+        cursor, walk = self._run(program, self._start.copy(), messages)
         left = self._end - cursor
+        self._check(cursor, self._end, messages)
         # writers may pad the end of a message
         if (left >= _MAX_ALIGN).any():
             i = int(np.argmax(left >= _MAX_ALIGN))
             raise self._misfit(i, f"has {left[i]} bytes more than its definition")
-        return table
+        return self._read(program, walk)
 
-    def _run(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, Table]:
-        """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in."""
-        table = Table(len(cursor), where=f"{self._path}: the definition of {self._name}")
+    def _run(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, _Walk]:
+        """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in.
+
+        A cursor may leave its message until the next length is read there, or the message ends: nothing else is read on the way.
+        """
+        walk = _Walk(len(cursor))
         end = self._end[message]
-        for step in program:
+        for i, step in enumerate(program):
             if isinstance(step, _Block):
-                self._check(cursor + step.size, end, message)
-                for path, code, offset, count in step.keep:
-                    table.columns[path] = self._taken(code, cursor + offset, count)
+                if step.keep:
+                    walk.start[i] = cursor.copy()
                 cursor += step.size
             elif isinstance(step, _Align):
-                cursor += -cursor % step.to
+                cursor += -cursor & (step.to - 1)
             elif isinstance(step, _Numbers):
-                self._numbers(step, cursor, end, message, table)
+                length = self._length(cursor, end, message, step.size * step.per_item)
+                if step.size > 4:  # a length is four bytes, and stands at a multiple of four
+                    cursor += np.where(length > 0, -cursor & (step.size - 1), 0)
+                if step.keep is not None:
+                    walk.start[i], walk.length[i] = cursor.copy(), length
+                cursor += length * (step.size * step.per_item)
             else:
-                self._items(step, cursor, end, message, table)
-        return cursor, table
+                parts = self._items(step, cursor, end, message)
+                if step.keep is not None:
+                    walk.children[i] = _stacked(parts, [0] * len(parts), np.arange(len(cursor)))
+        return cursor, walk
 
-    def _numbers(self, step: _Numbers, cursor: Offsets, end: Offsets, message: Rows, table: Table) -> None:
-        length = self._length(cursor, end, message, step.size * step.per_item)
-        cursor += np.where(length > 0, -cursor % step.size, 0)
-        size = length * step.size * step.per_item
-        self._check(cursor + size, end, message)
-        if step.keep is not None and step.code == _TEXT:
-            table.columns[step.keep] = self._texts(cursor, length)
-        elif step.keep is not None:
-            first = np.full((len(cursor), MAX_KEPT_NUMBERS), np.nan)
-            for k in range(MAX_KEPT_NUMBERS):
-                has = np.flatnonzero(length > k)
-                first[has, k] = self._taken(step.code, cursor[has] + k * step.size, None)
-            table.columns[step.keep] = first
-        cursor += size
-
-    def _items(self, step: _Items, cursor: Offsets, end: Offsets, message: Rows, table: Table) -> None:
+    def _items(self, step: _Items, cursor: Offsets, end: Offsets, message: Rows) -> list[_Walk]:
+        """Walk through the first items of all sequences, then through the second ones, and so on, and return these walks."""
         length = self._length(cursor, end, message, 1)
-        parts: list[Table] = []
+        parts: list[_Walk] = []
         for k in range(int(length.max(initial=0))):
             active = np.flatnonzero(length > k)
             after, part = self._run(step.program, cursor[active], message[active])
             cursor[active] = after
             part.parent = active
             parts.append(part)
-        if step.keep is not None:
-            # of no items at all, an empty table has the columns
-            parts = parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
-            table.children[step.keep] = _stacked(parts, [0] * len(parts), np.arange(len(cursor)))
+        # of no items at all, an empty table has the columns
+        return parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
+
+    def _read(self, program: list[Any], walk: _Walk) -> Table:
+        """Read what is kept, at the places that a walk found."""
+        table = Table(walk.n, parent=walk.parent, where=f"{self._path}: the definition of {self._name}")
+        for i, step in enumerate(program):
+            if isinstance(step, _Block):
+                for path, code, offset, count in step.keep:
+                    table.columns[path] = self._taken(code, walk.start[i] + offset, count)
+            elif isinstance(step, _Numbers) and step.keep is not None:
+                table.columns[step.keep] = self._numbers(step, walk.start[i], walk.length[i])
+            elif isinstance(step, _Items) and step.keep is not None:
+                table.children[step.keep] = self._read(step.program, walk.children[i])
+        return table
+
+    def _numbers(self, step: _Numbers, start: Offsets, length: Offsets) -> NDArray[Any]:
+        if step.code == _TEXT:
+            return self._texts(start, length)
+        first = np.full((len(start), MAX_KEPT_NUMBERS), np.nan)
+        for k in range(MAX_KEPT_NUMBERS):
+            has = np.flatnonzero(length > k)
+            first[has, k] = self._taken(step.code, start[has] + k * step.size, None)
+        return first
 
     def _taken(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
         view, index = self._views[code], at // int(code[1])
@@ -281,7 +322,7 @@ class _Batch:
 
     def _length(self, cursor: Offsets, end: Offsets, message: Rows, item_bytes: int) -> Offsets:
         """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
-        cursor += -cursor % 4
+        cursor += -cursor & 3
         self._check(cursor + 4, end, message)
         length = self._taken("u4", cursor, None).astype(np.int64)
         cursor += 4
@@ -305,7 +346,7 @@ class _Batch:
         return self._packets[i].error(self._path, f"the {self._name} {what}")
 
 
-def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]) -> Table:
+def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:
     """Put the first, second, ... items of all sequences, and what is in them, into the order of their sequences.
 
     `offsets`: how many rows above belong to earlier parts; `place`: where each row above has gone.
@@ -315,10 +356,10 @@ def _stacked(parts: list[Table], offsets: Sequence[int], place: NDArray[np.intp]
     moved = np.empty_like(order)
     moved[order] = np.arange(len(order))
     below = np.cumsum([0, *(part.n for part in parts)]).tolist()
-    return Table(
+    return _Walk(
         len(parent),
-        {path: np.concatenate([part.columns[path] for part in parts])[order] for path in parts[0].columns},
         parent[order],
-        {path: _stacked([part.children[path] for part in parts], below, moved) for path in parts[0].children},
-        parts[0].where,
+        {i: np.concatenate([part.start[i] for part in parts])[order] for i in parts[0].start},
+        {i: np.concatenate([part.length[i] for part in parts])[order] for i in parts[0].length},
+        {i: _stacked([part.children[i] for part in parts], below, moved) for i in parts[0].children},
     )

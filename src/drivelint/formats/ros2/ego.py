@@ -1,4 +1,4 @@
-"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, lights, who drives, the CARLA bridge's own."""
+"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, who drives."""
 
 from __future__ import annotations
 
@@ -9,42 +9,17 @@ import pyarrow as pa
 
 from drivelint.drive.trace import ACTOR_CLASSES, INDICATORS
 from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_frame_name, unit_quaternions
-from drivelint.formats.ros2.objects import HEADER, POSE, STAMP, XYZ, stamps, vectors
+from drivelint.formats.ros2.messages import CONTROL_MODE, ENGAGE, HAZARD_LIGHTS, TURN_INDICATORS
+from drivelint.formats.ros2.objects import stamps, vectors
 from drivelint.formats.ros2.recorded_poses import RecordedPoses, recorded_poses
+from drivelint.formats.ros2.vehicle import VehicleBox, at_axle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Times
-    from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 
-ODOMETRY: Final = "nav_msgs/Odometry"
-TRANSFORMS: Final = "tf2_msgs/TFMessage"
-EGO_INFO: Final = "carla_msgs/CarlaEgoVehicleInfo"
-WORLD_INFO: Final = "carla_msgs/CarlaWorldInfo"
-TURN_INDICATORS: Final = "autoware_vehicle_msgs/TurnIndicatorsReport"
-HAZARD_LIGHTS: Final = "autoware_vehicle_msgs/HazardLightsReport"
-CONTROL_MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
-ENGAGE: Final = "autoware_vehicle_msgs/Engage"
-FIELD_TREES: Final[dict[str, FieldTree]] = {
-    ODOMETRY: {
-        "header": HEADER, "child_frame_id": None, "pose": {"pose": POSE},
-        "twist": {"twist": {"linear": XYZ, "angular": XYZ}},
-    },
-    TRANSFORMS: {
-        "transforms": {
-            "header": HEADER, "child_frame_id": None,
-            "transform": {"translation": XYZ, "rotation": {**XYZ, "w": None}},
-        },
-    },
-    EGO_INFO: {"id": None, "rolename": None},
-    WORLD_INFO: {"map_name": None, "opendrive": None},
-    TURN_INDICATORS: {"stamp": STAMP, "report": None},
-    HAZARD_LIGHTS: {"stamp": STAMP, "report": None},
-    CONTROL_MODE: {"stamp": STAMP, "mode": None},
-    ENGAGE: {"stamp": STAMP, "engage": None},
-}  # fmt: skip
 STALE_NS: Final = 1_000_000_000
 """A report of lights holds for no longer than this: vehicles report them ten times a second or more."""
 _AUTONOMOUS = 1
@@ -53,10 +28,11 @@ _OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
 _INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
 
 
-def odometry(table: Table, log_ns: Times, forward_m: float) -> RecordedPoses:
-    """Return the poses of an odometry as rows of one actor without a name; `forward_m`: its box centre lies so far ahead.
+def odometry(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
+    """Return the poses of an odometry as rows of one actor without a name, at the centre of its box.
 
-    Twist is in the child frame, as the message says; in the header's where that is what the child frame is called.
+    `box`: the vehicle's, around the frame `AXLE_FRAME`; `option_ahead_m`: its centre lies so far ahead of any other frame. Twist is in
+    the child frame, as the message says; in the header's where that is what the child frame is called.
     """
     n = table.n
     frames = table.column("header.frame_id")
@@ -67,18 +43,23 @@ def odometry(table: Table, log_ns: Times, forward_m: float) -> RecordedPoses:
     along = (child != b"") & (child != frames)
     inside = Poses(vectors(table, "pose.pose.position"), turn)
     place = inside.place
-    if forward_m != 0.0:
-        lever = Poses(np.tile([forward_m, 0.0, 0.0], (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
-        place = inside.compose(lever).place
-        sideways = np.nan_to_num(yaw_rate) * forward_m
-        yaw = inside.yaw
-        velocity[:, 0] += np.where(along, 0.0, -np.sin(yaw) * sideways)
-        velocity[:, 1] += np.where(along, sideways, np.cos(yaw) * sideways)
+    lever = np.tile([option_ahead_m, 0.0, 0.0], (n, 1))
+    if box is not None:
+        lever[at_axle(child)] = box.centre
+    if lever.any():
+        place = inside.compose(Poses(lever, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))).place
+        swing = np.nan_to_num(yaw_rate)[:, None] * np.column_stack([-lever[:, 1], lever[:, 0]])
+        cos, sin = np.cos(inside.yaw), np.sin(inside.yaw)
+        velocity[:, 0] += np.where(along, swing[:, 0], cos * swing[:, 0] - sin * swing[:, 1])
+        velocity[:, 1] += np.where(along, swing[:, 1], sin * swing[:, 0] + cos * swing[:, 1])
     kind = np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8)
-    return recorded_poses(
+    rows = recorded_poses(
         stamps(table, "header.stamp"), (place, turn), log_ns=log_ns, ids=np.full(n, b"ego"), frames=frames, classes=kind,
         along=along, velocity=velocity,
     )  # fmt: skip
+    if box is not None:
+        rows.size[:] = box.size
+    return rows
 
 
 def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static: bool, own_times: bool) -> None:

@@ -25,12 +25,12 @@ def merge_ego(
     findings: list[QualityFinding],
     *,
     carla: bool,
-    forward_m: float,
+    is_centre: bool,
 ) -> Recording:
     """Merge the objects and the odometry, each with its topic, into one recording with one track of the ego.
 
-    `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `carla`: the objects are the bridge's; `forward_m` as in
-    `EgoSize`.
+    `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `carla`: the objects are the bridge's; `is_centre`: the
+    odometry's places are known to be those of the centre of the ego's box.
     """
     names = _said_egos(infos, odometry)
     if carla and objects is not None:
@@ -46,7 +46,7 @@ def merge_ego(
         others = objects[1]
         found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
         ego.ids = found[:1] or [_free(names[0] if names else DEFAULT_EGO_ID, others.ids)]
-    if not carla and forward_m == 0.0:
+    if not carla and not is_centre:
         message = (
             f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
             "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
@@ -72,7 +72,8 @@ def _once(ego: States, others: States, topic: str, findings: list[QualityFinding
     for size in SIZE_COLUMNS:
         known = np.sort(others.numbers[size][twin])
         known = known[known > 0.0]
-        ego.numbers[size][:] = known[(len(known) - 1) // 2] if len(known) else np.nan
+        if len(known):
+            ego.numbers[size][:] = known[(len(known) - 1) // 2]
     kinds = others.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]

@@ -6,11 +6,14 @@ ros-perception/vision_msgs (before and after its version 4).
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.formats.coordinate_frames import rotated, unit_quaternions
+from drivelint.formats.ros2.messages import CARLA_OBJECTS, PREDICTED, TRACKED, VISION
 from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, recorded_poses
 
 if TYPE_CHECKING:
@@ -20,15 +23,10 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Codes, Mask, Times
     from drivelint.formats.coordinate_frames import Vectors
-    from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
 
-STAMP: Final[FieldTree] = {"sec": None, "nanosec": None, "nsec": None}
-HEADER: Final[FieldTree] = {"stamp": STAMP, "frame_id": None}
-XYZ: Final[FieldTree] = {"x": None, "y": None, "z": None}
-POSE: Final[FieldTree] = {"position": XYZ, "orientation": {**XYZ, "w": None}}
-_HYPOTHESIS: Final[FieldTree] = {"class_id": None, "score": None}
 _BOX, _SPHERE, _CYLINDER = 1, 2, 3
+_ROUND, _POLYGON = 1, 2
 _NO_ORIENTATION, _EITHER_WAY = 0, 1
 _UNKNOWN = -1
 
@@ -73,7 +71,11 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
     """Return the coordinates of a vector as columns; NaN for those that the definition does not have."""
     missing = np.full(table.n, np.nan)
     return np.stack(
-        [table.columns.get(f"{path}.{axis}", missing).astype(np.float64, copy=False) for axis in axes], axis=1
+        [
+            table.columns.get(f"{path}.{axis}" if path else axis, missing).astype(np.float64, copy=False)
+            for axis in axes
+        ],
+        axis=1,
     )
 
 
@@ -102,20 +104,47 @@ def _derived(top: Table) -> RecordedPoses:
     return rows
 
 
-def _autoware(top: Table) -> RecordedPoses:
+def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
+    """Return Autoware's road users.
+
+    Twist and acceleration are along the body's own axes: so multi_object_tracker writes them, and planners read them. The paths of a
+    prediction are no states. A detection has no id, so it is nobody's state, and its messages are not read.
+    """
     items = top.items("objects")
     ids = np.ascontiguousarray(items.column("object_id.uuid")).view("V16").reshape(-1)
-    pose, twist, accel = (f"kinematics.{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
+    pose, twist, accel = (f"kinematics.{prefix}{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
     rows = _rows(top, items, ids, None, f"{pose}.pose")
     rows.along[:] = True
     rows.velocity, rows.acceleration = vectors(items, f"{twist}.twist.linear"), vectors(items, f"{accel}.accel.linear")
     rows.size = vectors(items, "shape.dimensions")
+    _fit_boxes(rows, items)
     rows.classes = _looked_up(_AUTOWARE, _likeliest(items, "classification", "label", "probability", 0))
     said = items.columns.get("kinematics.orientation_availability")
     if said is not None:
         rows.turn[said == _NO_ORIENTATION] = np.nan
         rows.faces = said != _EITHER_WAY
     return rows
+
+
+def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
+    """Give Autoware's cylinders and polygons their boxes, in place: that of a polygon lies around its footprint, along the body's axes."""
+    form = items.columns.get("shape.type", np.zeros(items.n, np.uint8))
+    rows.outlined = form == _POLYGON
+    rows.size[:, 1] = np.where(form == _ROUND, rows.size[:, 0], rows.size[:, 1])  # both are the diameter
+    rows.size[rows.outlined, :2] = np.nan
+    if not rows.outlined.any():
+        return
+    points = items.items("shape.footprint.points")
+    of_polygon = np.flatnonzero(rows.outlined[points.parent])
+    which, first = np.unique(points.parent[of_polygon], return_index=True)
+    if not len(which):
+        return
+    corners = vectors(points, "", "xy")[of_polygon]
+    low, high = np.minimum.reduceat(corners, first), np.maximum.reduceat(corners, first)
+    rows.size[which, :2] = np.where(high > low, high - low, np.nan)
+    middle = np.column_stack([0.5 * (low + high), np.zeros(len(which))])
+    shift = rotated(unit_quaternions(rows.turn[which]), middle)
+    rows.place[which] += np.where(np.isfinite(shift), shift, 0.0)  # a body without any orientation stays where it is
 
 
 def _detections(top: Table) -> RecordedPoses:
@@ -150,36 +179,12 @@ def _looked_up(known: Codes, numbers: NDArray[Any]) -> Codes:
 
 
 OBJECT_ROWS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
-    "derived_object_msgs/ObjectArray": _derived,
-    "autoware_perception_msgs/TrackedObjects": _autoware,
-    "vision_msgs/Detection3DArray": _detections,
+    PREDICTED: partial(_autoware, prefix="initial_"),
+    TRACKED: _autoware,
+    CARLA_OBJECTS: _derived,
+    VISION: _detections,
 }
 """Message type -> the function that makes rows of it; `log_ns` of each row is its message."""
-FIELD_TREES: Final[dict[str, FieldTree]] = {
-    "derived_object_msgs/ObjectArray": {
-        "header": HEADER,
-        "objects": {
-            "header": {"frame_id": None}, "id": None, "pose": POSE, "twist": {"linear": XYZ}, "accel": {"linear": XYZ},
-            "shape": {"type": None, "dimensions": None}, "classification": None,
-        },
-    },
-    "autoware_perception_msgs/TrackedObjects": {
-        "header": HEADER,
-        "objects": {
-            "object_id": {"uuid": None}, "classification": {"label": None, "probability": None},
-            "kinematics": {
-                "pose_with_covariance": {"pose": POSE}, "twist_with_covariance": {"twist": {"linear": XYZ}},
-                "acceleration_with_covariance": {"accel": {"linear": XYZ}}, "orientation_availability": None,
-            },
-            "shape": {"dimensions": XYZ},
-        },
-    },
-    "vision_msgs/Detection3DArray": {
-        "header": HEADER,
-        "detections": {
-            "header": {"frame_id": None}, "results": {"hypothesis": _HYPOTHESIS, "id": None, "score": None},
-            "bbox": {"center": POSE, "size": XYZ}, "id": None, "tracking_id": None,
-        },
-    },
-}  # fmt: skip
-"""Message type -> the fields that are read of it."""
+SAME_BODIES: Final = (PREDICTED, TRACKED)
+"""Message types with which one perception gives the same bodies, the one to take first: a prediction's headings are turned the way
+that a body moves, which a tracker leaves open."""

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from drivelint.drive.ego import SIZE_DIFFERENCE_M
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.losses import times_of_parts
-from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import Container, message_batches
-from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import ego as ros_ego
-from drivelint.formats.ros2 import objects as ros_objects
-from drivelint.formats.ros2.cdr import Decoder
+from drivelint.formats.ros2 import traffic_lights
+from drivelint.formats.ros2.log import LIGHTS, Log
 from drivelint.formats.ros2.merge import merge_ego
-from drivelint.formats.ros2.objects import OBJECT_ROWS, stamps
+from drivelint.formats.ros2.messages import (
+    CARLA_OBJECTS,
+    CONTROL_MODE,
+    DIMENSIONS,
+    EGO_INFO,
+    ENGAGE,
+    HAZARD_LIGHTS,
+    ODOMETRY,
+    PARAMETERS,
+    TRANSFORMS,
+    TURN_INDICATORS,
+    WORLD_INFO,
+)
+from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
@@ -30,154 +39,53 @@ from drivelint.formats.ros2.recorded_poses import (
     message_times,
     states_in_fixed_frame,
 )
-from drivelint.formats.ros2.types import message_kind
+from drivelint.formats.ros2.vehicle import at_axle, vehicle_box
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from mcap.records import Channel, Schema
     from numpy.typing import NDArray
 
-    from drivelint.arrays import Mask, Times
-    from drivelint.drive.trace import IngestOptions, LostTime
-    from drivelint.formats.ros2.cdr import Table
+    from drivelint.arrays import Times
+    from drivelint.drive.trace import EgoSize, IngestOptions
+    from drivelint.formats.ros2.log import Topics
+    from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
 """What the topic of transforms that always hold ends with: nothing in the messages says it."""
 TOPICS_APART_NS = 1_000_000_000
 """A recorder finds one topic after the other: one may begin, and end, a second before the other."""
-_REPORTS = {
-    ros_ego.TURN_INDICATORS: "report", ros_ego.HAZARD_LIGHTS: "report", ros_ego.CONTROL_MODE: "mode", ros_ego.ENGAGE: "engage",
-}  # fmt: skip
+_REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
 """Reports of the ego -> the field that says it."""
-_FIELD_TREES = ros_ego.FIELD_TREES | ros_objects.FIELD_TREES
-_CARLA = "carla_msgs/"
-_NO_ROAD_USERS = QualityFinding(
-    "no_road_users",
-    "warning",
-    "no topic of this log has road users: rules that look at others than the ego are unknown",
-)
-
-
-Topics = dict[str, list[Any]]
-"""Topic -> what was read of each batch of its messages."""
-
-
-class _Log:
-    """Everything that is read of a drive, topic by topic."""
-
-    def __init__(self, path: Path, asked: list[str], forward_m: float) -> None:
-        self.path = path
-        self.asked = asked  # topics
-        self.topics: dict[str, Topics] = {}  # by the type of their messages
-        self.findings: list[QualityFinding] = []
-        self.lost: list[LostTime] = []
-        self.unread = UnreadTopics()
-        self.carla = False
-        self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
-        self._forward_m = forward_m
-
-    def read(self, files: Iterable[Path]) -> None:
-        parts: list[Container] = []
-        for file in files:
-            container = Container(file, salvage=True)
-            decoders: dict[int, Decoder] = {}
-            for kind, packets in message_batches(container, partial(self._kind, file, decoders)):
-                channel = packets[0].channel
-                table, readable = decode_readable(container, packets, decoders[channel.schema_id].table)
-                if table is None:
-                    continue
-                log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
-                read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
-                read.append(self._part(kind, table, log_ns))
-                if kind in OBJECT_ROWS or kind == ros_ego.ODOMETRY:
-                    self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
-            self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
-            self.findings += container.findings
-            parts.append(container)
-        self.findings += [*bag.missing_messages(self.path, parts, _FIELD_TREES.__contains__), *self.unread.findings()]
-        self.lost = times_of_parts([(part.path, part.losses) for part in parts])
-
-    def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
-        """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
-        kind = message_kind(schema.name)
-        if kind not in _FIELD_TREES:
-            return None
-        if channel.message_encoding != "cdr":
-            if kind not in OBJECT_ROWS or not self.asked or channel.topic in self.asked:
-                self.unread.add(channel, kind)
-            return None
-        if channel.schema_id not in decoders:
-            if schema.encoding != "ros2msg":
-                raise TraceError(
-                    f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or "
-                    "convert it with message definitions"
-                )
-            decoders[channel.schema_id] = Decoder(path, schema, _FIELD_TREES[kind])
-        return kind
-
-    def _part(self, kind: str, table: Table, log_ns: Times) -> Any:
-        if kind == ros_ego.ODOMETRY:
-            return ros_ego.odometry(table, log_ns, self._forward_m)
-        if kind not in OBJECT_ROWS:
-            return table, log_ns
-        rows = OBJECT_ROWS[kind](table)
-        rows.log_ns = log_ns[rows.log_ns]
-        return rows
-
-    def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
-        """Return the times of the messages of some topics of poses, those in which nobody is among them."""
-        parts = [part for topic in topics for part in self._times.get(topic, ())]
-        times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
-        return np.concatenate([np.zeros(0, np.int64), *times])
-
-    def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
-        """Yield topic and batch of the messages of a kind, by topic."""
-        for topic, parts in sorted(self.topics.get(kind, {}).items()):
-            yield from ((topic, part) for part in parts)
-
-    def one(self, kinds: Iterable[str], what: str) -> Topics:
-        """Return the one topic with messages of some kinds, if any. Errors: `TraceError` where there are several, none asked for."""
-        found = {topic: parts for kind in kinds for topic, parts in self.topics.get(kind, {}).items()}
-        chosen = [topic for topic in self.asked if topic in found] or sorted(found)
-        if len(chosen) > 1:
-            raise TraceError(
-                f"{self.path}: {what} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
-            )
-        return {topic: found[topic] for topic in chosen}
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` for damage, for nothing that can be judged, for topics to choose from."""
-    forward_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
     asked = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
-    log = _Log(path, asked, forward_m)
+    log = Log(path, asked)
     log.read(bag.mcap_files(path))
-    known = {topic for topics in log.topics.values() for topic in topics}
-    for topic in asked:
-        if topic not in known:
-            raise TraceError(
-                f"{path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
-            )
+    log.refuse_unknown_topics()
     objects = log.one(OBJECT_ROWS, "road users")
-    odometry = log.one([ros_ego.ODOMETRY], "odometry")
+    odometry = log.one([ODOMETRY], "odometry")
     log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
-    parts = {topic: join_batches(batches) for topic, batches in (objects | odometry).items()}
+    parts = {topic: join_batches(batches) for topic, batches in objects.items()}
+    own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
+    parts |= own_rows
     if not sum(map(len, parts.values())):
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
         )
     findings = log.findings
-    findings += () if objects else (_NO_ROAD_USERS,)
+    findings += [] if objects else [_no_road_users(log)]
     own_times = choose_clock(parts, findings)
     frames = TransformTree()
-    for topic, (table, log_ns) in log.parts(ros_ego.TRANSFORMS):
+    for topic, (table, log_ns) in log.parts(TRANSFORMS):
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     for topic in objects:
         parts[topic] = _named(parts[topic], topic, log)
+        findings += _outlined(parts[topic], topic)
     used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
@@ -189,24 +97,25 @@ def read(path: Path, options: IngestOptions) -> Recording:
     others, own = (
         next(((topic, states[topic]) for topic in source if len(states[topic])), None) for source in (objects, odometry)
     )
-    carla = log.carla and not objects.keys().isdisjoint(log.topics.get("derived_object_msgs/ObjectArray", ()))
+    carla = log.carla and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
     # the id of the ego that each topic of the CARLA bridge's ego info gives last
-    infos = {
-        topic: str(number)
-        for topic, (table, _) in log.parts(ros_ego.EGO_INFO)
-        for number in table.column("id").tolist()
-    }
-    recording = merge_ego(others, own, infos, findings, carla=carla, forward_m=forward_m)
+    infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
+    recording = merge_ego(others, own, infos, findings, carla=carla, is_centre=is_centre)
     reports = _reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
-        if ego in all_states.ids and reports.keys() & {ros_ego.TURN_INDICATORS, ros_ego.HAZARD_LIGHTS}:
+        if ego in all_states.ids and reports.keys() & {TURN_INDICATORS, HAZARD_LIGHTS}:
             mine = all_states.actor == all_states.ids.index(ego)
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
             all_states.codes["indicator"][mine] = ros_ego.indicators(all_states.t_ns[mine], reports)
         recording.events = ros_ego.engagement(reports, ego)
+    for topic, batches in log.one(LIGHTS, "traffic lights").items():
+        t_ns = recording.states.t_ns
+        span_ns = int(t_ns.min()), int(t_ns.max())
+        recording.signals, found = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
+        recording.findings += found
     maps: dict[bytes, str] = {}
-    for topic, (table, _) in log.parts(ros_ego.WORLD_INFO):
+    for topic, (table, _) in log.parts(WORLD_INFO):
         for text in filter(bytes.strip, table.column("opendrive").tolist()):
             maps.setdefault(text, topic)
     recording.lost = log.lost
@@ -214,11 +123,63 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(maps)
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    recording.notes.append(f"positions are in the frame {fixed!r}")
+    recording.notes += [*log.notes, f"positions are in the frame {fixed!r}"]
     return recording
 
 
-def _named(rows: RecordedPoses, topic: str, log: _Log) -> RecordedPoses:
+def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
+    """Return the ego's states by their topic, and whether they are known to be those of the centre of its box.
+
+    The box is the vehicle's where the log has it, in the axle's frame; else the centre lies where the option says.
+    """
+    box, found = vehicle_box(
+        (table for _, (table, _) in log.parts(PARAMETERS)),
+        ((topic, table) for topic, (table, _) in log.parts(DIMENSIONS)),
+    )
+    log.findings += found
+    ahead_m = 0.0 if option is None else option.forward_m
+    rows: dict[str, RecordedPoses] = {}
+    is_centre = ahead_m != 0.0
+    for topic, batches in odometry.items():
+        rows[topic] = join_batches([ros_ego.odometry(table, log_ns, box, ahead_m) for table, log_ns in batches])
+        if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):
+            log.findings += _other_centre(box, ahead_m)
+            is_centre = True
+    if box is not None and rows:
+        log.notes.append(f"the ego's box is that of {box.source}: {box.described()}")
+    return rows, is_centre
+
+
+def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
+    said = box.centre[0]
+    if ahead_m == 0.0 or abs(ahead_m - said) <= SIZE_DIFFERENCE_M:
+        return []
+    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, the log {said:g} m, which counts"
+    return [QualityFinding("ego_size", "warning", message)]
+
+
+def _no_road_users(log: Log) -> QualityFinding:
+    """Return the finding that nobody else is known: a detection without an id may be the one before it, or somebody else."""
+    n = sum(log.detections.values())
+    what = "no topic of this log has road users"
+    if n:
+        what = (
+            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, so nobody's track: "
+            f"record {' or '.join(SAME_BODIES)} too"
+        )
+    message = f"{what}: rules that look at others than the ego are unknown"
+    return QualityFinding("no_road_users", "warning", message, max(n, 1))
+
+
+def _outlined(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
+    if rows.outlined is None or not rows.outlined.any():
+        return []
+    n = int(rows.outlined.sum())
+    message = f"{topic}: the shape is a polygon in {n} of {len(rows)} states: the box around it counts, which is larger"
+    return [QualityFinding("polygon_box", "info", message, n, int(rows.t_ns[rows.outlined].min()))]
+
+
+def _named(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
         return rows
@@ -232,7 +193,7 @@ def _named(rows: RecordedPoses, topic: str, log: _Log) -> RecordedPoses:
     return rows.take(~nameless)
 
 
-def _reports(log: _Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
+def _reports(log: Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
         for parts in log.one([kind], kind.split("/")[1]).values():

@@ -39,7 +39,8 @@ class RecordedPoses:
     `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
     `along`: velocity and acceleration are given along the actor's own axes, else along those of `frames`. `faces`: the
     front is known, not only the axis. `classes` index `ACTOR_CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
-    `at_ns`: when a frame that moves is looked up, if not at the pose's own time. Of a scene: `lifetime_ns` (0: for ever), `locked`:
+    `at_ns`: when a frame that moves is looked up, if not at the pose's own time. `outlined`: the size is that of the box around a
+    polygon. Of a scene: `lifetime_ns` (0: for ever), `locked`:
     the entity goes with its frame.
     """
 
@@ -58,6 +59,7 @@ class RecordedPoses:
     acceleration: Vectors
     t_ns: Times
     at_ns: Times | None = None
+    outlined: Mask | None = None
     lifetime_ns: Times | None = None
     locked: Mask | None = None
 

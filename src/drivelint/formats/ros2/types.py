@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
@@ -26,7 +27,11 @@ TEXT_TYPES: Final = ("string", "wstring")
 SEQUENCE: Final = -1
 _STAMPS: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 """Times that a definition may use without describing them."""
+_OTHER_IN_OLDER: Final = frozenset({"autoware_auto_perception_msgs/TrafficSignalArray"})
+"""Older messages that mean something else than the newer ones of their name: ids of these lights are those of their lines in
+the map, not of the regulatory elements."""
 _NOT_UNDERSTOOD: Final = "has a line that is not understood: {!r}"
+_CONSTANT = re.compile(r"^[a-z]\w*\s+(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>-?\d+)$")
 _RULE = re.compile(r"^={10,}\s*$", re.MULTILINE)
 _FIELD = re.compile(
     r"^(?P<type>[A-Za-z][\w/]*)(?P<bound><=\d+)?(?P<array>\[(?:<=)?(?P<count>\d*)\])?\s+(?P<name>[A-Za-z]\w*)(?P<rest>.*)$"
@@ -46,9 +51,11 @@ Types = dict[str, list[Field]]
 """Full name (`package/Name`) -> its members in order."""
 
 
+@lru_cache(maxsize=1024)  # asked for every message
 def message_kind(schema: str) -> str:
     """Return the type of a schema's messages: of Autoware's older packages the newer one, which has the same fields."""
-    return short_type_name(schema).replace("autoware_auto_", "autoware_")
+    name = short_type_name(schema)
+    return name if name in _OTHER_IN_OLDER else name.replace("autoware_auto_", "autoware_")
 
 
 def short_type_name(name: str) -> str:
@@ -62,6 +69,30 @@ def parse(path: Path, name: str, text: bytes) -> Types:
     def wrong(what: str) -> TraceError:
         return TraceError(f"{path}: the definition of {name} in the log {what}")
 
+    sections = _sections(name, text, wrong)
+    defined = {title for title, _ in sections}
+    types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
+    for title, body in sections:
+        types[title] = [replace(f, kind=_resolved(f.kind, title, defined, wrong)) for f in _fields(body, wrong)]
+    _refuse_loops(short_type_name(name), types, wrong)
+    return types
+
+
+def whole_number_constants(path: Path, name: str, text: bytes) -> dict[str, dict[str, int]]:
+    """Return the constants of `name` and of all it uses that are whole numbers: full name of the message -> constant -> its value."""
+
+    def wrong(what: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {what}")
+
+    found: dict[str, dict[str, int]] = {}
+    for title, body in _sections(name, text, wrong):
+        lines = (_CONSTANT.match(line.split("#")[0].strip()) for line in body.splitlines())
+        found[title] = {match["name"]: int(match["value"]) for match in lines if match is not None}
+    return found
+
+
+def _sections(name: str, text: bytes, wrong: MakeError) -> list[tuple[str, str]]:
+    """Return the full name and the body of each message that a definition describes, `name` first."""
     try:
         first, *others = _RULE.split(text.decode())
     except UnicodeDecodeError as error:
@@ -72,12 +103,7 @@ def parse(path: Path, name: str, text: bytes) -> Types:
         if not title.startswith("MSG:"):
             raise wrong(_NOT_UNDERSTOOD.format(title[:80]))
         sections.append((short_type_name(title.removeprefix("MSG:").strip()), body))
-    defined = {title for title, _ in sections}
-    types: Types = {stamp: [Field("sec", "int32"), Field("nanosec", "uint32")] for stamp in _STAMPS}
-    for title, body in sections:
-        types[title] = [replace(f, kind=_resolved(f.kind, title, defined, wrong)) for f in _fields(body, wrong)]
-    _refuse_loops(short_type_name(name), types, wrong)
-    return types
+    return sections
 
 
 def _fields(body: str, wrong: MakeError) -> Iterator[Field]:

@@ -1,7 +1,8 @@
 """What of the messages before a window still holds in it, by what their channel is for.
 
-Road users and odometry hold at their time alone. Transforms, maps, reports and declared events are rare or hold for a while: the first
-ones of a channel are kept, and the last. Entities of a scene hold until they are replaced, deleted or expired, see `mcap_scene`.
+Road users and odometry hold at their time alone, traffic lights until the next message. Transforms, maps, parameters, reports
+and declared events are rare or hold for a while: the first ones of a channel are kept, and the last. Entities of a scene hold until
+they are replaced, deleted or expired, see `mcap_scene`.
 """
 
 from __future__ import annotations
@@ -10,9 +11,17 @@ from collections import deque
 from typing import TYPE_CHECKING, Final, Protocol
 
 from drivelint.formats.foxglove.decode import SCENE
-from drivelint.formats.mcap.bag import FOXGLOVE_ROLES, ODOMETRY, OSI_SCHEMAS, ROAD_USERS, ROS_ROLES
+from drivelint.formats.mcap.bag import FOXGLOVE_ROLES, OSI_SCHEMAS, ROS_ROLES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
+from drivelint.formats.ros2.messages import (
+    DETECTIONS,
+    LIGHT_GROUPS,
+    ODOMETRY_ROLE,
+    OLD_LIGHT_GROUPS,
+    PARAMETERS,
+    ROAD_USERS,
+)
 from drivelint.formats.ros2.types import message_kind
 from drivelint.watch.sources.mcap_scene import SceneMemory
 
@@ -25,7 +34,8 @@ RECENT_NS: Final = 2_000_000_000
 """A report of lights holds for one second, and transforms half a second apart are joined: what is older holds no longer."""
 MOST_FIRST: Final = 200
 MOST_EVENTS: Final = 20_000
-"""So many of the first messages of a channel are kept; of declared events more, each of which may hold to the end."""
+"""So many of the first messages of a channel are kept; of declared events and parameters more, each of which may hold to the end."""
+_MOST_FIRST: Final = {EVENT_MESSAGE: MOST_EVENTS, PARAMETERS: MOST_EVENTS, LIGHT_GROUPS: 0, OLD_LIGHT_GROUPS: 0}
 MOST_FIRST_BYTES: Final = 64 << 20
 _READ: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
 
@@ -52,9 +62,9 @@ def memory_for(channel: Channel, schema: str) -> Memory:
     kind = message_kind(schema)
     if kind == SCENE:
         return SceneMemory(channel.message_encoding)
-    if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, ODOMETRY}:
+    if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
         return NoMemory()
-    return LatchedMemory(MOST_EVENTS if kind == EVENT_MESSAGE else MOST_FIRST)
+    return LatchedMemory(_MOST_FIRST.get(kind, MOST_FIRST))
 
 
 class NoMemory:

@@ -1,0 +1,165 @@
+"""Everything that is read of a ROS 2 log, by the type of the messages and their topic, and which topic counts where several could."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from drivelint.errors import TraceError
+from drivelint.formats.mcap.bag import missing_messages
+from drivelint.formats.mcap.losses import times_of_parts
+from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.unread import UnreadTopics
+from drivelint.formats.ros2 import traffic_lights
+from drivelint.formats.ros2.cdr import Decoder
+from drivelint.formats.ros2.messages import DETECTED, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
+from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
+from drivelint.formats.ros2.types import message_kind
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from mcap.records import Channel, Schema
+
+    from drivelint.arrays import Mask, Times
+    from drivelint.drive.trace import LostTime, QualityFinding
+    from drivelint.formats.ros2.cdr import Table
+
+LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
+_CARLA = "carla_msgs/"
+Topics = dict[str, list[Any]]
+"""Topic -> what was read of each batch of its messages."""
+
+
+class Log:
+    """What a drive's messages hold. `asked`: the topics that the user chose."""
+
+    def __init__(self, path: Path, asked: list[str]) -> None:
+        self.path = path
+        self.asked = asked
+        self.topics: dict[str, Topics] = {}  # by the type of their messages
+        self.detections: dict[str, int] = {}  # topic of detections without ids -> messages
+        self.findings: list[QualityFinding] = []
+        self.notes: list[str] = []
+        self.lost: list[LostTime] = []
+        self.unread = UnreadTopics()
+        self.carla = False
+        self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
+
+    def read(self, files: Iterable[Path]) -> None:
+        """Read the files of a drive. Errors: `TraceError` for damage and for definitions that cannot be read."""
+        parts: list[Container] = []
+        for file in files:
+            container = Container(file, salvage=True)
+            decoders: dict[int, Decoder] = {}
+            for kind, packets in message_batches(container, partial(self._kind, file, decoders)):
+                channel = packets[0].channel
+                decoder = decoders[channel.schema_id]
+                table, readable = decode_readable(container, packets, decoder.table)
+                if table is None:
+                    continue
+                log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
+                read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
+                read.append(_part(kind, decoder, table, log_ns))
+                if kind in OBJECT_ROWS or kind == ODOMETRY:
+                    self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
+            self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
+            self.findings += container.findings
+            parts.append(container)
+        self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
+        self.lost = times_of_parts([(part.path, part.losses) for part in parts])
+
+    def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
+        """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
+        kind = message_kind(schema.name)
+        if kind == DETECTED:
+            self.detections[channel.topic] = self.detections.get(channel.topic, 0) + 1
+            return None
+        if kind not in MESSAGES:
+            return None
+        if channel.message_encoding != "cdr":
+            if kind not in OBJECT_ROWS or not self.asked or channel.topic in self.asked:
+                self.unread.add(channel, kind)
+            return None
+        if channel.schema_id not in decoders:
+            if schema.encoding != "ros2msg":
+                raise TraceError(
+                    f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or "
+                    "convert it with message definitions"
+                )
+            decoders[channel.schema_id] = Decoder(path, schema, MESSAGES[kind].fields)
+        return kind
+
+    def refuse_unknown_topics(self) -> None:
+        """Refuse what was chosen and is not read. Errors: `TraceError`."""
+        known = {topic for topics in self.topics.values() for topic in topics}
+        for topic in self.asked:
+            if topic in self.detections:
+                raise TraceError(
+                    f"{self.path}: the detections on topic {topic!r} have no ids, so they are nobody's track: choose a topic of "
+                    f"{' or '.join(SAME_BODIES)}"
+                )
+            if topic not in known:
+                raise TraceError(
+                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
+                )
+
+    def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
+        """Return the times of the messages of some topics of poses, those in which nobody is among them."""
+        parts = [part for topic in topics for part in self._times.get(topic, ())]
+        times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
+        return np.concatenate([np.zeros(0, np.int64), *times])
+
+    def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
+        """Yield topic and batch of the messages of a kind, by topic."""
+        for topic, parts in sorted(self.topics.get(kind, {}).items()):
+            yield from ((topic, part) for part in parts)
+
+    def one(self, kinds: Iterable[str], what: str) -> Topics:
+        """Return the one topic with messages of some kinds, if any; a note names those that are left out.
+
+        Of several, what was chosen counts, then the usual topic of its type; predictions count before tracks, which have the same
+        bodies. Errors: `TraceError` where more than one is left.
+        """
+        of_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
+        found = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
+        chosen = [topic for topic in self.asked if topic in found]
+        if not chosen:
+            chosen = [usual] if (usual := _usual(of_kind)) else sorted(found)
+            if usual and len(found) > 1:
+                left = listed(sorted(found.keys() - {usual}))
+                self.notes.append(f"{what}: topic {usual} is read, {left} is left out: --topic chooses another")
+        if len(chosen) > 1:
+            raise TraceError(
+                f"{self.path}: {what} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
+            )
+        return {topic: found[topic] for topic in chosen}
+
+
+def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
+    """Return what is kept of a batch: of road users and lights what they say, of others their fields and times."""
+    if kind in LIGHTS:
+        return traffic_lights.shown(table, log_ns, decoder.constants)
+    if kind not in OBJECT_ROWS:
+        return table, log_ns
+    rows = OBJECT_ROWS[kind](table)
+    rows.log_ns = log_ns[rows.log_ns]
+    return rows
+
+
+def _usual(of_kind: dict[str, Topics]) -> str | None:
+    """Return the topic that counts where nobody chose: the only one of its type, or the usual one; None where that is not plain."""
+    bodies = len(of_kind.keys() & set(SAME_BODIES))
+    if len(of_kind) > max(bodies, 1):
+        return None
+    for kind, topics in of_kind.items():
+        if len(topics) == 1:
+            return next(iter(topics))
+        if MESSAGES[kind].topic in topics:
+            return MESSAGES[kind].topic
+    return None

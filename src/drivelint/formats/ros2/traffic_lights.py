@@ -1,0 +1,157 @@
+"""Traffic lights as Autoware records them: a group is the regulatory element of the Lanelet2 map with the same id.
+
+Every message lists all groups that are seen or said then; a group has an element for each lit lamp, an arrow or a full one (circle).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.trace import LEAST_UTC_NS, SIGNAL_STATES, QualityFinding
+from drivelint.formats.ros2.objects import stamps
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from drivelint.arrays import Codes, Times
+    from drivelint.formats.ros2.cdr import Table
+
+LONGEST_HOLD_NS: Final = 5_000_000_000
+"""A state holds for no longer without a message: Autoware takes lights that roadside units report for so long."""
+NUMBERS: Final = {
+    "RED": 1, "AMBER": 2, "GREEN": 3,
+    "CIRCLE": 1, "LEFT_ARROW": 2, "RIGHT_ARROW": 3, "UP_ARROW": 4, "UP_LEFT_ARROW": 5, "UP_RIGHT_ARROW": 6, "DOWN_ARROW": 7,
+    "DOWN_LEFT_ARROW": 8, "DOWN_RIGHT_ARROW": 9,
+    "SOLID_OFF": 1, "SOLID_ON": 2, "FLASHING": 3,
+}  # fmt: skip
+"""Constants of an element; a definition in the log counts before them, for older ones number otherwise."""
+_COLOURS: Final = ("RED", "AMBER", "GREEN")
+_FULL, _DARK, _ARROW = 1, 8, 64
+"""The bits of red, of which amber's and green's are the next: a full lamp is lit, a full lamp is dark, an arrow is lit."""
+_ALL: Final = 7
+_FLASHING, _DOUBT = 512, 1024
+_FULL_STATES: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
+_GROUPS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals", "traffic_signal_id"))
+
+
+class Shown(NamedTuple):
+    """What the groups of a batch of messages show: for each message its times, for each group its message, its id and its state."""
+
+    stamp_ns: Times
+    log_ns: Times
+    message: NDArray[np.intp]
+    group: NDArray[np.int64]
+    state: Codes
+
+
+def shown(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> Shown:
+    """Return what the groups of messages show, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
+    path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
+    groups = table.items(path)
+    state = _states(groups, _element_numbers(constants))
+    return Shown(stamps(table, "stamp")[0], log_ns, groups.parent, groups.column(name).astype(np.int64), state)
+
+
+def _element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
+    needed = {*_COLOURS, "CIRCLE", "SOLID_OFF", "SOLID_ON", "FLASHING"}
+    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), NUMBERS)
+
+
+def _states(groups: Table, number: Mapping[str, int]) -> Codes:
+    elements = groups.items("elements")
+    color, shape, status = (elements.column(name) for name in ("color", "shape", "status"))
+    full = shape == number["CIRCLE"]
+    arrow = np.isin(shape, [value for name, value in number.items() if name.endswith("_ARROW")])
+    lit, dark, flashing = (status == number[name] for name in ("SOLID_ON", "SOLID_OFF", "FLASHING"))
+    bits = np.zeros(elements.n, np.int64)
+    for k, name in enumerate(_COLOURS):
+        of_color = color == number[name]
+        for which, bit in ((full & lit, _FULL), (full & dark, _DARK), (arrow & lit, _ARROW)):
+            bits[of_color & which] |= bit << k
+    bits[full & flashing & np.isin(color, [number[name] for name in _COLOURS])] |= _FLASHING
+    # a lamp of another kind, colour or shape, an arrow that flashes, what is not known
+    bits[(bits == 0) & ~(dark & (full | arrow))] = _DOUBT
+    of_group = np.zeros(groups.n, np.int64)
+    np.bitwise_or.at(of_group, elements.parent, bits)
+    return _STATE_OF_BITS[of_group]
+
+
+def _state(bits: int) -> int:
+    """Return the state for everybody at a light, whatever their turn; -1 where it is not one for all.
+
+    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp
+    decides nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Of arrows alone
+    nobody else knows whether they may go.
+    """
+    full, dark, arrows = bits & _ALL, bits // _DARK & _ALL, bits // _ARROW & _ALL
+    word = None
+    if bits & _DOUBT:
+        word = None
+    elif bits & _FLASHING:
+        word = "flashing" if not (full or arrows) else None
+    elif full:
+        word = _FULL_STATES.get(full) if arrows in {0, full} else None
+    elif dark == _ALL and not arrows:  # a lamp that is not listed may be lit
+        word = "off"
+    return -1 if word is None else SIGNAL_STATES.index(word)
+
+
+_STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], np.int8)
+
+
+def signal_states(
+    batches: Sequence[Shown], span_ns: tuple[int, int], topic: str, *, own_times: bool
+) -> tuple[pa.Table | None, list[QualityFinding]]:
+    """Return `signal_id`, `t_ns` and `state` of all groups, and what cannot be used.
+
+    `span_ns`: first and last time of the drive. A row without a state ends what a group showed: where the next message does not
+    list it, or none comes.
+    """
+    t_ns = np.concatenate([batch.stamp_ns if own_times else batch.log_ns for batch in batches])
+    first = np.cumsum([0, *(len(batch.log_ns) for batch in batches)])
+    message = np.concatenate([batch.message + at for batch, at in zip(batches, first, strict=False)])
+    group, state = (np.concatenate([getattr(batch, name) for batch in batches]) for name in ("group", "state"))
+    since, until = span_ns
+    usable = (t_ns != 0) | (until < LEAST_UTC_NS)
+    if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
+        why = f"{topic}: the messages are of another time than the states of the drive: what the lights show is unknown"
+        return None, [QualityFinding("signal_clock", "warning", why, len(t_ns))]
+    keep = usable[message]
+    message, group, state = message[keep], group[keep], state[keep]
+    times, place = np.unique(t_ns[usable], return_inverse=True)
+    step = np.zeros(len(t_ns), np.intp)
+    step[usable] = place.reshape(-1)
+    step = step[message]
+    order = np.lexsort((step, group))
+    step, group, state = step[order], group[order], state[order]
+    end = _ends(times, step, group)
+    ended = np.flatnonzero(end <= until)
+    ids = np.concatenate([group, group[ended]])
+    words = pa.array([*SIGNAL_STATES, None], pa.string())
+    rows = {
+        "signal_id": pa.array(ids, pa.int64()).cast(pa.string()),
+        "t_ns": np.concatenate([times[step], end[ended]]),
+        "state": words.take(pa.array(np.concatenate([state % len(words), np.full(len(ended), len(words) - 1)]))),
+    }
+    findings = []
+    if not usable.all():
+        why = f"{topic}: {int((~usable).sum())} messages without a time stamp are left out: what the lights show then is unknown"
+        findings.append(QualityFinding("signal_clock", "warning", why, int((~usable).sum())))
+    return (pa.table(rows) if len(ids) else None), findings
+
+
+def _ends(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
+    """Return when each state of a group ends that the next message does not follow up; the far future where it does.
+
+    Rows are ordered by group and step; `times`: those of the messages.
+    """
+    following = np.append(times[1:], np.iinfo(np.int64).max)[step]
+    again = np.append((group[1:] == group[:-1]) & (step[1:] <= step[:-1] + 1), False)
+    stale = times[step] + LONGEST_HOLD_NS
+    end = np.where(again, np.iinfo(np.int64).max, following)
+    return np.where(following > stale, np.minimum(end, stale), end)

@@ -1,0 +1,122 @@
+"""The ego's box around its rear axle, by Autoware's parameters `vehicle_info`.
+
+Autoware has no topic for it. Each of its nodes that needs it declares the parameters, and ROS 2 publishes them then
+(`/parameter_events`): a bag that was recorded from the start has them. What they mean:
+https://autowarefoundation.github.io/autoware-documentation/main/design/autoware-interfaces/components/vehicle-dimensions/
+"""
+
+from __future__ import annotations
+
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.trace import QualityFinding
+from drivelint.formats.ros2.messages import VEHICLE_LENGTHS
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from drivelint.arrays import Mask
+    from drivelint.formats.ros2.cdr import Table
+
+AXLE_FRAME: Final = b"base_link"
+"""Autoware's frame on the ground below the middle of the rear axle."""
+_HEIGHT: Final = "vehicle_height"
+_WHOLE, _DOUBLE = 2, 3
+"""Types of a parameter's value, in ParameterType."""
+_SAME_M: Final = 0.001
+"""Lengths that differ by less are one: some are recorded in single precision."""
+_MOST_M: Final = 50.0
+"""No vehicle on the road is as long or as wide."""
+
+
+class VehicleBox(NamedTuple):
+    """The box of a vehicle in metres: `size` is length, width and height (NaN: not known), `centre` where its middle lies from the axle
+    frame: ahead, left, up (0 where the height is not known)."""
+
+    size: tuple[float, float, float]
+    centre: tuple[float, float, float]
+    source: str
+    """The node or topic that says so."""
+
+    def described(self) -> str:
+        """Return the box in words."""
+        (length, width, _), (ahead, left, _) = self.size, self.centre
+        side = f" and {abs(left):.2f} m to the {'left' if left > 0.0 else 'right'}" if abs(left) >= 0.005 else ""
+        return f"{length:.2f} m by {width:.2f} m, its centre {ahead:.2f} m ahead of base_link{side}"
+
+
+def at_axle(frames: NDArray[Any]) -> Mask:
+    """Say which frames are that of the axle, whatever a robot's name stands before it."""
+    names = np.unique(frames)
+    last = np.array([name.rpartition(b"/")[2] for name in names.tolist()], "S")
+    result: Mask = np.isin(frames, names[last == AXLE_FRAME])
+    return result
+
+
+def vehicle_box(
+    parameters: Iterable[Table], dimensions: Iterable[tuple[str, Table]]
+) -> tuple[VehicleBox | None, list[QualityFinding]]:
+    """Return the box that the nodes' parameters and recorded dimensions agree on, None where nobody gives one, or they differ.
+
+    A node that gives only some of the lengths gives no box: another node may mean another vehicle.
+    """
+    said = {**_by_node(parameters), **_by_topic(dimensions)}
+    boxes = [box for source, lengths in sorted(said.items()) if (box := _box(source, lengths)) is not None]
+    if not boxes:
+        return None, []
+    measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
+    if (np.ptp(measures, axis=0) > _SAME_M).any():
+        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: say it with --ego-size"
+        return None, [QualityFinding("ego_size", "warning", message, len(boxes))]
+    return boxes[0], []
+
+
+def _by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]:
+    """Return node -> length -> metres, the value that was set last."""
+    found: dict[str, dict[str, float]] = {}
+    for events in parameters:
+        nodes = events.column("node")
+        for change in ("new_parameters", "changed_parameters"):
+            items = events.items(change)
+            for i, name, value in _lengths(items):
+                found.setdefault(nodes[items.parent[i]].decode("utf-8", "replace"), {})[name] = value
+    return found
+
+
+def _lengths(items: Table) -> Iterator[tuple[int, str, float]]:
+    """Yield row, name and value of the parameters that are lengths of the vehicle."""
+    names, kind = items.column("name"), items.column("value.type")
+    wanted = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTHS, _HEIGHT)]) & np.isin(kind, (_WHOLE, _DOUBLE))
+    for i in np.flatnonzero(wanted).tolist():
+        column = "value.double_value" if kind[i] == _DOUBLE else "value.integer_value"
+        yield i, names[i].decode(), float(items.column(column)[i])
+
+
+def _by_topic(dimensions: Iterable[tuple[str, Table]]) -> dict[str, dict[str, float]]:
+    found: dict[str, dict[str, float]] = {}
+    for topic, table in dimensions:
+        if table.n:
+            found[topic] = {name: float(table.column(name)[-1]) for name in VEHICLE_LENGTHS}
+            found[topic][_HEIGHT] = float(table.columns.get("height", np.full(table.n, nan))[-1])
+    return found
+
+
+def _box(source: str, lengths: Mapping[str, float]) -> VehicleBox | None:
+    """Return the box, None where a length is missing, no number or of no vehicle."""
+    if not lengths.keys() >= set(VEHICLE_LENGTHS):
+        return None
+    base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTHS)
+    length, width = front + base + rear, left + tread + right
+    if not (0.0 < length < _MOST_M and 0.0 < width < _MOST_M and min(base, tread) > 0.0):
+        return None
+    height = lengths.get(_HEIGHT, nan)
+    height = height if isfinite(height) and height > 0.0 else nan
+    up = 0.5 * height if isfinite(height) else 0.0
+    return VehicleBox((length, width, height), (0.5 * (front + base - rear), 0.5 * (left - right), up), source)

@@ -1,0 +1,171 @@
+"""The ego's box: by Autoware's parameters of the vehicle where the log has them, and where the centre then lies."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint.drive.trace import EgoSize
+from tests.formats.logs import actors, at, quality, read, states
+from tests.formats.ros2 import autoware_log as autoware
+from tests.formats.ros2 import ros_log as ros
+from tests.formats.ros2.ros_drive import T0, TURN, ego, ticks
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.drive.trace import Trace
+
+SIZE = pytest.approx((4.89, 1.896, 2.5))
+AHEAD = 1.345
+
+
+def seen(folder: Path, messages: list[ros.Message], **options: Any) -> Trace:
+    return read(autoware.write(folder / "log.mcap", messages), **options)
+
+
+def size(trace: Trace) -> tuple[float | None, ...]:
+    row = actors(trace)["ego"]
+    return row["length_m"], row["width_m"], row["height_m"]
+
+
+def axle(**other: Any) -> list[ros.Message]:
+    """Return the odometry of the rear axle."""
+    return ego(child="base_link", **other)
+
+
+def parameters(node: str = "/a", t_s: float = T0, /, **other: float) -> list[ros.Message]:
+    return autoware.parameters(t_s, node, **{**autoware.PARAMETERS, **other})
+
+
+def test_size_and_centre(tmp_path: Path) -> None:
+    """Odometry is the rear axle's, on the ground; a state is the centre of the box."""
+    trace = seen(tmp_path, [*axle(), *parameters()])
+    assert size(trace) == SIZE
+    state = at(trace, "ego", T0)
+    assert (state["x_m"], state["y_m"], state["z_m"]) == pytest.approx(
+        (AHEAD * math.cos(TURN), AHEAD * math.sin(TURN), 1.25)
+    )
+    assert "reference_point" not in quality(trace)
+    assert trace.notes[0] == ("the ego's box is that of /a: 4.89 m by 1.90 m, its centre 1.34 m ahead of base_link")
+
+
+def test_without_parameters_nothing_is_made_up(tmp_path: Path) -> None:
+    trace = seen(tmp_path, axle())
+    assert size(trace) == (None, None, None)
+    assert (at(trace, "ego", T0)["x_m"], quality(trace)["reference_point"]["severity"]) == (0.0, "warning")
+
+
+def test_a_vehicle_with_a_side_that_sticks_out(tmp_path: Path) -> None:
+    trace = seen(tmp_path, [*axle(), *parameters(left_overhang=0.528)])
+    assert size(trace) == pytest.approx((4.89, 2.296, 2.5))
+    assert trace.notes[0].endswith("ahead of base_link and 0.20 m to the left")
+    state = at(trace, "ego", T0)
+    assert (state["x_m"], state["y_m"]) == pytest.approx(
+        (AHEAD * math.cos(TURN) - 0.2 * math.sin(TURN), AHEAD * math.sin(TURN) + 0.2 * math.cos(TURN))
+    )
+
+
+@pytest.mark.parametrize("child", ["base_link", "robot/base_link", "/base_link"])
+def test_the_centre_swings_when_the_vehicle_turns(tmp_path: Path, child: str) -> None:
+    """On a circle of 25 m at 0.4 rad/s: the centre's velocity is that of its own places."""
+    messages = [
+        ros.odometry(
+            t_s, 25.0 * math.sin(turn), -25.0 * math.cos(turn), turn, 10.0, turning=0.4, child=child, topic="/odometry"
+        )
+        for t_s in ticks(81)
+        if (turn := 0.4 * (t_s - T0)) is not None
+    ]
+    trace = seen(tmp_path, [*messages, *parameters(left_overhang=0.528)])
+    rows = states(trace, "ego")
+    before, here, after = rows[39:42]
+    for place, velocity in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
+        assert here[velocity] == pytest.approx((after[place] - before[place]) / 0.1, abs=2e-3)
+    assert {"velocity_mismatch", "twist_frame", "reference_point"}.isdisjoint(quality(trace))
+
+
+def test_nodes_that_agree(tmp_path: Path) -> None:
+    """The parameters may come late; one that is set again counts as it is then."""
+    late = parameters("/b", T0 + 1.0)
+    changed = autoware.parameters(T0 + 0.5, "/b", wheel_base=9.0)
+    assert size(seen(tmp_path, [*axle(), *parameters(), *changed, *late])) == SIZE
+    of_event = changed[0][3]
+    of_event["changed_parameters"] = of_event.pop("new_parameters")
+    trace = seen(tmp_path, [*axle(), *parameters("/a", T0 - 1.0), *parameters("/b", T0 - 1.0), *changed])
+    assert size(trace) == (None, None, None)
+    found = quality(trace)["ego_size"]
+    assert found["message"] == "/a, /b give the ego different sizes, and none is used: say it with --ego-size"
+
+
+def test_nodes_that_say_only_a_part(tmp_path: Path) -> None:
+    """The lengths of two nodes may be those of two vehicles."""
+    front = autoware.parameters(T0, "/a", wheel_base=2.79, front_overhang=1.0, rear_overhang=1.1)
+    side = autoware.parameters(T0, "/b", wheel_tread=1.64, left_overhang=0.128, right_overhang=0.128)
+    assert size(seen(tmp_path, [*axle(), *front, *side])) == (None, None, None)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"wheel_base": math.nan}, {"wheel_base": 0.0}, {"front_overhang": 2790.0}, {"wheel_tread": -1.0}]
+)
+def test_lengths_of_no_vehicle(tmp_path: Path, wrong: dict[str, float]) -> None:
+    trace = seen(tmp_path, [*axle(), *parameters(**wrong)])
+    assert (size(trace), at(trace, "ego", T0)["x_m"]) == ((None, None, None), 0.0)
+
+
+def test_without_a_height_the_place_is_the_axles(tmp_path: Path) -> None:
+    trace = seen(tmp_path, [*axle(), *parameters(vehicle_height=math.nan)])
+    assert size(trace)[2] is None
+    assert at(trace, "ego", T0)["z_m"] == 0.0
+
+
+def test_whole_numbers(tmp_path: Path) -> None:
+    messages = parameters(wheel_base=3.0)
+    value = next(of["new_parameters"][0] for *_, of in messages if of["new_parameters"][0]["name"] == "wheel_base")[
+        "value"
+    ]
+    value.update(type=2, integer_value=3, double_value=0.0)
+    assert size(seen(tmp_path, [*axle(), *messages]))[0] == pytest.approx(5.1)
+    value.update(type=4, string_value="3")
+    assert size(seen(tmp_path, [*axle(), *messages])) == (None, None, None)
+
+
+def dimensions() -> list[ros.Message]:
+    """Return the answer of the service as a message, in single precision."""
+    values = {**autoware.PARAMETERS, "height": autoware.PARAMETERS["vehicle_height"]}
+    return [("/api/vehicle/dimensions", "autoware_adapi_v1_msgs/VehicleDimensions", T0, values)]
+
+
+def test_recorded_dimensions(tmp_path: Path) -> None:
+    assert size(seen(tmp_path, [*axle(), *dimensions()])) == pytest.approx((4.89, 1.896, 2.5), abs=1e-6)
+    both = seen(tmp_path, [*axle(), *dimensions(), *parameters()])
+    assert size(both) == SIZE
+    assert "ego_size" not in quality(both)
+
+
+def test_another_frame_than_the_axles(tmp_path: Path) -> None:
+    """The size is the vehicle's; where its centre lies from that frame nobody says, unless the user does."""
+    trace = seen(tmp_path, [*ego(child="imu"), *parameters()])
+    assert size(trace) == SIZE
+    assert at(trace, "ego", T0)["x_m"] == 0.0
+    assert quality(trace)["reference_point"]["severity"] == "warning"
+    told = seen(tmp_path, [*ego(child="imu"), *parameters()], ego_size=EgoSize(4.89, 1.9, 2.0))
+    assert at(told, "ego", T0)["x_m"] == pytest.approx(2.0 * math.cos(TURN))
+    assert "reference_point" not in quality(told)
+
+
+def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
+    trace = seen(tmp_path, [*axle(), *parameters()], ego_size=EgoSize(3.0, 1.9, 0.7))
+    assert size(trace) == SIZE
+    assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
+    assert [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "ego_size"] == [
+        "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, the log 1.345 m, which counts",
+        "--ego-size gives ego a length of 3 m, the log 4.89 m, which counts",
+    ]
+
+
+def test_the_option_counts_where_the_log_says_nothing(tmp_path: Path) -> None:
+    trace = seen(tmp_path, axle(), ego_size=EgoSize(4.0, 1.7, 1.2))
+    assert size(trace) == (4.0, 1.7, None)
+    assert at(trace, "ego", T0)["x_m"] == pytest.approx(1.2 * math.cos(TURN))
