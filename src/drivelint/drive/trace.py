@@ -87,6 +87,8 @@ class IngestOptions:
     ego_size: EgoSize | None = None
     in_sight: bool = False
     """Whoever is not recorded for a while is taken not to be in plain view."""
+    map: Path | None = None
+    """The map that is given: a log in degrees needs its projection."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,6 +119,7 @@ class DriveInput:
             conditions=conditions.parse(self.env),
             ego_size=self.ego_size,
             in_sight=self.visibility == "line-of-sight",
+            map=self.map,
         )
 
 
