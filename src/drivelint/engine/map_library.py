@@ -7,6 +7,7 @@ drive lies. A drive in the coordinates of another geo reference is moved into th
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -85,7 +86,8 @@ class MapLibrary:
         """Return the drive in the map's frame, and what shows that it is of another place.
 
         What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
-        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file.
+        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file. A log without a reference
+        that lies far from the map may have the coordinates of the map's projection, as SUMO's `--fcd-output.utm` writes them.
         """
         refused = None
         try:
@@ -98,6 +100,9 @@ class MapLibrary:
         ground = self._ground(environment)
         troubles = [_elsewhere(environment, ground, each.tables["actor_state"]) for each in both]
         fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
+        if fitting is None and trace.geo_reference is None and common_frame.is_far_from_projection(environment):
+            projected = common_frame.move_into_map_frame(replace(trace, geo_reference=theirs), environment)
+            fitting = None if _elsewhere(environment, ground, projected.tables["actor_state"]) else projected
         return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:

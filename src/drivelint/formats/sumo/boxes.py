@@ -55,9 +55,11 @@ def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOp
     actor_class = classes[tracks.type_code]
     for kind, word in ((PERSON, "pedestrian"), (CONTAINER, "object")):
         actor_class[tracks.kind == kind] = ACTOR_CLASSES.index(word)
-    length, width = (np.array([getattr(t, side) for t in said], np.float64)[tracks.type_code] for side in ("length_m", "width_m"))
+    length, width = (
+        np.array([getattr(t, side) for t in said], np.float64)[tracks.type_code] for side in ("length_m", "width_m")
+    )
     changing = _changing(tracks, length)
-    length[changing] = np.nan
+    length[changing] = width[changing] = np.nan
     sizeless = np.isnan(length) & ~changing
     ahead = np.where(changing, np.nan, np.nan_to_num(length) / 2)
     if options.ego_size is not None:
@@ -71,7 +73,11 @@ def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOp
 
 def _changing(tracks: Tracks, length: Floats) -> Mask:
     """Say which rows have another length than most rows of the same track that have one, or none where others have one."""
-    n_types = max(len(tracks.type_names), 1)
+    some = np.zeros(len(tracks.ids), tracks.type_code.dtype)
+    some[tracks.actor] = tracks.type_code
+    if (some[tracks.actor] == tracks.type_code).all():
+        return np.zeros(len(length), np.bool_)
+    n_types = len(tracks.type_names)
     pairs, row, count = np.unique(
         tracks.actor.astype(np.int64) * n_types + tracks.type_code, return_inverse=True, return_counts=True
     )
@@ -92,7 +98,8 @@ def _changing(tracks: Tracks, length: Floats) -> Mask:
 def _is_ego(tracks: Tracks, actor_class: Codes, ego: str | None) -> Mask:
     if ego == ALL_EGOS and ego not in tracks.ids:
         return np.isin(actor_class, [ACTOR_CLASSES.index(word) for word in MOTOR_VEHICLES])
-    return tracks.actor == (tracks.ids.index(ego) if ego in tracks.ids else -1)
+    found: Mask = tracks.actor == (tracks.ids.index(ego) if ego in tracks.ids else -1)
+    return found
 
 
 def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
@@ -121,5 +128,7 @@ def _types(tracks: Tracks, rows: Mask) -> str:
 def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
     rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
     ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
-    message = f"types that were changed for one vehicle have the size of the type that they were: {listed(sorted(copies))}"
+    message = (
+        f"types that were changed for one vehicle have the size of the type that they were: {listed(sorted(copies))}"
+    )
     return QualityFinding.of_actors("copied_type", "info", message, ids)

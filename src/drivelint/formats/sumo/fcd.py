@@ -84,14 +84,14 @@ def read(probe: Probe) -> Recording:
     dropped = int((nameless & filled).sum())
     lost = _lost(rows.numbers("time"), nameless & filled, f"{path.name}: rows without an id")
     rows = rows.take(~nameless)
-    if not len(rows.kind):
-        raise TraceError(f"{path}: no vehicle in this log")
     untimed = int((~(np.abs(rows.numbers("time")) < _LONGEST_S)).sum())
     if untimed:
         raise TraceError(f"{path}: rows of vehicles without a time that can be: {untimed}: write the log anew")
     types, notes = types_for(path, probe.options.mapping)
     rows = rows._replace(kind=_kinds_by_type(rows, types))
     rides = riding(rows)
+    if rides.all():
+        raise TraceError(f"{path}: no vehicle in this log")
     last_ns = int(_t_ns(rows).max())
     recording = _recording(path, rows.take(~rides), types, probe.options)
     recording.notes += notes
@@ -99,7 +99,9 @@ def read(probe: Probe) -> Recording:
         message = f"rows of persons or containers that ride in a vehicle: {int(rides.sum())}: there they are no road users of their own"
         recording.findings.append(QualityFinding("riding", "info", message, int(rides.sum())))
     if rows.lacks_end:
-        recording.lost.append(LostTime(last_ns, None, f"{path.name} ends without </{ROOT}>: its writer did not finish it"))
+        recording.lost.append(
+            LostTime(last_ns, None, f"{path.name} ends without </{ROOT}>: its writer did not finish it")
+        )
     add_light_states(recording, path, _is_log)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
@@ -150,7 +152,9 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     ids = frozenset(pc.unique(rows.table["id"]).to_pylist())
     said = [type_of(name, types, ids)[0] for name in names.dictionary.to_pylist()]
-    by_type = np.array([_KIND_OF_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[names.indices.to_numpy()]
+    by_type = np.array([_KIND_OF_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
+        names.indices.to_numpy()
+    ]
     # somebody who is carried stays so whatever vehicle class his type has
     told = open_ & (by_type != UNKNOWN) & ~((rows.kind == CARRIED) & (by_type == VEHICLE))
     return np.where(told, by_type, rows.kind)
@@ -182,7 +186,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     if not np.isfinite(angle).any():
         raise TraceError(
             f"{path}: no heading: nobody has an angle, without which the boxes behind the front bumpers cannot be placed: record the "
-            "log with the attribute angle (--fcd-output.attributes)"
+            "log with the attribute angle (SUMO's option fcd-output.attributes)"
         )
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     tracks = Tracks(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
@@ -191,7 +195,10 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     yaw = np.pi / 2 - np.radians(angle)
     yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
     cos, sin = np.cos(yaw), np.sin(yaw)
-    speed, accel = rows.numbers("speed"), rows.numbers("acceleration")
+    is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
+    speed = rows.numbers("speed")
+    # a person's row of a table may have something else in these columns
+    accel, signals = (np.where(is_vehicle, rows.numbers(name), np.nan) for name in ("acceleration", "signals"))
     numbers = {
         "x_m": xy[:, 0] - boxes.ahead_m * cos, "y_m": xy[:, 1] - boxes.ahead_m * sin, "yaw_rad": yaw,
         "vx_mps": speed * cos, "vy_mps": speed * sin, "ax_mps2": accel * cos, "ay_mps2": accel * sin,
@@ -202,13 +209,15 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
         actor,
         _t_ns(rows),
         numbers,
-        {"actor_class": boxes.actor_class, **_lights(rows.numbers("signals"))},
+        {"actor_class": boxes.actor_class, **_lights(signals)},
         np.any([pc.is_inf(c).to_numpy() for c in rows.table.columns if pa.types.is_floating(c.type)], axis=0),
     )
-    turned_away = int(np.isnan(angle).sum())
-    if turned_away:
-        message = f"no angle in {turned_away} of {len(angle)} states: their boxes behind the front bumpers cannot be placed"
-        findings.append(QualityFinding("no_angle", "warning", message, turned_away))
+    angleless = int(np.isnan(angle).sum())
+    if angleless:
+        message = (
+            f"no angle in {angleless} of {len(angle)} states: their boxes behind the front bumpers cannot be placed"
+        )
+        findings.append(QualityFinding("no_angle", "warning", message, angleless))
     return Recording("sumo-fcd", states, findings=[*boxes.findings, *findings], notes=notes)
 
 

@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 _TIME: Final = "timestep_time"
 _PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's where all of these are there."""
-_INFERRED: Final = frozenset({"x", "y", "angle", "speed"})
+_INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Read as numbers at once; what another element has in columns behind the slope may be a text."""
 _READ: Final = (*ATTRIBUTES, "lane", "edge")
+_NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
 _LIGHTS_AND_MORE: Final = ("signals", "acceleration")
 """What vehicles alone have."""
 
@@ -57,17 +58,23 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
 def read_parquet(path: Path) -> Rows:
     """Read a Parquet table. Errors: `TraceError`."""
     groups = column_groups(parquet.schema(path).names)
-    return _rows(path, parquet.table(path, _columns(groups)), groups)
+    table = parquet.table(path, _columns(groups))
+    try:
+        table.validate(full=True)  # texts that are none
+    except pa.ArrowInvalid as error:
+        raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
+    return _rows(path, table, groups)
 
 
 def read_csv(path: Path) -> Rows:
     """Read a CSV table, whatever its separator. Errors: `TraceError`."""
     with path.open("rb") as file:
-        first = file.readline()
+        first, second = file.readline(), file.readline()
     delimiter = max(";,\t", key=lambda d: first.count(d.encode()))
     names = [name.strip('"') for name in first.decode("utf-8-sig", "replace").strip().split(delimiter)]
     groups = column_groups(names)
-    texts = {name for columns in groups.values() for key, name in columns.items() if key not in _INFERRED}
+    inferred = _INFERRED - ({"time"} if b":" in second else set())
+    texts = {name for columns in groups.values() for key, name in columns.items() if key not in inferred}
     try:
         table = pa_csv.read_csv(
             path,
@@ -88,7 +95,11 @@ def _columns(groups: Mapping[str, Columns]) -> list[str]:
 def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
     if len(groups) == 1:
         (columns,) = groups.values()
-        return _of_one_group(path, {name: table[column] for name, column in columns.items()})
+        try:
+            kind, own = _of_one_group({name: table[column] for name, column in columns.items()})
+        except pa.ArrowException as error:
+            raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log anew") from error
+        return typed_rows(path, own, kind)
     parts, order = [], []
     for kind, columns in groups.items():
         here = np.any([_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
@@ -101,17 +112,22 @@ def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
     return Rows(joined.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
 
 
-def _of_one_group(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array]) -> Rows:
+def _of_one_group(
+    columns: dict[str, pa.ChunkedArray | pa.Array],
+) -> tuple[Codes, dict[str, pa.ChunkedArray | pa.Array]]:
+    """Return the kinds of the rows, and the columns without what belongs to another kind's attributes."""
     n = len(columns["time"])
     kind = _kinds_by_lane(n, columns)
     none = pa.scalar(None, pa.string())
-    passenger = pa.array(np.isin(kind, (VEHICLE, UNKNOWN), invert=True))
     if "vehicle" in columns:
-        columns["vehicle"] = pc.if_else(passenger, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), none)
+        carried = pa.array(kind == CARRIED)
+        columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), none)
     for name in _LIGHTS_AND_MORE:
-        if name in columns:
-            columns[name] = pc.if_else(passenger, none, columns[name].cast(pa.string()))
-    return typed_rows(path, columns, kind)
+        if name in columns and not (kind == VEHICLE).all():
+            texts = columns[name].cast(pa.string())
+            may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER))
+            columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, none)
+    return kind, columns
 
 
 def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
@@ -125,6 +141,8 @@ def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) ->
 
 
 def _filled(column: pa.ChunkedArray) -> Mask:
+    if pa.types.is_dictionary(column.type):
+        column = column.cast(column.type.value_type)
     empty = pc.is_null(column)
     if pa.types.is_string(column.type) or pa.types.is_large_string(column.type):
         empty = pc.or_(empty, pc.fill_null(pc.equal(column, ""), fill_value=True))

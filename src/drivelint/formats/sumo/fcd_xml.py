@@ -14,7 +14,7 @@ from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.clock import as_seconds
 from drivelint.formats.sumo.end_tag import with_end_tag
-from drivelint.formats.sumo.rows import ATTRIBUTES, KINDS, VEHICLE, Options, Rows, typed_rows
+from drivelint.formats.sumo.rows import ATTRIBUTES, KINDS, VEHICLE, Rows, typed_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,13 +35,14 @@ def read_xml(path: Path) -> Rows:
     else:
         kind = np.full(len(columns["time"]), VEHICLE, np.int8)
     rows = typed_rows(path, columns, kind)
-    return rows._replace(options=_options(content[: content.find(f"<{ROOT}".encode())]), lacks_end=lacks_end)
+    head = content[: content.find(f"<{ROOT}".encode())]
+    return rows._replace(geo_option=_geo_option(head), lacks_end=lacks_end)
 
 
-def _options(head: bytes) -> Options:
-    """Return what the configuration says that SUMO writes as a comment before the data; options that were not given are left out."""
-    said = dict(_OPTION.findall(head))
-    return Options(said.get(b"fcd-output.geo", b"").lower() in _TRUE) if said else Options()
+def _geo_option(head: bytes) -> bool | None:
+    """Return an option of the configuration that SUMO writes as a comment before the data; those that were not given are left out."""
+    options = dict(_OPTION.findall(head))
+    return options.get(b"fcd-output.geo", b"").lower() in _TRUE if options else None
 
 
 def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:

@@ -49,7 +49,7 @@ class Location(NamedTuple):
         if self.boundary is None:
             return np.zeros(len(xy), np.bool_)
         low, high = np.array(self.boundary).reshape(2, 2)
-        inside: Mask = ((xy > low - _BEYOND_M) & (xy < high + _BEYOND_M)).all(axis=1)
+        inside: Mask = np.logical_and.reduce((xy > low - _BEYOND_M) & (xy < high + _BEYOND_M), axis=1)
         return inside
 
 

@@ -36,11 +36,10 @@ def riding(rows: Rows) -> Mask:
     place = place.reshape(-1)
     kind = rows.kind[near]
     first_vehicle, first_unknown = _first(place, kind == VEHICLE), _first(place, kind == UNKNOWN)
-    own = np.arange(len(near))
-    beside_vehicle, beside_unknown = first_vehicle[place] < len(near), first_unknown[place] < own
-    rides = np.where(kind == UNKNOWN, beside_vehicle | beside_unknown, beside_vehicle | (first_unknown[place] < len(near)))
+    # a vehicle stands before its passengers, and what is not known may be a vehicle
+    beside = (first_vehicle[place] < len(near)) | (first_unknown[place] < np.arange(len(near)))
     found = named.copy()
-    found[near] |= asked[near] & rides
+    found[near] |= asked[near] & beside
     return found
 
 

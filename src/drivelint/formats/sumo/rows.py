@@ -28,22 +28,16 @@ ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBERS)
 TEXTS: Final = frozenset({"id", "type", "vehicle"})
 
 
-class Options(NamedTuple):
-    """What SUMO's options, written before the data, say of the coordinates. None: they are not there."""
-
-    geo: bool | None = None
-    """Whether they are longitude and latitude."""
-
-
 class Rows(NamedTuple):
     """A log's rows: `table` has `time` and `ATTRIBUTES`, texts and numbers, "" and NaN where one is not there.
 
     `table["vehicle"]`: whose passenger the row is, "" of nobody, NULL: not said. `kind` (n): index of `KINDS`, `CARRIED` or `UNKNOWN`.
+    `geo_option`: whether SUMO's options, which it may write before the data, ask for longitude and latitude; None: they are not there.
     """
 
     table: pa.Table
     kind: Codes
-    options: Options = Options()
+    geo_option: bool | None = None
     lacks_end: bool = False
 
     def numbers(self, name: str) -> Floats:
