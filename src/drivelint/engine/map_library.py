@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
@@ -35,6 +37,11 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 MOVING_MPS = 1.0
+FITS_PROJECTION: Final = QualityFinding(
+    "fits_projection",
+    "info",
+    "the log does not say its frame: it lies on the map with the coordinates of the map's projection",
+)
 OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
 
 
@@ -102,7 +109,8 @@ class MapLibrary:
         fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
         if fitting is None and trace.geo_reference is None and common_frame.is_far_from_projection(environment):
             projected = common_frame.move_into_map_frame(replace(trace, geo_reference=theirs), environment)
-            fitting = None if _elsewhere(environment, ground, projected.tables["actor_state"]) else projected
+            if not _elsewhere(environment, ground, projected.tables["actor_state"]):
+                fitting = with_quality_finding(projected, FITS_PROJECTION)
         return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:

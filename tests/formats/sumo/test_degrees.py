@@ -182,7 +182,7 @@ def test_coordinates_of_the_projection_are_those_of_the_net(folder: Path) -> Non
     found = np.array([[row["x_m"], row["y_m"], row["yaw_rad"]] for row in rows])
     assert np.abs(found - expected).max() < 1e-6
     said = {row["check_id"] for row in trace.tables["quality"].to_pylist()}
-    assert "moved_to_map" in said
+    assert {"moved_to_map", "fits_projection"} <= said
     by_hand = on_map(log, folder / "n.net.xml", map_offset=(-OFFSET[0], -OFFSET[1]), ego="a")
     assert by_hand.tables["actor_state"]["x_m"][0].as_py() == pytest.approx(moved[0]["x"] - math.sqrt(2.0))
     net(folder, offset="0,0")

@@ -101,10 +101,10 @@ def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
             raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log anew") from error
         return typed_rows(path, own, kind)
     parts, order = [], []
-    for kind, columns in groups.items():
+    for element, columns in groups.items():
         here = np.any([_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
         chosen = table.filter(pa.array(here))
-        codes = np.full(chosen.num_rows, KINDS.index(kind), np.int8)
+        codes = np.full(chosen.num_rows, KINDS.index(element), np.int8)
         parts.append(typed_rows(path, {name: chosen[column] for name, column in columns.items()}, codes))
         order.append(np.flatnonzero(here))
     rows = np.argsort(np.concatenate(order), kind="stable")
