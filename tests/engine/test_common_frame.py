@@ -133,6 +133,16 @@ def test_the_same_reference_with_its_full_coordinates(tmp_path: Path) -> None:
     assert "moved_to_map" in said(drive)
 
 
+def test_full_coordinates_of_a_log_that_says_no_reference(tmp_path: Path) -> None:
+    """They lie on the map; those of another zone do not."""
+    drive = judged(replace(in_frame(UTM32), geo_reference=None), road(tmp_path))
+    apart = {name: values - numbers(plain())[name] for name, values in numbers(drive.trace).items()}
+    assert max(np.abs(apart["x_m"]).max(), np.abs(apart["y_m"]).max(), np.abs(np.sin(apart["yaw_rad"])).max()) < 1e-3
+    assert said(drive)["fits_projection"][0] == "info"
+    with pytest.raises(MapError, match="of another place"):
+        judged(replace(in_frame(UTM33), geo_reference=None), road(tmp_path))
+
+
 def test_the_same_reference_in_other_words_moves_nothing(tmp_path: Path) -> None:
     here = replace(plain(), geo_reference="+proj=utm +zone=32 +ellps=WGS84", geo_offset=(*origin(BORDER), TURN))
     drive = judged(here, road(tmp_path))

@@ -93,7 +93,7 @@ def alone(folder: Path, conf: Path) -> Path:
 
 
 def steps(log: Path) -> list[bytes]:
-    return [re.sub(rb' accelerationLat="[^"]*"', b"", step) for step in _STEP.findall(log.read_bytes())]
+    return [re.sub(rb' (?:accelerationLat|vehicle)="[^"]*"', b"", step) for step in _STEP.findall(log.read_bytes())]
 
 
 def verdicts(logs: list[Path], road: Path) -> list[list[dict[str, Any]]]:
@@ -130,6 +130,30 @@ def test_the_recording_is_what_sumo_alone_writes(scenario: Path, tmp_path: Path)
     people = {row["actor_id"]: row for row in trace.tables["actor"].to_pylist() if row["actor_class"] == "pedestrian"}
     assert people["p9"]["length_m"] == pytest.approx(0.4)
     assert people["p0"]["length_m"] == pytest.approx(0.215)
+
+
+def test_who_rides_is_no_road_user(scenario: Path, tmp_path: Path) -> None:
+    """A passenger waits, rides and is no pedestrian in the meantime, in the recording and in a window of it."""
+    (scenario / "ride.rou.xml").write_text(
+        '<routes><person id="rider" depart="0" departPos="30"><ride from="win" to="eout" lines="cab"/></person>'
+        '<vehicle id="cab" depart="0" departPos="5"><route edges="win eout"/>'
+        '<stop lane="win_0" startPos="20" endPos="40" triggered="person"/></vehicle></routes>'
+    )
+    source = sumo.open(str(config(scenario, "ride.sumocfg", "ride.rou.xml")), tmp_path)
+    frames = played(source)
+    content = source.recording.read_bytes()
+    waits, rides = (
+        len(re.findall(rb'<person id="rider"[^>]* vehicle="' + who + b'"', content)) for who in (b"", b"cab")
+    )
+    assert waits > 10
+    assert rides > 10
+    options = IngestOptions(ego="cab")
+    for trace, n in (
+        (read_trace(source.recording, options), waits),
+        (source.window(frames[-rides:], tmp_path, options)(), 0),
+    ):
+        ids = trace.tables["actor_state"]["actor_id"].to_pylist()
+        assert (ids.count("rider"), set(ids) - {"rider"}) == (n, {"cab"})
 
 
 def test_a_window_is_the_end_of_the_recording(scenario: Path, tmp_path: Path) -> None:

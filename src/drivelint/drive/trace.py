@@ -98,6 +98,8 @@ class IngestOptions:
     """Whoever is not recorded for a while is taken not to be in plain view."""
     as_recorded: bool = False
     """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts them again."""
+    map: Path | None = None
+    """The map that is given: a log in degrees needs its projection."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +130,7 @@ class DriveInput:
             conditions=conditions.parse(self.env),
             ego_size=self.ego_size,
             in_sight=self.visibility == "line-of-sight",
+            map=self.map,
         )
 
 

@@ -29,6 +29,8 @@ SHAPE_TOLERANCE_M: Final = 0.01
 LENGTH_TOLERANCE_M: Final = 0.1
 """What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
 SAME_M: Final = 0.01
+FAR_M: Final = 10_000.0
+"""An offset of more than this is no mistake of somebody who drives beside the road."""
 
 
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
@@ -67,6 +69,12 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     )
     moved = replace(now, tables={**trace.tables, "actor_state": with_columns(states, columns)})
     return with_quality_finding(moved, QualityFinding("moved_to_map", "info", message))
+
+
+def is_far_from_projection(environment: MapTables) -> bool:
+    """Say whether the map's coordinates are so far from those of its projection that no drive could be taken for one on the map in both."""
+    frame = frame_of_map(environment)
+    return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > FAR_M
 
 
 def _is_said_by_the_user(environment: MapTables) -> bool:

@@ -7,13 +7,16 @@ drive lies. A drive in the coordinates of another geo reference is moved into th
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
+from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.trace import QualityFinding
 from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
@@ -34,6 +37,11 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 MOVING_MPS = 1.0
+FITS_PROJECTION: Final = QualityFinding(
+    "fits_projection",
+    "info",
+    "the log does not say its frame: it lies on the map with the coordinates of the map's projection",
+)
 OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
 
 
@@ -85,7 +93,8 @@ class MapLibrary:
         """Return the drive in the map's frame, and what shows that it is of another place.
 
         What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
-        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file.
+        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file. A log without a reference
+        that lies far from the map may have the coordinates of the map's projection, as SUMO's `--fcd-output.utm` writes them.
         """
         refused = None
         try:
@@ -98,6 +107,10 @@ class MapLibrary:
         ground = self._ground(environment)
         troubles = [_elsewhere(environment, ground, each.tables["actor_state"]) for each in both]
         fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
+        if fitting is None and trace.geo_reference is None and common_frame.is_far_from_projection(environment):
+            projected = common_frame.move_into_map_frame(replace(trace, geo_reference=theirs), environment)
+            if not _elsewhere(environment, ground, projected.tables["actor_state"]):
+                fitting = with_quality_finding(projected, FITS_PROJECTION)
         return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:

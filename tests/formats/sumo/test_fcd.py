@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.sumo import fcd as sumo
+from drivelint.formats.sumo import fcd_xml
 from tests.formats.logs import actors, at, log, put, quality, read, states
 from tests.formats.sumo.fcd_text import ROWS, TYPES, csv, table, xml
 
@@ -36,13 +36,14 @@ def test_line_by_line_is_what_the_parser_reads(tmp_path: Path) -> None:
         "</fcd-export>", '  <timestep time="7.00"/>\n  <timestep time="8.00">\n  </timestep>\n</fcd-export>'
     )
     path = put(tmp_path / "a.xml", text)
-    fast = sumo._lines(path.read_bytes())
+    fast = fcd_xml.lines(path.read_bytes())
     assert fast is not None
-    assert fast.column("timestep_time").to_pylist() == [float(row["time"]) for row in ROWS[:6]]
-    slow = sumo._parsed(path, path.read_bytes())
-    assert fast.column_names == slow.column_names
-    assert fast.column("timestep_time").to_pylist() == [float(t) for t in slow.column("timestep_time").to_pylist()]
-    assert all(fast.column(name).to_pylist() == slow.column(name).to_pylist() for name in fast.column_names[1:])
+    assert fast["time"].to_pylist() == [float(row["time"]) for row in ROWS[:6]]
+    slow, kind = fcd_xml.parsed(path, path.read_bytes())
+    assert slow.keys() - fast.keys() == {"vehicle"}
+    assert fast["time"].to_pylist() == [float(t) for t in slow["time"].to_pylist()]
+    assert all(fast[name].to_pylist() == slow[name].to_pylist() for name in fast.keys() - {"time"})
+    assert kind.tolist() == [0] * 6
 
 
 _ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0" signals="2" acceleration="0.5"/>\n'
@@ -81,7 +82,7 @@ _ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0"
 def test_what_is_not_line_by_line_is_left_to_the_parser(found: str, change: str, n: int) -> None:
     text = xml(ROWS[:6]).replace(found, change, n)
     assert change in text
-    assert sumo._lines(text.encode()) is None
+    assert fcd_xml.lines(text.encode()) is None
 
 
 @pytest.mark.parametrize("form", ["csv", "xml"])

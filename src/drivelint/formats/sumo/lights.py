@@ -17,6 +17,7 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
+from drivelint.formats.sumo.clock import seconds
 from drivelint.formats.sumo.end_tag import with_end_tag
 from drivelint.phrases import listed
 
@@ -96,7 +97,7 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Ma
     every: list[float] = []
     dropped: list[bool] = []
     for element in states:
-        light, letters, at = element.get("id"), element.get("state"), safe_xml.number(element.get("time"))
+        light, letters, at = element.get("id"), element.get("state"), seconds(element.get("time"))
         every.append(at)
         dropped.append(False)
         if not light or not letters or not letters.isascii() or not abs(at) < _LONGEST_S:

@@ -17,6 +17,7 @@ import numpy as np
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
+from drivelint.formats.sumo.location import NO_PROJECTION, location_of
 from drivelint.formats.sumo.right_of_way import control_rows
 from drivelint.road.boundary_lanes import (
     FARTHEST_M,
@@ -26,7 +27,6 @@ from drivelint.road.boundary_lanes import (
     crossings,
     map_from_bounds,
 )
-from drivelint.road.geo_reference import GeoFrame
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from lxml import etree
 
     from drivelint.arrays import Floats
+    from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 
@@ -102,16 +103,10 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 
     None: the net has none (`!`), or its offset cannot be read.
     """
-    location = root.find("location")
-    reference = "!" if location is None else location.get("projParameter", "!").strip()
-    if location is None or reference == "!":
-        return None
-    try:
-        x, y = map(float, location.get("netOffset", "").split(","))
-    except ValueError:
-        quality.geo_unusable(reference, f"its netOffset is {location.get('netOffset')!r}")
-        return None
-    return GeoFrame(reference, -x, -y)
+    location = location_of(root.find("location"))
+    if location.reference != NO_PROJECTION and location.offset is None:
+        quality.geo_unusable(location.reference, f"its netOffset is {location.offset_text!r}")
+    return location.frame()
 
 
 def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:

@@ -36,7 +36,7 @@ _IN_USE: Final = "bind"
 """In SUMO's message where somebody else took the port in the meantime."""
 _NO_SUMO: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
 _OPTIONS: Final = (
-    ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration"),
+    ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration,vehicle"),
     ("fcd-output.geo", "false"), ("fcd-output.utm", "false"), ("fcd-output.skip-empty", "false"),
     ("device.fcd.period", "0"), ("device.fcd.begin", "-1"), ("human-readable-time", "false"), ("no-step-log", "true"),
 )  # fmt: skip
@@ -134,13 +134,14 @@ class SumoProcess:
 
     def vehicle_type(self, name: str) -> VehicleType | None:
         """Return what is known of a vType; None: SUMO does not know it any more."""
-        # one that was changed for a single vehicle is named after the one that it was
-        names = dict.fromkeys((name, name.partition("@")[0]))
+        # one that was changed for a single vehicle is called BASE@ID, after the one that it was
+        parts = name.split("@")
         with self._asked() as con:
             known = con.vehicletype
-            for each in names:
+            for n in range(len(parts), 0, -1):
+                base = "@".join(parts[:n])
                 with suppress(self._refusal):
-                    return VehicleType(known.getVehicleClass(each), known.getLength(each), known.getWidth(each))
+                    return VehicleType(known.getVehicleClass(base), known.getLength(base), known.getWidth(base))
         return None
 
     def end(self) -> None:

@@ -1,0 +1,134 @@
+"""Classes, sizes and box centres of SUMO's road users: a position is the middle of the front bumper, the centre half a length behind it.
+
+One track has one reference point. Without a length the centre is not known: who has none in the whole log stays at its bumper, and a
+finding says so; who has none in a part of it, or another, has no place there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.ego import ALL_EGOS
+from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
+from drivelint.formats.sumo.rows import CONTAINER, PERSON
+from drivelint.formats.sumo.vehicle_types import type_of
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from drivelint.arrays import Codes, Floats, Mask
+    from drivelint.drive.trace import IngestOptions
+    from drivelint.formats.sumo.vehicle_types import VehicleType
+
+
+class Tracks(NamedTuple):
+    """Whose each row (n) is, of which type and kind: `actor` indexes `ids`, `type_code` indexes `type_names`, `kind` as in `rows`."""
+
+    ids: list[str]
+    actor: NDArray[np.int32]
+    type_names: list[str]
+    type_code: NDArray[np.int32]
+    kind: Codes
+
+
+class Boxes(NamedTuple):
+    """Of each row (n): class (index of `ACTOR_CLASSES`, -1: not known), size in metres (NaN: not known), and the way from the box centre
+    to the recorded point in metres, NaN where that is not known."""
+
+    actor_class: Codes
+    length_m: Floats
+    width_m: Floats
+    ahead_m: Floats
+    findings: list[QualityFinding]
+
+
+def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
+    """Return the boxes, by what is known of the `types` and what the user says of the ego."""
+    found = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
+    said = [kind for kind, _ in found]
+    classes = np.array([-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in said], np.int8)
+    actor_class = classes[tracks.type_code]
+    for kind, word in ((PERSON, "pedestrian"), (CONTAINER, "object")):
+        actor_class[tracks.kind == kind] = ACTOR_CLASSES.index(word)
+    length, width = (
+        np.array([getattr(t, side) for t in said], np.float64)[tracks.type_code] for side in ("length_m", "width_m")
+    )
+    changing = _changing(tracks, length)
+    length[changing] = width[changing] = np.nan
+    sizeless = np.isnan(length) & ~changing
+    ahead = np.where(changing, np.nan, np.nan_to_num(length) / 2)
+    if options.ego_size is not None:
+        ahead[sizeless & _is_ego(tracks, actor_class, options.ego)] = options.ego_size.length_m / 2
+    findings = _findings(tracks, changing, sizeless)
+    copies = {name: base for name, (_, base) in zip(tracks.type_names, found, strict=True) if base is not None}
+    if copies:
+        findings.append(_copies(tracks, copies))
+    return Boxes(actor_class, length, width, ahead, findings)
+
+
+def _changing(tracks: Tracks, length: Floats) -> Mask:
+    """Say which rows have another length than most rows of the same track that have one, or none where others have one."""
+    some = np.zeros(len(tracks.ids), tracks.type_code.dtype)
+    some[tracks.actor] = tracks.type_code
+    if (some[tracks.actor] == tracks.type_code).all():
+        return np.zeros(len(length), np.bool_)
+    n_types = len(tracks.type_names)
+    pairs, row, count = np.unique(
+        tracks.actor.astype(np.int64) * n_types + tracks.type_code, return_inverse=True, return_counts=True
+    )
+    other = np.zeros(len(pairs), np.bool_)
+    lengths = np.full(len(pairs), np.nan)
+    lengths[row] = length
+    actors = pairs // n_types
+    for actor in np.unique(actors[1:][actors[1:] == actors[:-1]]):
+        mine = np.flatnonzero(actors == actor)
+        known, at = np.unique(lengths[mine][np.isfinite(lengths[mine])], return_inverse=True)
+        if len(known):
+            most = known[np.argmax(np.bincount(at, count[mine][np.isfinite(lengths[mine])]))]
+            other[mine] = lengths[mine] != most
+    found: Mask = other[row]
+    return found
+
+
+def _is_ego(tracks: Tracks, actor_class: Codes, ego: str | None) -> Mask:
+    if ego == ALL_EGOS and ego not in tracks.ids:
+        return np.isin(actor_class, [ACTOR_CLASSES.index(word) for word in MOTOR_VEHICLES])
+    found: Mask = tracks.actor == (tracks.ids.index(ego) if ego in tracks.ids else -1)
+    return found
+
+
+def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
+    findings = []
+    if sizeless.any():
+        message = (
+            f"no size is known of the vehicle types {_types(tracks, sizeless)}: give the route file "
+            "with their vType elements with --mapping; until then their positions are those of the front bumper"
+        )
+        findings.append(QualityFinding("bumper_position", "warning", message, int(sizeless.sum())))
+    if changing.any():
+        ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
+        message = (
+            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, of which the length is another or not known: the log has "
+            "their front bumper, and where their box is then is not known"
+        )
+        findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
+    return findings
+
+
+def _types(tracks: Tracks, rows: Mask) -> str:
+    names = {tracks.type_names[i] for i in np.unique(tracks.type_code[rows])}
+    return listed(sorted(name or "without a name" for name in names))
+
+
+def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
+    rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
+    ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
+    message = (
+        f"types that were changed for one vehicle have the size of the type that they were: {listed(sorted(copies))}"
+    )
+    return QualityFinding.of_actors("copied_type", "info", message, ids)

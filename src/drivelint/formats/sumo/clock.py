@@ -1,0 +1,44 @@
+"""Times of SUMO's outputs: seconds, or clocks as `--human-readable-time` writes them: H:M:S, from one day on D:H:M:S."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.formats import safe_xml
+
+_CLOCK: Final = re.compile(r"(?:(\d+):)?(\d+):([0-5]?\d):([0-5]?\d(?:\.\d+)?)")
+
+
+def seconds(text: str | None) -> float:
+    """Return a time in seconds, NaN where it is none."""
+    parts = _CLOCK.fullmatch(text or "")
+    if parts is None:
+        return safe_xml.number(text)
+    days, hours, minutes, rest = parts.groups()
+    return ((int(days or 0) * 24 + int(hours)) * 60 + int(minutes)) * 60 + float(rest)
+
+
+def as_seconds(texts: pa.Array | pa.ChunkedArray) -> pa.Array:
+    """Return a column of times as seconds, NULL where there is none. Errors: `pa.ArrowInvalid` for a text that is no time."""
+    try:
+        return texts.cast(pa.float64())
+    except pa.ArrowInvalid:
+        pass
+    # a step has one time, and all its rows have it
+    times = pc.dictionary_encode(texts.combine_chunks() if isinstance(texts, pa.ChunkedArray) else texts)
+    is_clock = pc.match_substring(times.dictionary, ":")
+    clocks = pa.array(map(_clock, times.dictionary.filter(is_clock).to_pylist()), pa.float64())
+    others = pc.if_else(is_clock, pa.scalar(None, pa.string()), times.dictionary).cast(pa.float64())
+    return pc.replace_with_mask(others, is_clock, clocks).take(times.indices)
+
+
+def _clock(text: str) -> float:
+    found = seconds(text)
+    if math.isnan(found):
+        raise pa.ArrowInvalid(f"{text!r} is neither seconds nor a clock, [D:]H:M:S")
+    return found

@@ -1,0 +1,119 @@
+"""Positions in longitude and latitude (`--fcd-output.geo`), brought back into the metres of the simulated net.
+
+SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is
+needed for both. How the data are written stands in XML alone, and not in every file. What anybody's motion shows counts more: as metres,
+degrees are a drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded.
+Source: SUMO's documentation of "Simulation/Output/FCDOutput" and "Geo-Coordinates".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.trace import QualityFinding
+from drivelint.errors import TraceError
+from drivelint.formats.sumo.location import read_location
+from drivelint.road.geo_reference import WGS84, transform
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from drivelint.arrays import Floats
+    from drivelint.formats.sumo.rows import Rows
+
+_FARTHEST: Final = np.array([180.0, 90.0])
+_MOVED: Final = 1e-7
+"""Less is no motion: a centimetre in degrees, a rounding error in metres."""
+_SLOW_PER_S: Final = 0.01
+"""Nobody drives 0.01 degrees in a second; who moves by less than 0.01 metres in a second stands."""
+_RATIO: Final = 1000.0
+"""A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the one in degrees, and 1 time the one in metres."""
+_DEGREE_M: Final = 111_195.0
+_LEAST_ERROR_M: Final = 0.005
+_DECIMALS: Final = range(1, 9)
+_DEGREES: Final = "its positions are longitude and latitude (fcd-output.geo)"
+_REMEDY: Final = (
+    "give the net that was simulated, with its projection, with --map, or record the log without fcd-output.geo"
+)
+
+
+def net_positions(
+    path: Path, rows: Rows, actor: NDArray[np.int32], net: Path | None
+) -> tuple[Floats, list[QualityFinding]]:
+    """Return the positions (n, 2) in metres of the net, and what the writer's rounding means for them.
+
+    `actor` (n): which one each row is of; `net`: the map that the user gives. Errors: `TraceError` where degrees cannot be brought back.
+    """
+    xy = np.stack([rows.numbers("x"), rows.numbers("y")], axis=1)
+    if not _are_degrees(path, rows, xy, actor, net):
+        return xy, []
+    if net is None:
+        raise TraceError(f"{path}: {_DEGREES}: {_REMEDY}")
+    if (location := read_location(net)) is None:
+        raise TraceError(f"{path}: {_DEGREES}, and {net.name} is no SUMO net: {_REMEDY}")
+    frame, trouble = location.frame(), location.trouble()
+    if frame is None or trouble:
+        raise TraceError(
+            f"{path}: {_DEGREES}, and the net {net.name} does not lead back to metres: {trouble}: {_REMEDY}"
+        )
+    placed = np.isfinite(xy).all(axis=1)
+    found = np.full_like(xy, np.nan)
+    found[placed] = frame.unproject(transform(xy[placed], WGS84, frame.reference))
+    found[~np.isfinite(found).all(axis=1)] = np.nan
+    return found, _rounding(xy[placed], net)
+
+
+def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
+    placed = xy[np.isfinite(xy).all(axis=1)]
+    if not len(placed):
+        return False
+    may_be = bool((np.abs(placed) <= _FARTHEST).all())
+    moves = _moves_in_degrees(rows, xy, actor) if may_be else False
+    if moves is False and rows.geo_option:
+        raise TraceError(
+            f"{path}: its configuration says that its positions are longitude and latitude (fcd-output.geo), and they are not: "
+            "write the log anew"
+        )
+    if moves is not None or rows.geo_option is not None:
+        return bool(rows.geo_option if moves is None else moves)
+    # nobody moves, and nothing says what the numbers are: the net tells
+    location = None if net is None else read_location(net)
+    frame = None if location is None else location.frame()
+    if location is None or frame is None or location.trouble():
+        return False
+    return bool(location.surrounds(frame.unproject(transform(placed, WGS84, frame.reference))).all())
+
+
+def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:
+    """Say whether those who move do so in degrees; None: nobody moves."""
+    order = np.argsort(actor, kind="stable")
+    same = np.diff(actor[order]) == 0
+    dt = np.diff(rows.numbers("time")[order])
+    way = np.hypot(*np.diff(xy[order], axis=0).T)
+    moved = same & (dt > 0.0) & (way >= _MOVED)
+    if not moved.any():
+        return None
+    per_s = way[moved] / dt[moved]
+    speed = rows.numbers("speed")[order]
+    mean = (speed[1:] + speed[:-1])[moved] / 2.0
+    if np.isfinite(mean).any():
+        return bool(np.nanmedian(mean / per_s) > _RATIO)
+    return bool(np.median(per_s) < _SLOW_PER_S)
+
+
+def _rounding(degrees: Floats, net: Path) -> list[QualityFinding]:
+    """Say how exact positions are that were written with few decimals."""
+    digits = next((n for n in _DECIMALS if np.abs(degrees * 10.0**n - np.round(degrees * 10.0**n)).max() < 1e-3), None)
+    along = float(np.cos(np.radians(degrees[:, 1].mean())))  # a degree of longitude, as a share of one of latitude
+    error_m = 0.0 if digits is None else _DEGREE_M * 0.5 * 10.0**-digits * float(np.hypot(1.0, along))
+    if error_m < _LEAST_ERROR_M:
+        return []
+    message = (
+        f"positions are longitude and latitude with {digits} decimals, brought back into the metres of {net.name}: they are known to "
+        f"{error_m:.2g} m; SUMO's option precision.geo gives more"
+    )
+    return [QualityFinding("rounded_position", "warning", message, len(degrees))]

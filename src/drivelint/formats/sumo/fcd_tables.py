@@ -1,0 +1,150 @@
+"""Reads SUMO's floating car data in CSV and Parquet, as SUMO writes them or its tools make them of XML.
+
+SUMO names all columns after the element that it wrote first, whatever a row is of. Up to the slope, all elements have the same
+attributes in the same order. Behind it the values of another element stand in columns that are not theirs, as far as there are any.
+The tool xml2csv gives each kind of element columns of its own.
+Source: SUMO's documentation of "Tabular Outputs" and "Simulation/Output/FCDOutput", and files of SUMO 1.28.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pa_csv
+
+from drivelint.errors import TraceError
+from drivelint.formats.sumo.rows import ATTRIBUTES, CARRIED, KINDS, UNKNOWN, VEHICLE, Rows, typed_rows
+from drivelint.formats.tables import parquet
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.arrays import Codes, Mask
+
+    Columns = dict[str, str]
+
+_TIME: Final = "timestep_time"
+_PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
+"""Columns without the name of an element (`--output.column-header plain`) are SUMO's where all of these are there."""
+_INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
+"""Read as numbers at once; what another element has in columns behind the slope may be a text."""
+_READ: Final = (*ATTRIBUTES, "lane", "edge")
+_NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
+_LIGHTS_AND_MORE: Final = ("signals", "acceleration")
+"""What vehicles alone have."""
+
+
+def column_groups(names: Sequence[str]) -> dict[str, Columns]:
+    """Return for each element that has columns of its own its attribute -> the column; `time` is among them. Empty: it is no FCD.
+
+    The element is "" where columns are named after none.
+    """
+    there = set(names)
+    if there >= _PLAIN:
+        return {"": {name: name for name in ("time", *_READ) if name in there}}
+    found = {}
+    for kind in KINDS if _TIME in there else ():
+        for prefix in (f"{kind}_", f"timestep_{kind}_"):
+            columns = {name: prefix + name for name in _READ if prefix + name in there}
+            if {"id", "x", "y"} <= columns.keys():
+                found[kind] = {"time": _TIME, **columns}
+    return found
+
+
+def read_parquet(path: Path) -> Rows:
+    """Read a Parquet table. Errors: `TraceError`."""
+    groups = column_groups(parquet.schema(path).names)
+    table = parquet.table(path, _columns(groups))
+    try:
+        table.validate(full=True)  # texts that are none
+    except pa.ArrowInvalid as error:
+        raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
+    return _rows(path, table, groups)
+
+
+def read_csv(path: Path) -> Rows:
+    """Read a CSV table, whatever its separator. Errors: `TraceError`."""
+    with path.open("rb") as file:
+        first, second = file.readline(), file.readline()
+    delimiter = max(";,\t", key=lambda d: first.count(d.encode()))
+    names = [name.strip('"') for name in first.decode("utf-8-sig", "replace").strip().split(delimiter)]
+    groups = column_groups(names)
+    inferred = _INFERRED - ({"time"} if b":" in second else set())
+    texts = {name for columns in groups.values() for key, name in columns.items() if key not in inferred}
+    try:
+        table = pa_csv.read_csv(
+            path,
+            parse_options=pa_csv.ParseOptions(delimiter=delimiter),
+            convert_options=pa_csv.ConvertOptions(
+                column_types=dict.fromkeys(texts, pa.string()), include_columns=_columns(groups)
+            ),
+        )
+    except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
+        raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
+    return _rows(path, table, groups)
+
+
+def _columns(groups: Mapping[str, Columns]) -> list[str]:
+    return list(dict.fromkeys(name for columns in groups.values() for name in columns.values()))
+
+
+def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
+    if len(groups) == 1:
+        (columns,) = groups.values()
+        try:
+            kind, own = _of_one_group({name: table[column] for name, column in columns.items()})
+        except pa.ArrowException as error:
+            raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log anew") from error
+        return typed_rows(path, own, kind)
+    parts, order = [], []
+    for element, columns in groups.items():
+        here = np.any([_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
+        chosen = table.filter(pa.array(here))
+        codes = np.full(chosen.num_rows, KINDS.index(element), np.int8)
+        parts.append(typed_rows(path, {name: chosen[column] for name, column in columns.items()}, codes))
+        order.append(np.flatnonzero(here))
+    rows = np.argsort(np.concatenate(order), kind="stable")
+    joined = pa.concat_tables([part.table for part in parts]).combine_chunks()
+    return Rows(joined.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
+
+
+def _of_one_group(
+    columns: dict[str, pa.ChunkedArray | pa.Array],
+) -> tuple[Codes, dict[str, pa.ChunkedArray | pa.Array]]:
+    """Return the kinds of the rows, and the columns without what belongs to another kind's attributes."""
+    n = len(columns["time"])
+    kind = _kinds_by_lane(n, columns)
+    none = pa.scalar(None, pa.string())
+    if "vehicle" in columns:
+        carried = pa.array(kind == CARRIED)
+        columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), none)
+    for name in _LIGHTS_AND_MORE:
+        if name in columns and not (kind == VEHICLE).all():
+            texts = columns[name].cast(pa.string())
+            may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER))
+            columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, none)
+    return kind, columns
+
+
+def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
+    """Return the kinds as far as the place in the net tells them: a vehicle is on a lane, a person or container on an edge.
+
+    In a mesoscopic simulation nobody is on a lane, and that tells nothing.
+    """
+    lane, edge = (_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
+    carried = edge & ~lane & lane.any()
+    return np.select([lane, carried], [np.int8(VEHICLE), np.int8(CARRIED)], np.int8(UNKNOWN))
+
+
+def _filled(column: pa.ChunkedArray) -> Mask:
+    if pa.types.is_dictionary(column.type):
+        column = column.cast(column.type.value_type)
+    empty = pc.is_null(column)
+    if pa.types.is_string(column.type) or pa.types.is_large_string(column.type):
+        empty = pc.or_(empty, pc.fill_null(pc.equal(column, ""), fill_value=True))
+    filled: Mask = ~empty.to_numpy()
+    return filled

@@ -1,0 +1,135 @@
+"""Reads SUMO's floating car data in XML: line by line where all vehicles look like the first, else by the parser."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pa_csv
+
+from drivelint.errors import TraceError
+from drivelint.formats import safe_xml
+from drivelint.formats.sumo.clock import as_seconds
+from drivelint.formats.sumo.end_tag import with_end_tag
+from drivelint.formats.sumo.rows import ATTRIBUTES, KINDS, VEHICLE, Rows, typed_rows
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ROOT: Final = "fcd-export"
+_WHOLE_STEP: Final = r"</timestep>|<timestep\s[^<>]*/>"
+_STEP: Final = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
+_OPTION: Final = re.compile(rb'<(fcd-output(?:\.geo)?) +value="([^"]*)"')
+_TRUE: Final = frozenset({b"1", b"yes", b"true", b"on", b"x", b"t"})
+
+
+def read_xml(path: Path) -> Rows:
+    """Read a log. Errors: `TraceError` where it is not well-formed, or a cell is no number."""
+    content, lacks_end = with_end_tag(path.read_bytes(), ROOT, _WHOLE_STEP)
+    columns = lines(content)
+    if columns is None:
+        columns, kind = parsed(path, content)
+    else:
+        kind = np.full(len(columns["time"]), VEHICLE, np.int8)
+    rows = typed_rows(path, columns, kind)
+    head = content[: content.find(f"<{ROOT}".encode())]
+    return rows._replace(geo_option=_geo_option(head), lacks_end=lacks_end)
+
+
+def _geo_option(head: bytes) -> bool | None:
+    """Return an option of the configuration that SUMO writes as a comment before the data; those that were not given are left out."""
+    options = dict(_OPTION.findall(head))
+    return options.get(b"fcd-output.geo", b"").lower() in _TRUE if options else None
+
+
+def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
+    """Read a log with one element per line as CSV with the quotation mark as separator; None if any line looks different."""
+    begin = content.find(b"<fcd-export")
+    first = re.search(rb'^[ \t]*<vehicle(?: +[\w:.-]+="[^"<\n]*")+ */>(?=\r?$)', content[begin:], re.MULTILINE)
+    if first is None or b"&" in content or not _is_plain(content[: content.find(b">", begin) + 1]):
+        return None
+    parts = first[0].decode("utf-8", "replace").split('"')
+    names = [part.split()[-1].removesuffix("=") for part in parts[:-1:2]]
+    if len(set(names)) < len(names):
+        return None
+    columns = [f"{i}" for i in range(len(parts))]
+    others: list[tuple[int, str]] = []
+
+    def other(row: Any) -> str:
+        others.append((row.number, row.text.strip()))
+        return "skip"
+
+    wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in ATTRIBUTES]
+    try:
+        table = pa_csv.read_csv(
+            pa.BufferReader(memoryview(content)[begin:]),
+            # one thread: the numbers of lines are only known then
+            pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
+            pa_csv.ParseOptions(delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=other),
+            pa_csv.ConvertOptions(
+                column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
+            ),
+        )
+        times = _times(others, len(table))
+    except pa.ArrowInvalid:
+        return None
+    alike = (pc.equal(table.column(column), part) for column, part in zip(columns[::2], parts[::2], strict=True))
+    more = content.count(b"<", begin) > len(table) + len(others)  # elements than lines
+    if times is None or more or not all(pc.all(column).as_py() for column in alike):
+        return None
+    values = {name: table.column(f"{2 * i + 1}") for i, name in enumerate(names) if name in ATTRIBUTES}
+    # the parser makes blanks of tabs, and refuses other control characters
+    texts = [values[name] for name in ("id", "type", "vehicle") if name in values]
+    if any(pc.any(pc.match_substring_regex(column, "[[:cntrl:]]")).as_py() for column in texts):
+        return None
+    return {"time": times, **values}
+
+
+def _is_plain(head: bytes) -> bool:
+    """Say whether what stands before the first step, the tag of its element included, changes nothing in the lines that follow."""
+    try:
+        root = safe_xml.parse(head + b"</fcd-export>", "", TraceError)
+    except TraceError:
+        return False
+    return (root.getroottree().docinfo.encoding or "UTF-8").upper() in {"UTF-8", "US-ASCII"}
+
+
+def _times(others: list[tuple[int, str]], n: int) -> pa.Array | None:
+    """Return the times of `n` vehicles, that of the step around each; None where the other lines are not those of steps alone.
+
+    `others`: number and text of each line that is no vehicle's. Errors: `pa.ArrowInvalid` for a time that is none.
+    """
+    stamps, counts = [""], [0]
+    order, above = "", 0
+    for number, line in others:
+        counts[-1] += number - above - 1
+        order += "v" if number > above + 1 else ""
+        above = number
+        if step := _STEP.fullmatch(line):
+            order += "empty " if step[2] else "begin "
+            stamps += [step[1]]
+            counts += [0]
+        else:
+            order += {"</timestep>": "end ", "</fcd-export>": "last"}.get(line, "first " if order == "" else "?")
+    if not re.fullmatch("first (empty |begin v*end )*last", order) or sum(counts) < n:
+        return None
+    return as_seconds(pa.array(stamps[1:], pa.string())).take(np.repeat(np.arange(len(stamps) - 1), counts[1:]))
+
+
+def parsed(path: Path, content: bytes) -> tuple[dict[str, pa.ChunkedArray | pa.Array], np.ndarray]:
+    """Return the columns, and of each row the index of its element in `KINDS`."""
+    root = safe_xml.parse(content, str(path), TraceError)
+    columns: dict[str, list[Any]] = {"time": [], **{name: [] for name in ATTRIBUTES}}
+    kind = []
+    for step in root.iter("timestep"):
+        for item in step:
+            if item.tag not in KINDS:
+                continue
+            kind.append(KINDS.index(item.tag))
+            columns["time"].append(step.get("time"))
+            for name in ATTRIBUTES:
+                columns[name].append(item.get(name))
+    return {name: pa.array(values, pa.string()) for name, values in columns.items()}, np.array(kind, np.int8)

@@ -1,0 +1,51 @@
+"""Which persons and containers of floating car data ride: SUMO writes them at the place of their vehicle.
+
+The attribute `vehicle` names it; a log that was written without that attribute shows it by the place. Whoever has the place, the angle and
+the speed of a vehicle to the last digit is in it: two bodies are never in one place.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow.compute as pc
+
+from drivelint.formats.sumo.rows import CARRIED, CONTAINER, PERSON, UNKNOWN, VEHICLE
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Mask
+    from drivelint.formats.sumo.rows import Rows
+
+
+def riding(rows: Rows) -> Mask:
+    """Say of each row (n) whether it is of somebody who rides in a vehicle.
+
+    Of several in one place whose kind is not known, all but the first ride: SUMO writes a vehicle before its passengers.
+    """
+    said = rows.table["vehicle"]
+    named: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
+    carried = np.isin(rows.kind, (PERSON, CONTAINER, CARRIED)) & pc.is_null(said).to_numpy()
+    asked = carried | (rows.kind == UNKNOWN)
+    if not asked.any():
+        return named
+    time, x, y = (rows.numbers(name) for name in ("time", "x", "y"))
+    near = np.flatnonzero(np.isin(time, np.unique(time[asked])) & np.isfinite(x) & np.isfinite(y))
+    there = np.stack([time, x, y, rows.numbers("angle"), rows.numbers("speed")], axis=1)[near] + 0.0
+    _, place = np.unique(there.view(np.int64), axis=0, return_inverse=True)
+    place = place.reshape(-1)
+    kind = rows.kind[near]
+    first_vehicle, first_unknown = _first(place, kind == VEHICLE), _first(place, kind == UNKNOWN)
+    # a vehicle stands before its passengers, and what is not known may be a vehicle
+    beside = (first_vehicle[place] < len(near)) | (first_unknown[place] < np.arange(len(near)))
+    found = named.copy()
+    found[near] |= asked[near] & beside
+    return found
+
+
+def _first(place: np.ndarray, chosen: Mask) -> np.ndarray:
+    """Return for each place the first of the chosen rows that is there, the number of rows where none is."""
+    found = np.full(int(place.max(initial=-1)) + 1, len(place))
+    rows = np.flatnonzero(chosen)[::-1]
+    found[place[rows]] = rows
+    return found

@@ -1,0 +1,79 @@
+"""The rows of floating car data, one per vehicle, person or container and step, under the names of SUMO's attributes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path  # noqa: TC003 - NamedTuple reads it
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.errors import TraceError
+from drivelint.formats.sumo.clock import as_seconds
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Codes, Floats, Mask
+
+KINDS: Final = ("vehicle", "person", "container")
+"""The elements of a step."""
+VEHICLE, PERSON, CONTAINER = range(3)
+CARRIED: Final = 3
+"""A person or a container."""
+UNKNOWN: Final = -1
+NUMBERS: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
+ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBERS)
+"""The attributes that are read."""
+TEXTS: Final = frozenset({"id", "type", "vehicle"})
+
+
+class Rows(NamedTuple):
+    """A log's rows: `table` has `time` and `ATTRIBUTES`, texts and numbers, "" and NaN where one is not there.
+
+    `table["vehicle"]`: whose passenger the row is, "" of nobody, NULL: not said. `kind` (n): index of `KINDS`, `CARRIED` or `UNKNOWN`.
+    `geo_option`: whether SUMO's options, which it may write before the data, ask for longitude and latitude; None: they are not there.
+    """
+
+    table: pa.Table
+    kind: Codes
+    geo_option: bool | None = None
+    lacks_end: bool = False
+
+    def numbers(self, name: str) -> Floats:
+        """Return a column of numbers, NaN where it is infinite."""
+        values = np.asarray(self.table[name].to_numpy(), np.float64)
+        return np.where(np.isinf(values), np.nan, values)
+
+    def take(self, rows: Mask) -> Rows:
+        """Return the chosen rows."""
+        if rows.all():
+            return self
+        return self._replace(table=self.table.filter(pa.array(rows)), kind=self.kind[rows])
+
+
+def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind: Codes) -> Rows:
+    """Return columns, `time` and some of `ATTRIBUTES`, as rows. Errors: `TraceError` for a cell that is no number or time."""
+    n = len(kind)
+    made = {}
+    for name in ("time", *ATTRIBUTES):
+        column = columns.get(name, pa.nulls(n))
+        try:
+            made[name] = _typed(name, column)
+        except pa.ArrowException as error:
+            raise TraceError(
+                f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log anew"
+            ) from error
+    return Rows(pa.table(made), kind)
+
+
+def _typed(name: str, column: pa.ChunkedArray | pa.Array) -> pa.ChunkedArray | pa.Array:
+    if name in TEXTS:
+        column = column.cast(pa.string())
+        return column if name == "vehicle" else pc.fill_null(column, "")
+    if pa.types.is_string(column.type) or pa.types.is_binary(column.type):
+        column = column.cast(pa.string())
+        column = pc.if_else(pc.equal(column, ""), pa.scalar(None, pa.string()), column)
+        if name == "time":
+            return pc.fill_null(as_seconds(column), math.nan)
+    return pc.fill_null(column.cast(pa.float64()), math.nan)

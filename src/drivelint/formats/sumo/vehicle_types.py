@@ -1,0 +1,115 @@
+"""The types of SUMO's vehicles and persons (`vType`): class and size, which floating car data do not have."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.errors import UsageError
+from drivelint.formats import safe_xml
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+_BESIDE: Final = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
+_OF_ONE_VEHICLE: Final = "@"
+
+
+class VehicleType(NamedTuple):
+    """What a vType says: our class, length and width in metres; NaN: not known."""
+
+    actor_class: str | None = None
+    length_m: float = math.nan
+    width_m: float = math.nan
+
+
+_OF_CLASS: Final = {
+    **dict.fromkeys(("passenger", "private", "taxi", "evehicle", "hov", "vip"), VehicleType("car", 5.0, 1.8)),
+    **dict.fromkeys(("authority", "army", "custom1", "custom2"), VehicleType("vehicle", 5.0, 1.8)),
+    "delivery": VehicleType("van", 6.5, 2.16), "emergency": VehicleType("vehicle", 6.5, 2.16),
+    "truck": VehicleType("truck", 7.1, 2.4), "trailer": VehicleType("truck", 16.5, 2.55), "bus": VehicleType("bus", 12.0, 2.5),
+    "coach": VehicleType("bus", 14.0, 2.6), "motorcycle": VehicleType("motorcycle", 2.2, 0.9),
+    "moped": VehicleType("motorcycle", 2.1, 0.78), "bicycle": VehicleType("bicycle", 1.6, 0.65),
+    "scooter": VehicleType("bicycle", 1.2, 0.5), "pedestrian": VehicleType("pedestrian", 0.215, 0.478),
+    "wheelchair": VehicleType("pedestrian", 1.2, 0.72), "container": VehicleType("object", 6.096, 2.438),
+}  # fmt: skip
+"""SUMO's own sizes by vClass, where a vType says none, as SUMO 1.28 gives them. Those of trains are left out: they bend."""
+_DEFAULTS: Final = {
+    "DEFAULT_VEHTYPE": _OF_CLASS["passenger"], "DEFAULT_PEDTYPE": _OF_CLASS["pedestrian"],
+    "DEFAULT_BIKETYPE": _OF_CLASS["bicycle"], "DEFAULT_TAXITYPE": _OF_CLASS["taxi"],
+    "DEFAULT_CONTAINERTYPE": _OF_CLASS["container"],
+}  # fmt: skip
+UNKNOWN_TYPE: Final = VehicleType()
+
+
+def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -> tuple[VehicleType, str | None]:
+    """Return what is known of a type, and the type of which it is taken to be a copy.
+
+    Where a parameter of a single vehicle is changed while SUMO runs, its type is from then on a copy that is called BASE@ID, with
+    the `ids` of the log for ID. No route file has it. Source: SUMO's documentation of "TraCI/Change Vehicle State".
+    """
+    known = types.get(name) or _DEFAULTS.get(name)
+    if known is not None:
+        return known, None
+    at = name.find(_OF_ONE_VEHICLE)
+    while at >= 0:
+        base = name[:at]
+        if name[at + 1 :] in ids and (known := types.get(base) or _DEFAULTS.get(base)):
+            return known, base
+        at = name.find(_OF_ONE_VEHICLE, at + 1)
+    return UNKNOWN_TYPE, None
+
+
+def types_for(log: Path, given: str | None) -> tuple[dict[str, VehicleType], list[str]]:
+    """Return vType id -> what it says, and notes on where from: `given`, the user's file, else the files beside the log.
+
+    Errors: `UsageError` for a given file that has no vType.
+    """
+    if given is not None:
+        found = _read(Path(given))
+        if not found:
+            raise UsageError(f"--mapping {given}: has no vType: give the route or additional file of the simulation")
+        return found, []
+    types: dict[str, VehicleType] = {}
+    files: dict[str, str] = {}
+    used = []
+    notes = []
+    for file in sorted({file for pattern in _BESIDE for file in log.parent.glob(pattern)}):
+        here = _read(file)
+        used += [file.name] if here else []
+        for name, said in here.items():
+            if name in types and types[name] != said:
+                notes.append(
+                    f"{log.name}: the type {name} is another in {file.name} than in {files[name]}, both beside it, and is taken for "
+                    "unknown: give the file of the simulation with --mapping"
+                )
+                types[name] = UNKNOWN_TYPE
+            else:
+                types[name], files[name] = said, file.name
+    if used:
+        notes.insert(0, f"{log.name}: sizes of vehicles are those of the vTypes in {listed(used)} beside it")
+    return types, notes
+
+
+def _read(file: Path) -> dict[str, VehicleType]:
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        raise UsageError(f"--mapping {file}: cannot be read: {error.strerror or error}") from error
+    root = safe_xml.parse(content, f"--mapping {file}:", UsageError)
+    found = {}
+    for element in root.iter("vType"):
+        default = _OF_CLASS.get(element.get("vClass", "passenger"), VehicleType("vehicle"))
+        found[element.get("id", "")] = VehicleType(
+            default.actor_class,
+            _positive(element.get("length"), default.length_m),
+            _positive(element.get("width"), default.width_m),
+        )
+    return found
+
+
+def _positive(text: str | None, default: float) -> float:
+    value = default if text is None else safe_xml.number(text)
+    return value if value > 0 else math.nan
