@@ -29,6 +29,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
@@ -116,7 +117,8 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: Un
     unread.refuse(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}")
+        silent = "" if names else silent_topics(bag.mcap_files(path), SCENE.__eq__)
+        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}{silent and f': {silent}'}")
     return names[0]
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import mmap
 from typing import TYPE_CHECKING, Final
 
 import yaml
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.mcap.summary import read_summary
+from drivelint.formats.mcap.summary import read_index
 from drivelint.formats.ros2.types import message_kind
 
 if TYPE_CHECKING:
@@ -107,12 +106,7 @@ def message_family(path: Path) -> str:
 
 def _indexed(file: Path) -> set[str]:
     """Return the schemas that the index lists; none where it is not there or damaged."""
-    with (
-        file.open("rb") as stream,
-        mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
-        memoryview(data) as view,
-    ):
-        return {schema.name for schema in read_summary(view, unprotected=True).schemas.values()}
+    return {schema.name for schema in read_index(file).schemas.values()}
 
 
 def _recorded(file: Path) -> set[str]:

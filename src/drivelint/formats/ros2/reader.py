@@ -16,6 +16,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import objects as ros_objects
@@ -156,8 +157,10 @@ def read(path: Path, options: IngestOptions) -> Recording:
     log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
     parts = {topic: join_batches(batches) for topic, batches in (objects | odometry).items()}
     if not sum(map(len, parts.values())):
+        silent = silent_topics(bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ros_ego.ODOMETRY})
         raise TraceError(
-            f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
+            f"{path}: no road users and no odometry in this ROS log: "
+            + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
         )
     findings = log.findings
     findings += () if objects else (_NO_ROAD_USERS,)
