@@ -1,5 +1,8 @@
 """This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both are said
-elsewhere."""
+elsewhere.
+
+The pose of a cube is the centre of its box, in the entity's frame.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """ASAM OSI ground truth in MCAP, where the channel is known by its schema and encoding, never by its topic, and in trace files.
 
-Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own.
+Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own. A moving object's position is
+the centre of its box, and its dimensions are those of the box.
 """
 
 from __future__ import annotations

@@ -1,4 +1,9 @@
-"""ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic."""
+"""ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic.
+
+Places are the centres of the boxes: of Autoware's tracks and of vision's detections by their definition, of the CARLA bridge's objects by
+assumption (see `merge`). The odometry's place is that of its child frame, from where `--ego-size` says how far ahead the centre of the
+ego's box lies, as from the rear axle. Shapes have their origin in that place.
+"""
 
 from __future__ import annotations
 
@@ -157,7 +162,9 @@ def read(path: Path, options: IngestOptions) -> Recording:
     log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
     parts = {topic: join_batches(batches) for topic, batches in (objects | odometry).items()}
     if not sum(map(len, parts.values())):
-        silent = silent_topics(bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ros_ego.ODOMETRY})
+        silent = silent_topics(
+            bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ros_ego.ODOMETRY}
+        )
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: "
             + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
