@@ -190,7 +190,7 @@ CREATE TABLE registration (
     n_steps BIGINT NOT NULL,          -- ego steps with a position
     n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane, or on a shoulder, lay-by, border, parking, restricted or cycle lane
     n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s, and not overtaking in an opposing lane
-    n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction
+    n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction, or on a lane that is driven both ways
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, beside an overtake in the opposing lane where that is enough; NULL: never on a lane
     is_aside BOOLEAN NOT NULL,        -- that median is so great, in steps that tell, that the map may be moved against the log
     ok BOOLEAN NOT NULL,              -- good enough for rules that need the map: the ego fits; or it is against its lane and three of four other vehicles are with theirs; or it keeps to the middle of a lane (within 0.6 m for 5 s and 50 m, or within 0.3 m for 2 s and 20 m) before and after it is anywhere else, on a road that runs as that one does or on two that cross
@@ -250,7 +250,8 @@ CREATE TABLE ego_lane (
     s_m DOUBLE,                       -- station along it
     d_m DOUBLE,                       -- offset from its centre line, left of travel positive
     half_width_m DOUBLE,              -- half its width there
-    with_direction BOOLEAN            -- heading within 90 degrees of the lane's direction
+    with_direction BOOLEAN,           -- heading within 90 degrees of the lane's direction
+    with_traffic BOOLEAN              -- with_direction, or the lane is driven both ways
 );
 
 -- lifetime: part
@@ -362,6 +363,7 @@ CREATE TABLE ego_state (
     indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
     lanelet_id VARCHAR,               -- see ego_lane
     with_direction BOOLEAN,           -- see ego_lane
+    with_traffic BOOLEAN,             -- see ego_lane
     in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none
     road_type VARCHAR,                -- of the lanelet; NULL: the map does not say
     limit_mps DOUBLE,                 -- speed limit where it is; NULL: see limit_source

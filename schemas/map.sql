@@ -89,7 +89,7 @@ CREATE TABLE speed_limit (
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
     limit_mps DOUBLE,                 -- the limit; NULL: said to have none, or not readable
-    source VARCHAR NOT NULL           -- lane, road_type, sign; unread: the map gives a limit that cannot be read
+    source VARCHAR NOT NULL           -- sign, lane, road_type; unread: the map gives a limit that cannot be read
 );
 
 -- lifetime: map

@@ -40,7 +40,9 @@ best_candidate AS (
     GROUP BY ALL
 )
 SELECT
-    c.drive_id, c.ego_id, c.t_ns, c.lanelet_id, c.s_m, c.d_m, c.half_width_m, c.heading_off_rad < pi() / 2 AS with_direction
+    c.drive_id, c.ego_id, c.t_ns, c.lanelet_id, c.s_m, c.d_m, c.half_width_m, c.heading_off_rad < pi() / 2 AS with_direction,
+    n.bidirectional OR c.heading_off_rad < pi() / 2 AS with_traffic
 FROM lanelet_candidate c
+LEFT JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id
 LEFT JOIN best_candidate b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.t_ns = c.t_ns
 WHERE c.n_candidates <= 1 OR (c.lanelet_id = b.best.id AND c.s_m = b.best.s_m)

@@ -38,7 +38,7 @@ SELECT
             THEN max(s.speed_mps) OVER last_3s
     END AS fastest_3s_mps,
     r.travel_m, s.length_m, s.width_m, CASE WHEN t.t_ns IS NULL THEN s.length_m ELSE s.length_m / 2 + t.reach_m END AS combination_m, s.indicator,
-    e.lanelet_id, e.with_direction,
+    e.lanelet_id, e.with_direction, e.with_traffic,
     CASE WHEN n.lanelet_id IS NOT NULL THEN n.junction_id IS NOT NULL END AS in_junction,
     n.road_type, v.limit_mps, v.limit_source,
     r.chain_id, c.s_m, c.d_m,

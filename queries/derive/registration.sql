@@ -1,12 +1,12 @@
 -- Does the trace fit the map? This is checked before anything is blamed on the ego. The map fits if three things hold. The ego is on a lane
 -- (or on a shoulder, where some drives are for most of the time) in at least 80 % of the steps. It drives with the traffic in at least 60 %
--- of the moving steps; steps of an overtake in the opposing lane are left out, because a short drive may be little else. Its median
--- distance from the centre line is at most 1.2 m (half a lane: with a map shifted by one lane, 100 % of the steps are still on a lane); the
--- median is taken outside such an overtake if enough steps lie outside one. The map also fits if at least three quarters of the other
--- vehicles drive with their lanes, and the ego was against its own lane for longer than an overtake takes: then the ego is on the wrong
--- side. The ego may be off the lanes or far from their middle for a while. The map still fits if the ego keeps to the middle of a lane
--- before and after that time, on a road of the same direction or on two roads that cross: the map fits there, and a log is not shifted
--- against its map for a while only.
+-- of the moving steps, which on a lane that is driven both ways is either way; steps of an overtake in the opposing lane are left out,
+-- because a short drive may be little else. Its median distance from the centre line is at most 1.2 m (half a lane: with a map shifted by
+-- one lane, 100 % of the steps are still on a lane); the median is taken outside such an overtake if enough steps lie outside one. The map
+-- also fits if at least three quarters of the other vehicles drive with their lanes, and the ego was against its own lane for longer than an
+-- overtake takes: then the ego is on the wrong side. The ego may be off the lanes or far from their middle for a while. The map still fits
+-- if the ego keeps to the middle of a lane before and after that time, on a road of the same direction or on two roads that cross: the map
+-- fits there, and a log is not shifted against its map for a while only.
 WITH opposing_step AS (
     SELECT DISTINCT x.drive_id, x.ego_id, st.t_ns
     FROM excursion x
@@ -15,7 +15,7 @@ WITH opposing_step AS (
 ),
 ego_place AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, coalesce(e.lanelet_id, a.lanelet_id) AS lanelet_id, coalesce(e.with_direction, a.with_direction) AS with_direction,
+        e.drive_id, e.ego_id, e.t_ns, coalesce(e.lanelet_id, a.lanelet_id) AS lanelet_id, coalesce(e.with_traffic, a.with_direction) AS with_traffic,
         coalesce(abs(e.d_m), a.off_m) AS off_m
     FROM ego_lane e
     LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
@@ -27,8 +27,8 @@ step_count AS (
         count(s.x_m) AS n_steps,
         count(e.lanelet_id) AS n_on_lane,
         count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
-        count(*) FILTER (e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
-        sum(st.dt_ns) FILTER (NOT e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
+        count(*) FILTER (e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
+        sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
         -- A short log may be half an overtake. The steps outside the overtake decide if they last at least 5 s and are at least a third of
         -- the log.
         coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
@@ -65,11 +65,13 @@ map_check AS (
 vehicle_place AS (
     SELECT
         s.drive_id, s.actor_id, s.t_ns, s.speed_mps,
-        min({'off_m': abs(o.d_m), 'with_direction': abs(o.heading_diff_rad) < pi() / 2, 'is_along': abs(o.heading_diff_rad) < turned_off_rad()}) FILTER (o.drivable) AS b
+        min({'off_m': abs(o.d_m), 'with_traffic': n.bidirectional OR abs(o.heading_diff_rad) < pi() / 2, 'is_along': abs(o.heading_diff_rad) < turned_off_rad()}) FILTER (o.drivable) AS b
     FROM state_dynamics s
     SEMI JOIN map_check j ON j.drive_id = s.drive_id AND NOT j.has_no_map AND j.is_against
+    JOIN data_log g ON g.drive_id = s.drive_id
     JOIN road_user a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND is_vehicle(a.actor_class) AND a.actor_class <> 'bicycle'
     LEFT JOIN lane_occupancy o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id AND o.t_ns = s.t_ns
+    LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
     WHERE s.x_m IS NOT NULL
     GROUP BY ALL
 ),
@@ -77,7 +79,7 @@ vehicle_place AS (
 other_vehicle AS (
     SELECT
         drive_id, actor_id,
-        count(b) >= 0.8 * count(*) AND count(*) FILTER (b.with_direction) >= 0.9 * count(b) AND coalesce(quantile_disc(b.off_m, 0.5) <= 1.2, false) AS is_fitting
+        count(b) >= 0.8 * count(*) AND count(*) FILTER (b.with_traffic) >= 0.9 * count(b) AND coalesce(quantile_disc(b.off_m, 0.5) <= 1.2, false) AS is_fitting
     FROM vehicle_place
     WHERE speed_mps > 1 OR b.off_m <= 1.2 AND b.is_along
     GROUP BY ALL
@@ -95,8 +97,8 @@ witness_count AS (
 ego_step AS (
     SELECT
         st.drive_id, st.ego_id, st.t_ns, st.k, st.seg, s.speed_mps, st.dt_ns, floor((s.yaw_rad - pi() * floor(s.yaw_rad / pi())) / (pi() / 12))::INTEGER % 12 AS direction_no,
-        CASE WHEN e.with_direction AND s.speed_mps > 1 AND x.t_ns IS NULL THEN e.off_m END AS off_in_lane_m,
-        x.t_ns IS NULL AND (e.lanelet_id IS NULL OR e.off_m > 1.2 OR NOT e.with_direction) AS is_elsewhere
+        CASE WHEN e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL THEN e.off_m END AS off_in_lane_m,
+        x.t_ns IS NULL AND (e.lanelet_id IS NULL OR e.off_m > 1.2 OR NOT e.with_traffic) AS is_elsewhere
     FROM step st
     SEMI JOIN map_check j ON j.drive_id = st.drive_id AND j.ego_id = st.ego_id AND NOT j.has_no_map AND j.trouble IS NOT NULL
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns

@@ -1,7 +1,7 @@
 -- The steps of one ego with one other actor: where both were and how they moved. Without that actor, or where it is not placed, its columns
 -- are NULL.
 SELECT
-    e.t_ns, e.x_m, e.y_m, e.yaw_rad, e.length_m, e.width_m, e.speed_mps, v.vx_mps, v.vy_mps, e.d_m AS lane_offset_m, e.lanelet_id, e.with_direction,
+    e.t_ns, e.x_m, e.y_m, e.yaw_rad, e.length_m, e.width_m, e.speed_mps, v.vx_mps, v.vy_mps, e.d_m AS lane_offset_m, e.lanelet_id, e.with_traffic,
     p.x_m AS object_x_m, p.y_m AS object_y_m, p.yaw_rad AS object_yaw_rad, p.length_m AS object_length_m, p.width_m AS object_width_m,
     CASE WHEN p.x_m IS NOT NULL THEN p.speed_mps END AS object_speed_mps,
     CASE WHEN p.x_m IS NOT NULL THEN o.vx_mps END AS object_vx_mps, CASE WHEN p.x_m IS NOT NULL THEN o.vy_mps END AS object_vy_mps,

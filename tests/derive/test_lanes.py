@@ -206,6 +206,23 @@ def test_registration_is_checked_before_blame(lateral: float, wrong_way: bool, o
     assert (found["n_on_lane"] == len(t)) is (lateral < 1.77)
 
 
+def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_direction() -> None:
+    """Neither the ego nor another vehicle that drives so says that the map is wrong."""
+    way, t = road(), times(30.0)
+    lanelets = way.environment.tables["lanelet"]
+    both_ways = lanelets.set_column(
+        lanelets.schema.get_field_index("bidirectional"),
+        lanelets.schema.field("bidirectional"),
+        [[True] * len(lanelets)],
+    )
+    environment = replace(way.environment, tables={**way.environment.tables, "lanelet": both_ways})
+    actors = [moving("ego", way, t, 500 - 12 * t, way.own), moving("o", way, t, 550 - 12 * t, way.own)]
+    con = derived(drive(actors, environment), tables=["registration", "ego_state"])
+    (found,) = rows(con, "FROM registration")
+    assert (found["ok"], found["n_with_direction"]) == (True, found["n_moving"])
+    assert {(row["with_direction"], row["with_traffic"]) for row in rows(con, "FROM ego_state")} == {(False, True)}
+
+
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
     ("others", "ok"),

@@ -21,6 +21,6 @@
 -- why = "our default: noise of a speed that is zero"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, e.with_direction AND m.v_long_mps >= -$reverse_mps AS holds
+SELECT drive_id, ego_id, t_ns, e.with_traffic AND m.v_long_mps >= -$reverse_mps AS holds
 FROM ego_state e
 JOIN ego_motion m USING (drive_id, ego_id, t_ns)

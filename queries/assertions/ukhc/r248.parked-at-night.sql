@@ -25,7 +25,7 @@ FROM standstill
 WHERE t_end_ns - t_start_ns >= $parked_s * 1e9
 
 -- @condition
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, e.with_direction AS holds,
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, e.with_traffic AS holds,
     CASE WHEN e.lanelet_id IS NULL THEN why('stands_on_no_lane') END AS reason
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.arrays import spelled
-from drivelint.drive import actors as actor_rows
 from drivelint.drive import absence, checks, contradiction, ego, jumps
+from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events

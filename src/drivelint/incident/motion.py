@@ -59,7 +59,7 @@ class Motion:
         c = {
             name: floats(steps[name])
             for name in steps.column_names
-            if name not in {"t_ns", "out_since_ns", "lanelet_id", "with_direction"}
+            if name not in {"t_ns", "out_since_ns", "lanelet_id", "with_traffic"}
         }
         east, north = c["object_x_m"] - c["x_m"], c["object_y_m"] - c["y_m"]
         de, dn = c["object_vx_mps"] - c["vx_mps"], c["object_vy_mps"] - c["vy_mps"]

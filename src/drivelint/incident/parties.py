@@ -114,10 +114,10 @@ def _lane(case: Case, number: int, at: int | None) -> str:
     if i < 0:
         return "not known"
     step = judged.steps.slice(i, 1).to_pylist()[0]
-    said: str = _SIDES.get(step["with_direction"], "lane not known")
+    said: str = _SIDES.get(step["with_traffic"], "lane not known")
     if step["out_since_ns"] is not None:
         said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.start_ns)}"
-        said += " and is not wholly back" if step["with_direction"] else ""
+        said += " and is not wholly back" if step["with_traffic"] else ""
     return said
 
 
@@ -134,7 +134,7 @@ def overtaking(case: Case, at: int | None) -> str:
             and each["t0_ns"] <= t_ns <= each["t_end_ns"]
         }
     )
-    against = case.again.steps["with_direction"][at].as_py() is False
+    against = case.again.steps["with_traffic"][at].as_py() is False
     return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
 
 

@@ -12,6 +12,7 @@ from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.summary import Summary, read_index
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
@@ -162,15 +163,17 @@ def _channels(path: Path) -> list[Channel]:
                     count.first_ns = min(count.first_ns, packet.log_time_ns)
                     count.last_ns = max(count.last_ns, packet.log_time_ns)
             finally:
-                for channel in container.channels.values():
-                    counts.setdefault(_key(container, channel), _Count())
+                # a channel without messages may stand in the index alone
+                for part in (container, read_index(file)):
+                    for channel in part.channels.values():
+                        counts.setdefault(_key(part, channel), _Count())
     except TraceError:
         pass  # the drive cannot be read either, for the same reason, and that is told
     roles = _roles(path)
     return [_channel(key, counts[key], roles) for key in sorted(counts)]
 
 
-def _key(container: Container, channel: records.Channel) -> tuple[str, str, str, str]:
+def _key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
     """Return topic, schema, encoding and the schema's encoding; channels that share them are one."""
     schema = container.schemas.get(channel.schema_id)
     return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""

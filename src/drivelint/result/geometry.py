@@ -6,7 +6,7 @@ In the map's metres: x to the east, y to the north, without a coordinate referen
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -93,7 +93,7 @@ def _boxes(rows: pa.Table) -> Geometries:
     corners = np.stack([x[:, None] + along * cos - across * sin, y[:, None] + along * sin + across * cos], axis=-1)
     known = np.isfinite(corners).all(axis=(1, 2))
     boxes = shapely.polygons(corners[known])
-    covered = np.asarray(shapely.multipolygons(boxes, indices=row[known], out=np.full(rows.num_rows, None, object)))
+    covered = _by_row(shapely.multipolygons, boxes, row[known], rows.num_rows)
     overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # a contact
     covered[overlapping] = shapely.buffer(covered[overlapping], 0)
     one = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
@@ -102,18 +102,31 @@ def _boxes(rows: pa.Table) -> Geometries:
 
 
 def _tracks(rows: pa.Table) -> Geometries:
-    """Return a line per row; of a single sample, a line from the sample to itself."""
-    xy, offsets = _coordinates(rows, "")
-    row = _row_of(offsets)
-    single = np.diff(offsets)[row] == 1
-    return np.asarray(shapely.linestrings(np.repeat(xy, 1 + single, axis=0), indices=np.repeat(row, 1 + single)))
+    """Return a line per row through its known places; of a single one, a line from there to itself."""
+    xy, row = _known_places(rows)
+    single = np.bincount(row, minlength=rows.num_rows)[row] == 1
+    return _by_row(shapely.linestrings, np.repeat(xy, 1 + single, axis=0), np.repeat(row, 1 + single), rows.num_rows)
 
 
 def _moments(rows: pa.Table) -> Geometries:
+    xy, row = _known_places(rows)
+    return _by_row(shapely.multipoints, shapely.points(xy), row, rows.num_rows)
+
+
+def _by_row(make: Callable[..., Geometries], parts: NDArray[Any], row: NDArray[np.int64], n: int) -> Geometries:
+    """Return the geometries (n) that are made of the parts of each row, None where a row has none.
+
+    Of no parts at all, shapely would make no geometries, whatever it is given to write into.
+    """
+    made = np.full(n, None, object)
+    return np.asarray(make(parts, indices=row, out=made)) if len(parts) else made
+
+
+def _known_places(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the places that are known, and the row of each."""
     xy, offsets = _coordinates(rows, "")
     known = np.isfinite(xy).all(axis=1)
-    none = np.full(rows.num_rows, None, object)
-    return np.asarray(shapely.multipoints(shapely.points(xy[known]), indices=_row_of(offsets)[known], out=none))
+    return xy[known], _row_of(offsets)[known]
 
 
 def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

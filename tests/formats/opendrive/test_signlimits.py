@@ -6,8 +6,12 @@ from typing import Any
 
 import pytest
 
+from drivelint.formats import load_map, read_source
+from drivelint.report.progress import Silent
+from drivelint.run import CheckOptions, check
 from tests.formats.opendrive.signal_text import WIDTH, signal
-from tests.formats.opendrive.xodr import LINE, lane, load, road, rows, section
+from tests.formats.opendrive.xodr import LINE, checks, lane, load, road, rows, section
+from tests.shared_data import shared
 
 
 def limits(environment: Any) -> list[tuple[str, float, float, float | None, str]]:
@@ -23,9 +27,9 @@ def limits(environment: Any) -> list[tuple[str, float, float, float | None, str]
 FIFTY = {"type": "274", "value": "50", "unit": "km/h"}
 
 
-def joined(*signs: str, recorded: str = "") -> Any:
+def joined(*signs: str, recorded: str = "", first: str = "") -> Any:
     """Two roads of 100 m, one after the other; the signs stand on the first."""
-    first, second = (
+    one, two = (
         (
             section(0, lane(-1, f'<link><{end} id="-1"/></link>{WIDTH}')),
             f'<{end} elementType="road" elementId="{other}" {at}/>',
@@ -33,8 +37,8 @@ def joined(*signs: str, recorded: str = "") -> Any:
         for end, other, at in (("successor", "2", 'contactPoint="start"'), ("predecessor", "1", 'contactPoint="end"'))
     )
     return load(
-        road(lanes=first[0], link=first[1], more=f"<signals>{''.join(signs)}</signals>"),
-        road("2", LINE.replace('x="0"', 'x="100"'), lanes=second[0], link=second[1], more=recorded),
+        road(lanes=one[0], link=one[1], more=f"{first}<signals>{''.join(signs)}</signals>"),
+        road("2", LINE.replace('x="0"', 'x="100"'), lanes=two[0], link=two[1], more=recorded),
     )
 
 
@@ -63,3 +67,84 @@ def test_a_lane_limit_that_cannot_be_read_is_not_that_of_the_road() -> None:
     lanes = section(0, lane(-1, WIDTH + '<speed sOffset="0" max="fast" unit="mph"/>'))
     environment = load(road(more='<type s="0" type="town"><speed max="50" unit="km/h"/></type>', lanes=lanes))
     assert limits(environment) == [("1.0.-1", 0.0, 100.0, None, "unread")]
+
+
+RURAL = '<type s="0" type="rural"><speed max="60" unit="mph"/></type>'
+LANE_80 = '<speed sOffset="0" max="80" unit="km/h"/>'
+
+
+def one_road(*signs: str, default: str = RURAL, inside: str = "") -> Any:
+    """A road of 100 m in two lane sections of 50 m, with a lane to each side."""
+    lanes = "".join(
+        section(s, lane(1, WIDTH), lane(-1, f'<link><{end} id="-1"/></link>{WIDTH}{inside}'))
+        for s, end in ((0, "successor"), (50, "predecessor"))
+    )
+    return load(road(lanes=lanes, more=f"{default}<signals>{''.join(signs)}</signals>"))
+
+
+@pytest.mark.parametrize(("value", "unit", "kmh"), [("50", "km/h", 50.0), ("30", "mph", 48.28), ("10", "m/s", 36.0)])
+def test_a_sign_goes_before_the_default_of_the_road_type(value: str, unit: str, kmh: float) -> None:
+    """It holds from where it stands, in its direction, over the lane sections that follow."""
+    environment = one_road(signal(30, type="274", value=value, unit=unit))
+    assert [row for row in limits(environment) if row[0].endswith("-1")] == [
+        ("1.0.-1", 0.0, 30.0, 96.561, "road_type"),
+        ("1.0.-1", 30.0, 50.0, kmh, "sign"),
+        ("1.1.-1", 0.0, 50.0, kmh, "sign"),
+    ]
+    assert {row[3:] for row in limits(environment) if row[0].endswith(".1")} == {(96.561, "road_type")}
+
+
+def test_behind_the_end_of_a_limit_the_default_holds_again() -> None:
+    environment = one_road(signal(30, **FIFTY), signal(40, type="278"))
+    assert [row[1:] for row in limits(environment) if row[0] == "1.0.-1"] == [
+        (0.0, 30.0, 96.561, "road_type"), (30.0, 40.0, 50.0, "sign"), (40.0, 50.0, 96.561, "road_type"),
+    ]  # fmt: skip
+
+
+def test_a_sign_goes_before_the_record_of_a_lane_and_the_difference_is_named() -> None:
+    environment = one_road(signal(30, **FIFTY), inside=LANE_80)
+    assert [row for row in limits(environment) if row[0].endswith("-1")] == [
+        ("1.0.-1", 0.0, 30.0, 80.0, "lane"), ("1.0.-1", 30.0, 50.0, 50.0, "sign"), ("1.1.-1", 0.0, 50.0, 50.0, "sign"),
+    ]  # fmt: skip
+    assert checks(environment)["limit_contradicted"] == ["1.0.-1"]
+    agreeing = one_road(signal(30, **{**FIFTY, "value": "80"}), inside=LANE_80)
+    assert "limit_contradicted" not in checks(agreeing)
+
+
+def test_a_sign_that_cannot_be_read_makes_the_default_unknown_but_not_the_record_of_the_lane() -> None:
+    unread = signal(30, **{**FIFTY, "dynamic": "yes"})
+    assert [row for row in limits(one_road(unread)) if row[0].endswith("-1")] == [
+        ("1.0.-1", 0.0, 30.0, 96.561, "road_type"), ("1.0.-1", 30.0, 50.0, None, "unread"), ("1.1.-1", 0.0, 50.0, None, "unread"),
+    ]  # fmt: skip
+    assert {row[3:] for row in limits(one_road(unread, inside=LANE_80)) if row[0].endswith("-1")} == {(80.0, "lane")}
+
+
+def test_a_sign_holds_on_a_road_that_follows_and_has_the_same_default() -> None:
+    def two(second: str) -> Any:
+        environment = joined(signal(30, **FIFTY), recorded=second, first=RURAL)
+        return [row[1:] for row in limits(environment) if row[0] == "2.0.-1"]
+
+    assert two(RURAL) == [(0.0, 100.0, 50.0, "sign")]
+    assert two(RURAL.replace("60", "40")) == [(0.0, 100.0, 64.374, "road_type")]
+
+
+def test_the_map_of_a_public_report() -> None:
+    """After the OpenDRIVE schema: 60 mph is the road type's default; signs at 100, 200 and, the other way, 300 m go before it."""
+    environment = load_map(read_source(shared("reported/opendrive_signs/offset.xodr")))
+    assert [row for row in limits(environment) if row[0] in {"1.0.-1", "1.0.1"}] == [
+        ("1.0.-1", 0.0, 100.0, 96.561, "road_type"), ("1.0.-1", 100.0, 200.0, 48.28, "sign"), ("1.0.-1", 200.0, 400.0, 50.0, "sign"),
+        ("1.0.1", 0.0, 100.0, 96.561, "road_type"), ("1.0.1", 100.0, 400.0, 70.0, "sign"),
+    ]  # fmt: skip
+
+
+def test_the_drive_of_a_public_report_is_too_fast() -> None:
+    """It keeps 72 km/h all along: from 4.5 s on, at s = 100 m, 30 mph is the limit."""
+    folder = shared("reported/opendrive_signs")
+    options = CheckOptions(
+        (str(folder / "d.csv"),), mapping=str(folder / "d.toml"), map=folder / "offset.xodr", rules=("ukhc.r124.speed-limit",),
+        robustness=False,
+    )  # fmt: skip
+    result = check(options, Silent())
+    assert result.verdicts.column("verdict").to_pylist() == ["fail"]
+    (finding,) = result.findings.to_pylist()
+    assert finding["t_start_ns"] == 4_500_000_000

@@ -1,24 +1,27 @@
 """CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
 
-A scenario has no ego but the start of a planning problem: say who it is with --ego.
+A scenario has no ego but the start of a planning problem: say who it is with --ego. The place of a state is that of the shape's origin,
+which need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
+(buildings, pillars) and phantom obstacles have no states: they are not read.
 """
 
 from __future__ import annotations
 
-import math
 import re
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.drive.box_centre import velocity_of_centre, yaw_rates
 from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.lights import signal_states
+from drivelint.formats.commonroad.shapes import box_offsets, read_shape, shape_findings
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from lxml import etree
@@ -37,9 +40,11 @@ _CLASSES = {
 }  # fmt: skip
 _FIELDS = {
     "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
-    "a": "acceleration/exact", "slip": "slipAngle/exact", "step": "time/exact",
+    "a": "acceleration/exact", "slip": "slipAngle/exact", "yaw_rate": "yawRate/exact", "step": "time/exact",
 }  # fmt: skip
-"""What is read of a state; a value given as an interval is not known."""
+"""What is read of a state."""
+_ALL_STATES: Final = "(initialState | trajectory/state)"
+_NOT_EXACT: Final = f"count({_ALL_STATES}//intervalStart | {_ALL_STATES}/position/*[not(self::point)])"
 _ROOT: Final = b"<commonRoad"
 _OBSTACLE: Final = re.compile(rb"<(dynamicO|staticO|o)bstacle[\s>]")
 _TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
@@ -82,7 +87,9 @@ def read(probe: Probe) -> Recording:
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
     parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
     counts = [len(part["step"]) for part in parts]
+    shapes = [read_shape(o) for o in obstacles]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    offsets = [box_offsets(shape, part["yaw_rad"]) for shape, part in zip(shapes, parts, strict=True)]
     heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
     words = [_CLASSES.get((o.findtext("type") or "").strip()) for o in obstacles]
     classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
@@ -95,20 +102,56 @@ def read(probe: Probe) -> Recording:
             "x_m": columns["x_m"], "y_m": columns["y_m"], "yaw_rad": columns["yaw_rad"],
             "vx_mps": columns["v"] * np.cos(heading), "vy_mps": columns["v"] * np.sin(heading),
             "ax_mps2": columns["a"] * np.cos(heading), "ay_mps2": columns["a"] * np.sin(heading),
-            "length_m": columns["length_m"], "width_m": columns["width_m"],
+            "length_m": np.repeat([s.length_m for s in shapes], counts),
+            "width_m": np.repeat([s.width_m for s in shapes], counts),
         },
         {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown},
         np.zeros(sum(counts), np.bool_),
     )  # fmt: skip
+    _to_box_centres(
+        states, columns["yaw_rate"], np.concatenate(offsets, axis=1), np.repeat([s.turn_rad for s in shapes], counts)
+    )
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
     if len(states):
         recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
         recording.findings += findings
-    uncertain = int(float(str(root.xpath("count(.//state//intervalStart)"))))
-    if uncertain:
-        message = f"values of obstacles given as intervals: {uncertain}: they are not known"
-        recording.findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
+    lost = [
+        bool((np.isnan(o).any(axis=0) & ~np.isnan(part["yaw_rad"])).any())
+        for o, part in zip(offsets, parts, strict=True)
+    ]
+    recording.findings += [*shape_findings(ids, shapes, lost), *_unread(root, obstacles)]
     return recording
+
+
+def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, turn: Floats) -> None:
+    """Move the states by the ways from the origins of the shapes to the centres of the boxes (2, n), which are turned by `turn` (n)."""
+    log = states.numbers
+    log["x_m"], log["y_m"] = states.place + offset
+    if np.any(offset != 0.0):
+        derived = yaw_rates(states, log["yaw_rad"])
+        turning = np.where(np.isnan(recorded_yaw_rate), derived, recorded_yaw_rate)
+        log["vx_mps"], log["vy_mps"] = velocity_of_centre(states.velocity, offset, turning)
+    log["yaw_rad"] = log["yaw_rad"] + turn
+
+
+def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
+    """Report what is said of obstacles and is not read: areas and intervals, and obstacles that have no states."""
+    uncertain = sum(int(float(str(o.xpath(_NOT_EXACT)))) for o in obstacles)
+    sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
+    still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
+    findings = []
+    if uncertain:
+        message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
+        findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
+    if sets:
+        message = f"of {listed(sets)} only the initial state is known: what follows is a set of areas where it may be"
+        findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
+    if still:
+        message = (
+            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not looked for"
+        )
+        findings.append(QualityFinding("unread_obstacle", "warning", message, len(still)))
+    return findings
 
 
 def _states(
@@ -134,21 +177,14 @@ def _states(
 
 
 def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -> dict[str, Floats]:
-    """Add the sizes; one that stands has a state at every step of the scenario."""
+    """Give an obstacle that stands a state at every step of the scenario."""
     n = len(columns["step"])
     static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
     if static and n == 1:
         columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
         columns["step"] = np.arange(last + 1, dtype=np.float64)
-        columns["v"] = np.zeros(last + 1)
-    box, circle = obstacle.find("shape/rectangle"), obstacle.find("shape/circle")
-    if box is not None:
-        size = {name: safe_xml.number(box.findtext(name)) for name in ("length", "width")}
-    else:  # the square around a circle; of other shapes: not known
-        size = dict.fromkeys(
-            ("length", "width"), 2 * safe_xml.number(circle.findtext("radius")) if circle is not None else math.nan
-        )
-    return columns | {f"{name}_m": np.full(len(columns["step"]), value) for name, value in size.items()}
+        columns["v"], columns["yaw_rate"] = np.zeros((2, last + 1))
+    return columns
 
 
 def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]] | None:
@@ -205,7 +241,7 @@ def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
         at, opened = tag.end(), not closes
     if (
         len(tags) != state.count(b"<")
-        or any("interval" in place for place in places)
+        or any("interval" in place or (place.startswith("position/") and "/point/" not in place) for place in places)
         or len(places) < 2
         or len(set(places)) < len(places)
     ):

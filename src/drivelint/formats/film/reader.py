@@ -2,6 +2,8 @@
 
 Distances ahead are from bumper to bumper along the road. Where somebody is not detected in a frame he is there without a
 place; before he is first detected and after the last time nothing is claimed but the range of the detector.
+
+Places are box centres: half a length behind the front bumper.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both are said
-elsewhere."""
+elsewhere.
+
+The pose of a cube is the centre of its box, in the entity's frame.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
@@ -116,7 +120,8 @@ def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: Un
     unread.refuse(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}")
+        silent = "" if names else silent_topics(bag.mcap_files(path), SCENE.__eq__)
+        raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}{silent and f': {silent}'}")
     return names[0]
 
 

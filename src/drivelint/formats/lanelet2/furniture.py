@@ -32,7 +32,7 @@ def furniture(
     return {
         "traffic_signal": _signals(layers, lanes, offset),
         "stop_line": _stop_lines(layers, lanes, offset, quality),
-        "crossing": crossings(_walks(layers), lanes, offset, quality),
+        "crossing": crossings(_walks(layers, lanes), lanes, offset, quality),
     }
 
 
@@ -151,9 +151,11 @@ def _referring(layers: Any) -> dict[int, set[str]]:
     return found
 
 
-def _walks(layers: Any) -> Iterator[BoundedLane]:
+def _walks(layers: Any, lanes: Sequence[BoundedLane]) -> Iterator[BoundedLane]:
+    """Yield the crosswalks, but for those that are lanes by their tags."""
+    driven = {lane.lanelet_id for lane in lanes}
     for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        if attribute(x, "subtype") == "crosswalk":
+        if attribute(x, "subtype") == "crosswalk" and str(x.id) not in driven:
             marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
             kind = "zebra" if "zebra_marking" in marks else "crossing"
             yield BoundedLane(str(x.id), xy(x.leftBound), xy(x.rightBound), kind)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, load, xy
 from drivelint.formats.lanelet2.furniture import furniture
+from drivelint.formats.lanelet2.traffic_rules import TrafficRules, limit_text
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.geo_reference import tangent_plane
@@ -20,12 +21,6 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_KINDS = {
-    "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
-    "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
-    "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
-}  # fmt: skip
-_DRIVEN = frozenset({"driving", "bus", "exit"})
 _LINES = {"solid": "solid", "dashed": "broken", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken"}
 _EDGES = {"curbstone": "curb", "virtual": "none"}
 _LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
@@ -62,7 +57,9 @@ def _bound(line: Any, *, turned: bool = False) -> Bound:
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
-    mine = sorted((x for x in layers.laneletLayer if attribute(x, "subtype") in _KINDS), key=lambda x: x.id)
+    rules = TrafficRules()
+    access = {x.id: found for x in layers.laneletLayer if (found := rules.access(x)) is not None}
+    mine = sorted((x for x in layers.laneletLayer if x.id in access), key=lambda x: x.id)
     for x in [x for x in mine if not (len(x.leftBound) and len(x.rightBound))]:
         mine.remove(x)
         quality.add("invalid_lane", "error", str(x.id), f"lanelet {x.id} is left out: a bound has no points")
@@ -73,23 +70,17 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
         lefts[_bound(x.leftBound)].append(x)
         rights[_bound(x.rightBound)].append(x)
-    import lanelet2
-
-    rules = lanelet2.traffic_rules.create(
-        lanelet2.traffic_rules.Locations.Germany, lanelet2.traffic_rules.Participants.Vehicle
-    )
     for x in mine:
-        kind = _KINDS[attribute(x, "subtype")]
-        limit_mps = _limit(x, rules)
-        readable = limit_mps is None or (math.isfinite(limit_mps) and limit_mps > 0.0)
+        lane_type, drivable, bidirectional = access[x.id]
+        limit_mps = rules.limit_mps(x)
+        readable = limit_mps is None or math.isfinite(limit_mps)
         limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
-            said = attribute(x, "speed_limit")[:20]
-            message = f"{said!r} is no speed limit: taken as unknown"
-            quality.add("invalid_speed", "warning", str(x.id), message)
+            said = limit_text(x)
+            what = "its sign gives no limit that is read" if said is None else f"{said[:20]!r} is no speed limit"
+            quality.add("invalid_speed", "warning", str(x.id), f"{what}: taken as unknown")
         lane = BoundedLane(
-            str(x.id), xy(x.leftBound), xy(x.rightBound), kind, kind in _DRIVEN,
-            bidirectional=kind in _DRIVEN and attribute(x, "one_way") in {"no", "false"},
+            str(x.id), xy(x.leftBound), xy(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
             marks=both_marks(_marking(x.leftBound, near_left=False), _marking(x.rightBound, near_left=True)),
@@ -114,14 +105,6 @@ def _road_type(x: Any) -> str | None:
     if attribute(x, "subtype") == "highway":
         return "motorway" if attribute(x, "location") != "urban" else "town"
     return {"urban": "town", "nonurban": "rural"}.get(attribute(x, "location"))
-
-
-def _limit(x: Any, rules: Any) -> float | None:
-    """Return the limit in m/s by a lanelet's signs, not by a nation's default; None: the map does not say one."""
-    signed = any(attribute(r, "subtype") == "speed_limit" for r in x.regulatoryElements)
-    if not signed and "speed_limit" not in x.attributes:
-        return None
-    return float(rules.speedLimit(x).speedLimit) / 3.6
 
 
 def _marking(bound: Any, *, near_left: bool) -> str | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mmap
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +10,7 @@ import yaml
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.mcap.summary import read_summary
+from drivelint.formats.mcap.summary import read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
 from drivelint.formats.ros2.types import message_kind
 
@@ -137,12 +136,7 @@ def message_family(path: Path) -> str:
 
 def _indexed(file: Path) -> set[str]:
     """Return the schemas that the index lists; none where it is not there or damaged."""
-    with (
-        file.open("rb") as stream,
-        mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
-        memoryview(data) as view,
-    ):
-        return {schema.name for schema in read_summary(view, unprotected=True).schemas.values()}
+    return {schema.name for schema in read_index(file).schemas.values()}
 
 
 def _recorded(file: Path) -> set[str]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
+import mmap
 import struct
 import zlib
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -13,6 +15,9 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, Footer, MetadataIndex, Schema
 
 from drivelint.formats.mcap.resume import MAGIC
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _RECORD = struct.Struct("<BQ")
 _FOOTER_BYTES = 20
@@ -26,6 +31,16 @@ class Summary:
     channels: dict[int, Channel] = field(default_factory=dict)
     chunks: dict[int, tuple[int, int, int]] = field(default_factory=dict)
     metadata: list[int] = field(default_factory=list)
+
+
+def read_index(file: Path) -> Summary:
+    """Return what the index of a file says, though no CRC protects it; nothing where it is not there or damaged."""
+    with (
+        file.open("rb") as stream,
+        mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
+        memoryview(data) as view,
+    ):
+        return read_summary(view, unprotected=True)
 
 
 def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:

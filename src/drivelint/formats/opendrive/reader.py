@@ -13,7 +13,7 @@ from drivelint.formats.opendrive.lanelet import boundary_rows, road_type, speed_
 from drivelint.formats.opendrive.lanes import build
 from drivelint.formats.opendrive.links import links
 from drivelint.formats.opendrive.network import network
-from drivelint.formats.opendrive.signlimits import sign_limits
+from drivelint.formats.opendrive.signlimits import speed_limits
 from drivelint.road.boundary_lanes import lane_points
 from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
@@ -43,13 +43,13 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
     recorded = [row for lane in built for row in speed_rows(lane)]
     beside = furniture(net, built, request.offset, quality)
-    signed = sign_limits(built, joined, beside["traffic_signal"], recorded)
+    limits = speed_limits(built, joined, beside["traffic_signal"], recorded, quality)
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet_row(lane) for lane in built],
         "lane_point": lane_points(built),
         "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in joined],
         "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
-        "speed_limit": sorted([*recorded, *signed], key=lambda row: places[row["lanelet_id"]]),
+        "speed_limit": sorted(limits, key=lambda row: places[row["lanelet_id"]]),
         **beside,
     }
     tables = map_tables(

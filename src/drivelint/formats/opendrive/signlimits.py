@@ -1,7 +1,12 @@
-"""Speed limits that only signs give: from the sign along its lane to the next sign or junction.
+"""Speed limits of lanelets: those of signs before those that the lane or the road records.
 
-Beyond a junction nothing is known: nations differ in whether the limit goes on there. Where the map records a limit of the
-lane or of the road, that is taken, and no sign is looked at.
+OpenDRIVE calls the speed of a road type the default, lets that of a lane go before it, and says that limits derived from signals have
+preference over both. A sign holds from where it stands, along its lane, to the next sign or junction. On roads that follow, it holds
+while they record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known:
+nations differ in whether the limit goes on there.
+
+A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself records
+is then the limit: it says what the sign may say.
 """
 
 from __future__ import annotations
@@ -11,10 +16,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from drivelint.formats.opendrive.network import SPEED_UNITS_MPS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.links import Link
+    from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
 LIMIT_BEGINS = frozenset({"speed_limit", "speed_zone"})
@@ -22,6 +28,7 @@ LIMIT_ENDS = LIMIT_BEGINS | {
     "speed_limit_end", "speed_zone_end", "restrictions_end", "town_entrance", "town_exit", "motorway", "motorway_end",
     "expressway", "expressway_end",
 }  # fmt: skip
+_SHORT_M = 1e-6
 
 
 class _Stretch(NamedTuple):
@@ -32,10 +39,40 @@ class _Stretch(NamedTuple):
     limit_mps: float | None
 
 
-def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, recorded: Rows) -> Rows:
-    """Return the rows of `speed_limit` that signs give for lanelets without a recorded one."""
+def speed_limits(
+    lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, recorded: Rows, quality: MapQuality
+) -> Rows:
+    """Return the rows of `speed_limit`; `recorded`: those of the records of lanes and roads, `signals`: rows of `traffic_signal`."""
+    records: dict[str, Rows] = {lane.lanelet_id: [] for lane in lanes}
+    for row in recorded:
+        records[row["lanelet_id"]].append(row)
+    signed: dict[str, Rows] = {}
+    for row in _sign_rows(lanes, joined, signals, records):
+        signed.setdefault(row["lanelet_id"], []).append(row)
+    rows: Rows = []
+    contradicted = []
+    for name, own in records.items():
+        of_signs = signed.get(name, [])
+        known = [row for row in of_signs if row["source"] == "sign"]
+        of_lane = [row for row in own if row["source"] == "lane"]
+        unread = [row for row in of_signs if row["source"] != "sign"]
+        rows += known
+        rows += [part for row in unread for part in _outside(row, of_lane)]
+        rows += [part for row in of_lane for part in _outside(row, known)]
+        rows += [part for row in own if row["source"] != "lane" for part in _outside(row, of_signs)]
+        if any(_contradict(sign, lane) for sign in known for lane in of_lane):
+            contradicted.append(name)
+    if contradicted:
+        message = f"signs give other limits than the lanes that they hold for, the first {contradicted[0]}: those of the signs count"
+        quality.add("limit_contradicted", "info", contradicted[0], message, len(contradicted))
+    return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
+
+
+def _sign_rows(
+    lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, records: Mapping[str, Rows]
+) -> Iterable[dict[str, Any]]:
+    """Return a row for each stretch of a lanelet over which a sign holds."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
-    silent = by_id.keys() - {row["lanelet_id"] for row in recorded}
     after: dict[str, list[str]] = {}
     for a, b in joined:
         after.setdefault(a.lanelet_id, []).append(b.lanelet_id)
@@ -44,11 +81,10 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
         if row["kind"] in LIMIT_ENDS:
             posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
     todo = [_Stretch(row["lanelet_id"], row["lane_s_m"], _limit(row)) for row in signals if row["kind"] in LIMIT_BEGINS]
-    rows: Rows = []
     seen: set[_Stretch] = set()
     while todo:
         stretch = todo.pop()
-        if stretch in seen or stretch.lanelet_id not in silent:
+        if stretch in seen:
             continue
         seen.add(stretch)
         lane = by_id[stretch.lanelet_id]
@@ -56,17 +92,48 @@ def sign_limits(lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows,
         end = lane.line.length if posted is None else posted
         if end > stretch.start_m:
             source = "unread" if stretch.limit_mps is None else "sign"
-            rows.append({
+            yield {
                 "lanelet_id": stretch.lanelet_id, "s_start_m": stretch.start_m, "s_end_m": end,
                 "limit_mps": stretch.limit_mps, "source": source,
-            })  # fmt: skip
+            }  # fmt: skip
         if posted is None:
             todo += [
                 _Stretch(name, 0.0, stretch.limit_mps)
                 for name in after.get(stretch.lanelet_id, ())
-                if by_id[name].road.junction_id is None and 0.0 not in posts.get(name, ())
+                if by_id[name].road.junction_id is None
+                and 0.0 not in posts.get(name, ())
+                and (by_id[name].road is lane.road or _same_record(records[stretch.lanelet_id], records[name]))
             ]
-    return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
+
+
+def _same_record(before: Rows, behind: Rows) -> bool:
+    """Tell whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
+    last, first = (
+        (row["limit_mps"], row["source"]) if row is not None else None
+        for row in (
+            max(before, key=lambda r: float(r["s_end_m"]), default=None),
+            min(behind, key=lambda r: float(r["s_start_m"]), default=None),
+        )
+    )
+    return first is None or first == last
+
+
+def _outside(row: Mapping[str, Any], others: Rows) -> Rows:
+    """Return the parts of a row's span over which none of the others holds."""
+    parts, at = [], float(row["s_start_m"])
+    for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in others):
+        if end <= at:
+            continue
+        parts.append((at, min(start, row["s_end_m"])))
+        at = end
+    parts.append((at, row["s_end_m"]))
+    return [{**row, "s_start_m": a, "s_end_m": b} for a, b in parts if b - a > _SHORT_M]
+
+
+def _contradict(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
+    common = min(sign["s_end_m"], lane["s_end_m"]) - max(sign["s_start_m"], lane["s_start_m"])
+    same = lane["limit_mps"] is not None and abs(sign["limit_mps"] - lane["limit_mps"]) < 0.1
+    return common > _SHORT_M and not same
 
 
 def _limit(row: Mapping[str, Any]) -> float | None:

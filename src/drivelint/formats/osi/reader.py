@@ -1,6 +1,7 @@
 """ASAM OSI ground truth in MCAP, where the channel is known by its schema and encoding, never by its topic, and in trace files.
 
-Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own.
+Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own. A moving object's position is
+the centre of its box, and its dimensions are those of the box.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.malformed import decode_others, decode_readable
 from drivelint.formats.mcap.reader import Container, Packet, message_batches
+from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
@@ -157,10 +159,12 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
 
 
 def _nothing(container: Container) -> str:
-    """Say what an MCAP file without OSI messages holds instead."""
+    """Say what an MCAP file without OSI messages holds instead: other kinds of messages, or a topic without any."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
+    if silent := silent_topics([container.path], FIELD_TREES.__contains__):
+        return f"{silent}: record it again"
     return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 

@@ -1,4 +1,9 @@
-"""ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic."""
+"""ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic.
+
+Places are the centres of the boxes: of Autoware's tracks and of vision's detections by their definition, of the CARLA bridge's objects by
+assumption (see `merge`). The odometry's place is that of its child frame, from where `--ego-size` says how far ahead the centre of the
+ego's box lies, as from the rear axle. Shapes have their origin in that place.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +18,7 @@ from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.log import LIGHTS, Log
@@ -39,6 +45,7 @@ from drivelint.formats.ros2.recorded_poses import (
     message_times,
     states_in_fixed_frame,
 )
+from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.ros2.vehicle import at_axle, vehicle_box
 from drivelint.phrases import listed
 
@@ -73,8 +80,12 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
     parts |= own_rows
     if not sum(map(len, parts.values())):
+        silent = silent_topics(
+            bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY}
+        )
         raise TraceError(
-            f"{path}: no road users and no odometry in this ROS log: {', '.join(sorted(OBJECT_ROWS))} are read"
+            f"{path}: no road users and no odometry in this ROS log: "
+            + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
         )
     findings = log.findings
     findings += [] if objects else [_no_road_users(log)]

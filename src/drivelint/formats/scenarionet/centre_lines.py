@@ -114,7 +114,7 @@ def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
                 _of_polygon(lane, shapely.Polygon(outline))
         elif referring:
             _of_references(lane, lines)
-        elif len(lines):
+        elif lines:
             _of_lines(lane, tree)
     _of_parallel_lanes([lane for lane in lanes.values() if np.isnan(lane.half).any()], list(lanes.values()))
 

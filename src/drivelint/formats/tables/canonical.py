@@ -1,4 +1,7 @@
-"""Canonical Parquet: the tables of `schemas/model.sql` as files, a folder of them or a single `actor_state` one."""
+"""Canonical Parquet: the tables of `schemas/model.sql` as files, a folder of them or a single `actor_state` one.
+
+Places are box centres, as in the tables.
+"""
 
 from __future__ import annotations
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.arrays import turned
-from drivelint.drive.order import steps, time_derivative, wrapped
+from drivelint.drive.box_centre import lever_to_centre, velocity_of_centre, yaw_rates
 
 if TYPE_CHECKING:
-    from drivelint.arrays import Floats
     from drivelint.drive.trace import States
     from drivelint.formats.tables.mapping import Mapping
 
@@ -52,26 +51,10 @@ def _to_centre(states: States, mapping: Mapping) -> None:
     log = states.numbers
     zero = np.zeros(len(states))
     forward = -0.5 * log["length"] if mapping.reference.point == "front_bumper" else log["forward"]
-    east, north = turned(forward, log.get("left", zero), log["yaw"])
-    log["x"], log["y"] = log["x"] + east, log["y"] + north
+    lever = lever_to_centre(forward, log.get("left", zero), log["yaw"])
+    log["x"], log["y"] = log["x"] + lever[0], log["y"] + lever[1]
     if "z" in log:
         log["z"] = log["z"] + log.get("up", zero)
     if "vx" in log:
-        turning = log["yaw_rate"] if "yaw_rate" in log else _yaw_rate(states)
-        # the yaw rate of a single sample is unknown: its velocity is not corrected for the reference point
-        turning = np.where(np.isnan(turning), 0.0, turning)
-        log["vx"], log["vy"] = log["vx"] - turning * north, log["vy"] + turning * east
-
-
-def _yaw_rate(states: States) -> Floats:
-    """Differentiate the heading along each actor's track, rows in any order."""
-    order = np.lexsort((states.t_ns, states.actor))
-    track = states.take(order)
-    step = steps(track)
-    yaw = track.numbers["yaw"].copy()
-    turns = wrapped(np.diff(yaw)) - np.diff(yaw)
-    # a new track or an unknown heading starts afresh: its sum of turns must not carry over
-    unwrapped = yaw + np.r_[0.0, np.cumsum(np.where(step.same & np.isfinite(turns), turns, 0.0))]
-    result = np.empty(len(states))
-    result[order] = time_derivative(unwrapped, step)
-    return result
+        turning = log["yaw_rate"] if "yaw_rate" in log else yaw_rates(states, log["yaw"])
+        log["vx"], log["vy"] = velocity_of_centre(np.stack([log["vx"], log["vy"]]), lever, turning)

@@ -1,4 +1,8 @@
-"""Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor)."""
+"""Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor).
+
+Where the places are, the mapping says (`[reference]`): the box centre, the rear axle or the front bumper; `geometry` brings them to the box
+centre.
+"""
 
 from __future__ import annotations
 

@@ -1,0 +1,139 @@
+"""The shapes of CommonRoad obstacles: their boxes, and where these lie against the place that a state gives.
+
+A state gives the place of the shape's origin. Where the centre of the box lies against it is said in two ways:
+
+* `originXShift` of a rectangle or truck (written by commonroad-io 2026.1): how far the origin lies ahead of the centre, along the obstacle.
+* `center` and `orientation` of a rectangle or circle (2018b, 2020a; read by commonroad-io 2024.3): the centre and the turn of the box in
+  the frame of the shape. The format does not say whether that frame turns with the obstacle; commonroad-io 2024.3 adds the centre to the
+  place as it is. Where the two readings differ, the place is not known.
+
+A polygon is turned about its centroid by commonroad-io 2024.3 and about its origin by 2026.1: its middle is known where both are the same.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.arrays import turned
+from drivelint.drive.box_centre import lever_to_centre
+from drivelint.drive.trace import QualityFinding
+from drivelint.formats import safe_xml
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from lxml import etree
+
+    from drivelint.arrays import Floats
+
+READINGS_AGREE_M: Final = 0.01
+"""Two readings of where a box lies that differ by less are one: positions are known to a centimetre at best."""
+_POLYGON: Final = "a polygon"
+_TRAILER: Final = "a truck with its trailer"
+_SEVERAL: Final = "several shapes"
+_NONE: Final = "no shape that is read"
+
+
+class ObstacleShape(NamedTuple):
+    """The box of an obstacle in metres and radians, NaN where it is not known.
+
+    `ahead_m`: how far its centre lies ahead of the origin, along the obstacle. `centre_m`: where the frame of the shape has the centre, x
+    and y. `turn_rad`: its heading against that of the obstacle. `no_box`: what the shape is instead of a box, '' for a box.
+    """
+
+    length_m: float = math.nan
+    width_m: float = math.nan
+    ahead_m: float = 0.0
+    centre_m: tuple[float, float] = (0.0, 0.0)
+    turn_rad: float = 0.0
+    no_box: str = ""
+
+
+def read_shape(obstacle: etree._Element) -> ObstacleShape:
+    """Return the shape of an obstacle; a number that cannot be read, or an origin outside of its box, is not known."""
+    parts = [part for part in obstacle.iterfind("shape/*") if isinstance(part.tag, str)]
+    if len(parts) == 1 and parts[0].tag == "truckShape":
+        return _rectangle(parts[0].find("truckDims"), parts[0])
+    if len(parts) == 1 and parts[0].tag == "rectangle":
+        return _rectangle(parts[0], parts[0])
+    if len(parts) == 1 and parts[0].tag == "circle":
+        # the square around it
+        size = 2.0 * safe_xml.number(parts[0].findtext("radius"))
+        return ObstacleShape(size, size, centre_m=_centre(parts[0]))
+    if len(parts) == 1 and (truck := parts[0].find("truckShape")) is not None:
+        # the state gives the place of the truck; how far the trailer reaches depends on the hitch angle
+        ahead = _rectangle(truck.find("truckDims"), truck).ahead_m
+        return ObstacleShape(ahead_m=ahead, no_box=_TRAILER)
+    if len(parts) == 1 and parts[0].tag == "polygon":
+        return ObstacleShape(centre_m=_middle(parts[0]), no_box=_POLYGON)
+    several = len(parts) > 1 or any(part.tag == "shapeGroup" for part in parts)
+    return ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL) if several else ObstacleShape(no_box=_NONE)
+
+
+def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleShape:
+    """Return the box of these sizes; `origin` has the element that says where its origin lies."""
+    if size is None:
+        return ObstacleShape(ahead_m=math.nan, no_box=_NONE)
+    length, width = (safe_xml.number(size.findtext(name)) for name in ("length", "width"))
+    shift = _number(origin, "originXShift")
+    if abs(shift) > length / 2:
+        shift = math.nan
+    return ObstacleShape(length, width, -shift, _centre(origin), _number(origin, "orientation"))
+
+
+def _centre(element: etree._Element) -> tuple[float, float]:
+    centre = element.find("center")
+    return (0.0, 0.0) if centre is None else (_number(centre, "x"), _number(centre, "y"))
+
+
+def _middle(polygon: etree._Element) -> tuple[float, float]:
+    """Return the middle of the extent of a polygon along the axes of its frame."""
+    corners = np.array([[_number(p, axis) for axis in "xy"] for p in polygon.iterfind("point")], np.float64).reshape(
+        -1, 2
+    )
+    if not len(corners):
+        return math.nan, math.nan
+    x, y = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    return float(x), float(y)
+
+
+def _number(parent: etree._Element, name: str) -> float:
+    """Return the number of a child element, 0 without one; NaN for what is no number."""
+    text = parent.findtext(name)
+    return 0.0 if text is None else safe_xml.number(text)
+
+
+def box_offsets(shape: ObstacleShape, yaw: Floats) -> Floats:
+    """Return the way from the origin to the box centre (2, n) in metres, for an obstacle with these headings (n); NaN: not known."""
+    n = len(yaw)
+    offset = lever_to_centre(np.full(n, shape.ahead_m), np.zeros(n), yaw)
+    if shape.centre_m == (0.0, 0.0):
+        return offset
+    along_axes = np.tile(np.array(shape.centre_m)[:, None], (1, n))
+    along_obstacle = np.stack(turned(*along_axes, yaw))
+    agree = np.hypot(*(along_obstacle - along_axes)) <= READINGS_AGREE_M
+    if shape.ahead_m != 0.0:
+        agree[:] = False  # said twice: whether the one includes the other is not known
+    return offset + np.where(agree, along_axes, np.nan)
+
+
+def shape_findings(
+    ids: Sequence[str], shapes: Sequence[ObstacleShape], unplaced: Sequence[bool]
+) -> list[QualityFinding]:
+    """Report obstacles of which the box is not known, and those that have states at which it is not known where it lies (`unplaced`)."""
+    findings = []
+    for what in sorted({shape.no_box for shape in shapes} - {""}):
+        names = [name for name, shape in zip(ids, shapes, strict=True) if shape.no_box == what]
+        message = f"{what} instead of a box: length and width of {listed(names)} are not known"
+        findings.append(QualityFinding.of_actors("no_box", "warning", message, names))
+    if names := [name for name, lost in zip(ids, unplaced, strict=True) if lost]:
+        message = (
+            f"where the boxes of {listed(names)} lie against the places of their states is not known: give originXShift alone, a number "
+            "that lies within the box (whether a center turns with the obstacle, the format does not say)"
+        )
+        findings.append(QualityFinding.of_actors("shape_origin", "warning", message, names))
+    return findings

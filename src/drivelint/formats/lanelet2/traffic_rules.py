@@ -1,0 +1,103 @@
+"""Who may use a lanelet, which way, and how fast: what the library of Lanelet2 says by its German rules, the only ones that it has.
+
+By those rules a tag `participant:*` replaces everybody whom the subtype lets in, and a tag `one_way:*` counts for a kind of road user where
+there is no tag `one_way` for all.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.formats.lanelet2.file import attribute
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_SUBTYPES: Final[Mapping[str, str]] = {
+    "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
+    "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
+    "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
+}  # fmt: skip
+"""Subtypes as our lane types, where nothing else is said; those that the library does not know are Autoware's."""
+_DRIVERS: Final = {
+    "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:motorcycle": "driving", "vehicle:bus": "bus",
+    "vehicle:taxi": "taxi",
+}  # fmt: skip
+"""Motor vehicles, and the type of a lane that is for none of those before them."""
+_OTHERS: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
+_SPEED: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
+_UNITS_MPS: Final = {
+    "": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "kmph": 1 / 3.6, "mph": 0.44704, "m/s": 1.0, "mps": 1.0,
+}  # fmt: skip
+"""A bare number is in km/h. The library itself reads `50 kmph` as miles, of `50 mph;30` the beginning, and 0 where it knows no better."""
+_LIMIT_TAGS: Final = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
+
+
+class Access(NamedTuple):
+    """The type of a lane, whether motor vehicles may drive on it, and whether they may do so in both directions."""
+
+    lane_type: str
+    drivable: bool
+    bidirectional: bool
+
+
+class TrafficRules:
+    """The library's rules for each kind of road user."""
+
+    def __init__(self) -> None:
+        import lanelet2
+
+        rules = lanelet2.traffic_rules
+        self._vehicle = rules.create(rules.Locations.Germany, rules.Participants.Vehicle)
+        self._of = {word: rules.create(rules.Locations.Germany, word) for word in (*_DRIVERS, *_OTHERS)}
+
+    def access(self, lanelet: Any) -> Access | None:
+        """Return who may use a lanelet; None for one that is no lane of a road, such as a crosswalk."""
+        of_subtype = _SUBTYPES.get(attribute(lanelet, "subtype"))
+        for word, lane_type in _DRIVERS.items():
+            if self._of[word].canPass(lanelet):
+                both_ways = not self._of[word].isOneWay(lanelet)
+                return Access(of_subtype if of_subtype == "exit" else lane_type, True, both_ways)
+        if of_subtype is None:
+            return None
+        may_pass = [lane_type for word, lane_type in _OTHERS.items() if self._of[word].canPass(lanelet)]
+        told = any(key.startswith("participant:") for key in lanelet.attributes.keys())  # noqa: SIM118 - the library's map
+        if of_subtype in {"driving", "bus", "exit"} or (told and may_pass):
+            return Access(may_pass[0] if may_pass else "restricted", False, False)
+        return Access(of_subtype, False, False)
+
+    def limit_mps(self, lanelet: Any) -> float | None:
+        """Return the limit by a lanelet's sign, else by its tag, not by a nation's default.
+
+        None: the map does not say one; NaN: what it says cannot be read.
+        """
+        signed = any(attribute(rule, "subtype") == "speed_limit" for rule in lanelet.regulatoryElements)
+        of_sign = self._limit_of_sign(lanelet) if signed else math.nan
+        if of_sign > 0.0:
+            return of_sign
+        text = limit_text(lanelet)
+        if text is None:
+            return math.nan if signed else None
+        return speed_mps(text)
+
+    def _limit_of_sign(self, lanelet: Any) -> float:
+        """Return the limit (m/s) of a lanelet that has a sign, NaN for one of which the library knows no number."""
+        try:
+            limit = float(self._vehicle.speedLimit(lanelet).speedLimit) / 3.6
+        except RuntimeError:
+            return math.nan
+        return limit if math.isfinite(limit) else math.nan
+
+
+def limit_text(lanelet: Any) -> str | None:
+    """Return the tag that limits the speed of vehicles on a lanelet, as it is written; None: there is none."""
+    return next((attribute(lanelet, name) for name in _LIMIT_TAGS if name in lanelet.attributes), None)
+
+
+def speed_mps(text: str) -> float:
+    """Return a speed in m/s, NaN for a text that is not one positive number with a unit that is known, or none."""
+    found = _SPEED.fullmatch(text.lower())
+    speed = float(found[1]) * _UNITS_MPS.get(found[2], math.nan) if found else math.nan
+    return speed if speed > 0.0 else math.nan

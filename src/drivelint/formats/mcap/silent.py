@@ -1,0 +1,41 @@
+"""Topics that an MCAP log announces and on which it has no message: the writer had a channel, and nothing was recorded."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.summary import read_index
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+
+def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> str:
+    """Return in words that topics of wanted schemas have no message; '' where there are none.
+
+    The whole files are read once more: this is for the error that says that nothing was found.
+    """
+    announced: set[str] = set()
+    spoken: set[str] = set()
+    lossy = False
+    for file in files:
+        container = Container(file, salvage=True)
+        spoken |= {packet.channel.topic for packet in container.packets()}
+        lossy |= bool(container.losses)
+        for part in (container, read_index(file)):
+            schemas = part.schemas
+            announced |= {
+                channel.topic
+                for channel in part.channels.values()
+                if channel.schema_id in schemas and is_wanted(schemas[channel.schema_id].name)
+            }
+    silent = sorted(announced - spoken)
+    if not silent:
+        return ""
+    left = " that is left" if lossy else ""
+    return (
+        f"topic {silent[0]!r} has no message{left}" if len(silent) == 1 else f"{listed(silent)} have no message{left}"
+    )
