@@ -6,14 +6,14 @@ CREATE TABLE ego_condition (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    road_type VARCHAR,                -- motorway, rural, town, ...: of the lanelet, or as given; NULL: not known
-    carriageway VARCHAR,              -- single or dual: whether the two directions of its road are apart, or as given; NULL: not known
+    road_type VARCHAR,                -- [road_type] of the lanelet, or as given; NULL: not known
+    carriageway VARCHAR,              -- [carriageway] as the map's lanes show, or as given; NULL: not known
     lanes_each_way BIGINT,            -- drivable lanes of its road in the direction that has fewer; NULL: not known, or one direction only
-    area VARCHAR,                     -- built_up or open: by road type, or as given; NULL: not known
-    nation VARCHAR,                   -- gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given
-    weather VARCHAR,                  -- dry, wet or ice; NULL: not given
-    light VARCHAR,                    -- day or night; NULL: not given
-    vehicle_class VARCHAR,            -- car, car_towing, bus, goods_7t5, goods_over_7t5, motorcycle: of the ego, as given or by its class; a car that draws a trailer (see ego_part) is car_towing; NULL: not known, or another that draws one
+    area VARCHAR,                     -- [area] by road type, or as given; NULL: not known
+    nation VARCHAR,                   -- [nation] NULL: not given
+    weather VARCHAR,                  -- [weather] NULL: not given
+    light VARCHAR,                    -- [light] NULL: not given
+    vehicle_class VARCHAR,            -- [vehicle_class] of the ego, as given or by its class; a car that draws a trailer (see ego_part) is car_towing; NULL: not known, or another that draws one
     limit_mps DOUBLE,                 -- speed limit of the map where the ego is; NULL: the map does not say
     engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true where neither is there; NULL: there are flags, and none is known here
 );
@@ -68,7 +68,7 @@ CREATE TABLE hidden (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- somebody who is or may be there and has no place in the corridor: no position or box, lost, beyond the map's end, or straight on from where the ego's lane ends without a link, or in a hole between two lanes
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     vehicle BOOLEAN NOT NULL,         -- it may be a vehicle
     least_m DOUBLE NOT NULL,          -- box to box it is at least so far away, by when and where it is seen, and, if late, by what is in plain view
     ahead BOOLEAN,                    -- it is ahead of the ego; NULL: it may be or not
@@ -83,7 +83,7 @@ CREATE TABLE in_way (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; every step has one row
     object_id VARCHAR,                -- the nearest actor of any class in the ego's way or heading into it; NULL: nobody is, as far as is known
-    actor_class VARCHAR,              -- see actor; NULL also where nobody is
+    actor_class VARCHAR,              -- [actor_class] see actor; NULL also where nobody is
     gap_m DOUBLE,                     -- along the road from the ego's front to it, none alongside; NULL: nobody is
     along_mps DOUBLE,                 -- its speed along the road, positive away from the ego; NULL: nobody is, or not known
     need_mps2 DOUBLE NOT NULL,        -- the hardest deceleration that anybody in the way asked for within the last 2 s, to stay 5 m off him; 0: nobody did
@@ -98,7 +98,7 @@ CREATE TABLE neighbour (
     k INTEGER NOT NULL,               -- see step
     seg INTEGER NOT NULL,             -- see step
     object_id VARCHAR NOT NULL,       -- an actor in the corridor's strip, at most 30 m away, box to box
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     chain_id INTEGER NOT NULL,        -- the ego's running chain
     ahead_m DOUBLE NOT NULL,          -- its front to the ego's front, positive ahead
     gap_ahead_m DOUBLE NOT NULL,      -- its rear to the ego's front
@@ -107,7 +107,7 @@ CREATE TABLE neighbour (
     lat_half_m DOUBLE NOT NULL,       -- see pair
     half_width_m DOUBLE NOT NULL,     -- see pair
     heading_diff_rad DOUBLE NOT NULL, -- see pair
-    side VARCHAR NOT NULL,            -- left or right of the ego
+    side VARCHAR NOT NULL,            -- [side] of the ego
     gap_m DOUBLE NOT NULL,            -- see beside
     clearance_m DOUBLE,               -- see pair
     ego_speed_mps DOUBLE,             -- ego's speed
@@ -120,7 +120,7 @@ CREATE TABLE follower (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; no row: cannot be told
-    lane VARCHAR NOT NULL,            -- own, left or right: the running lane, or the strip of one lane's width beside it; one row each
+    lane VARCHAR NOT NULL,            -- [lane_of_follower] one row each
     object_id VARCHAR,                -- nearest vehicle behind in it, within 200 m, that heads as the ego does; NULL: nobody there
     gap_m DOUBLE,                     -- its front to the ego's rear along the corridor; negative: alongside
     speed_mps DOUBLE,                 -- its speed
@@ -159,7 +159,7 @@ CREATE TABLE lane_change (
     begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
     t_cross_ns BIGINT,                -- first step with the centre over it; NULL: the log or a hole ends before (and half a metre was over it), or it crossed in a hole
     t_done_ns BIGINT,                 -- first step wholly in the new lane; NULL: the log or a hole ends before
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     from_lanelet_id VARCHAR NOT NULL, -- the lane left, at t_start
     to_lanelet_id VARCHAR,            -- the lane entered, at t_cross; NULL: not seen
     merge BOOLEAN,                    -- out of a lane that only leads onto this one (entry, on-ramp, or one that ends); NULL: not known
@@ -183,7 +183,7 @@ CREATE TABLE cut_in (
     object_id VARCHAR,                -- that vehicle; NULL: somebody may have, and of the rest only ego_speed_mps (the highest) and free_m may be known
     t_ns BIGINT NOT NULL,             -- first step at which it cannot be told, or first step with its box more than 0.3 m inside the running lane, from at most 0.05 m; within 45 degrees of it, at most 150 m ahead. Of one that overtook the ego, and was further in all the time that its front was ahead: first step as the nearest one ahead (lead.joined)
     begin_seen BOOLEAN NOT NULL,      -- the step before is there and it is placed: else it may have come in earlier
-    side VARCHAR,                     -- left or right: where it came from
+    side VARCHAR,                     -- [side] where it came from
     gap_m DOUBLE,                     -- ego front to its rear at that step, along the corridor
     ego_speed_mps DOUBLE,             -- ego's speed then
     speed_mps DOUBLE,                 -- its speed then
@@ -197,8 +197,8 @@ CREATE TABLE beside (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they go past each other before the next; or may overlap: then the rest is NULL
     object_id VARCHAR NOT NULL,       -- any other actor
-    actor_class VARCHAR,              -- see road_user
-    side VARCHAR,                     -- left or right of the ego
+    actor_class VARCHAR,              -- [actor_class] see road_user
+    side VARCHAR,                     -- [side] of the ego
     gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap; past each other between two steps: the mean of those at both
     clearance_m DOUBLE,               -- box to box, see pair; past each other between two steps: the gap across
     blur_m DOUBLE,                    -- how much nearer the two may have been between this step and its neighbours, if both swerve by 3 m/s2; 0 in a log of about ten samples a second and more
@@ -207,7 +207,7 @@ CREATE TABLE beside (
     speed_mps DOUBLE,                 -- its speed
     ego_lat_mps DOUBLE,               -- ego's speed across the corridor, towards it positive
     lat_mps DOUBLE,                   -- its speed across the corridor, towards the ego positive
-    cycle_lane VARCHAR,               -- it is on a cycle lane of the carriageway: the marking between that and the lane of motor vehicles, unsaid where the map has none; NULL: it is on none
+    cycle_lane VARCHAR,               -- [marking + unsaid] it is on a cycle lane of the carriageway: the marking between that and the lane of motor vehicles, unsaid where the map has none; NULL: it is on none
     along BOOLEAN,                    -- it heads as the corridor runs (within 45 degrees: who crosses it at 89 does not go the same way)
     on_carriageway BOOLEAN,           -- its box reaches into the ego's running lane or a drivable lane beside it, or its centre is on any, or on a cycle lane that adjoins one (a verge, kerb or footway between them makes it a track); NULL: not known
     on_strip BOOLEAN                  -- its centre is beside the drivable lanes, with no kerb or verge between: on a shoulder, stop, border, parking, restricted or cycle lane; NULL: not known, as behind a border, which may be a kerb
@@ -219,13 +219,13 @@ CREATE TABLE passing (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; ego and another road user that heads the same way change their order, or a vehicle that cannot be placed may have
     object_id VARCHAR NOT NULL,       -- the other
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     ego_passes BOOLEAN,               -- the ego's front got ahead of its front by more than 0.25 m; false: its front got ahead of the ego's; NULL: one of the two, or nothing: it may be beside the ego and has no place
     t_ns BIGINT NOT NULL,             -- first step in the new order; the last one at which it may be beside the ego
     t_unseen_ns BIGINT,               -- last step in the old order, if the order may have changed unseen since then; the first one at which it may be beside the ego; NULL: t_ns is when it changed
     t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which they are beside each other
     t_to_ns BIGINT NOT NULL,          -- last one
-    side VARCHAR,                     -- left or right: where the other is, seen from the ego; NULL: ego_passes is
+    side VARCHAR,                     -- [side] where the other is, seen from the ego; NULL: ego_passes is
     gap_m DOUBLE,                     -- least gap across the corridor in that stretch; NULL: they are beside each other in no step that was seen
     whole BOOLEAN NOT NULL,           -- the stretch was seen from before its first step until after its last, without a hole: else gap_m is only the least that was seen
     same_lane BOOLEAN,                -- its centre is in the ego's running lane at t_ns: the ego passes round it; NULL: ego_passes is
@@ -238,11 +238,11 @@ CREATE TABLE line_step (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step with a corner of the ego more than 0.05 m over a boundary of its running lane; none inside a junction, and none where its box is not placed (ego_state.front_s_m is NULL)
-    side VARCHAR NOT NULL,            -- left or right: that boundary; one row each
+    side VARCHAR NOT NULL,            -- [side] that boundary; one row each
     out_m DOUBLE NOT NULL,            -- how far the furthest corner is over it
-    marking VARCHAR,                  -- see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
+    marking VARCHAR,                  -- [marking] see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
     forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
-    beyond VARCHAR,                   -- what lies beyond it (see lane_beside): same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
+    beyond VARCHAR,                   -- [lane_type + same + opposing] what lies beyond it (see lane_beside): same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map
     middle BOOLEAN,                   -- it is the middle of the road: traffic beyond it comes the other way; NULL: it may be, as on the overtaking side the map has nothing beyond it (and the road is no motorway), or a gap of more than 1 m or a strip that it calls a median, which may be a central reservation
     t_since_ns BIGINT NOT NULL,       -- first step of this stretch over it; a line is one stretch, whichever of its two lanes is the running one
     begin_seen BOOLEAN NOT NULL,      -- the step before that is there and inside
@@ -263,8 +263,8 @@ CREATE TABLE overtake_place (
     occurrence INTEGER NOT NULL,      -- see overtake
     junction_m DOUBLE,                -- ego's front at t0 to the next junction on its way, along the corridor; infinite: none within the corridor; negative: inside one
     crossing_m DOUBLE,                -- the same to the next pedestrian crossing
-    marking_out VARCHAR,              -- marking of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
-    marking_back VARCHAR,             -- marking of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
+    marking_out VARCHAR,              -- [marking] of the boundary crossed at t0, seen from the running lane; NULL: the map does not say
+    marking_back VARCHAR,             -- [marking] of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back
     no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, or where the ego's front draws level with the rear of a vehicle that it passes, until its end is said or the next junction; NULL: the map has no such signs at all, or neither a sign nor a junction on the way behind: one may stand further back, or where the map begins
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside

@@ -53,15 +53,15 @@ CREATE TABLE lane_apart (
 CREATE TABLE lane_beside (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    side VARCHAR NOT NULL,            -- left or right of the driver
+    side VARCHAR NOT NULL,            -- [side]
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line; no row: nothing lies beyond that boundary in the map
     s_end_m DOUBLE NOT NULL,          -- to here
     beside_id VARCHAR NOT NULL,       -- the lanelet beyond that boundary: as the map names it, else the drivable one that runs along it, at most 2 m away, of whatever road; the opposing lane behind a narrow strip
     against BOOLEAN NOT NULL,         -- that one is driven the other way
     gap_m DOUBLE NOT NULL,            -- from the boundary to its nearer bound; 0: the map names it
-    strip VARCHAR,                    -- what the map draws as a lane between the two directions, and is looked through: median (at most 1 m wide), border or restricted (2 m); NULL: nothing
+    strip VARCHAR,                    -- [lane_strip] NULL: nothing
     drivable BOOLEAN NOT NULL,        -- see lanelet
-    lane_type VARCHAR NOT NULL,       -- see lanelet
+    lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
     width_m DOUBLE NOT NULL           -- its width
 );
 
@@ -146,7 +146,7 @@ CREATE TABLE ego_part (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor that is the ego itself, and no other road user
-    part VARCHAR NOT NULL             -- trailer: the ego draws it; successor, predecessor: the id under which the ego's own track goes on or was before
+    part VARCHAR NOT NULL             -- [part_of_ego]
 );
 
 -- lifetime: part
@@ -178,7 +178,7 @@ CREATE TABLE step (
 CREATE TABLE capability (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, ego_size, actor_classes, exit_signs, ...
+    signal VARCHAR NOT NULL,          -- [signal] what a rule may require
     available BOOLEAN NOT NULL,       -- the log and map give it
     reason VARCHAR NOT NULL           -- why the signal is available or missing, as JSON from the macro why
 );
@@ -203,7 +203,7 @@ CREATE TABLE registration (
 CREATE TABLE road_user (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
-    actor_class VARCHAR,              -- its class as far as it is known: the recorded one; vehicle also for one without a class that is longer than 3 m; object only for a thing that stays within 1 m in the whole log; NULL: it may be anything
+    actor_class VARCHAR,              -- [actor_class] as far as it is known: the recorded one; vehicle also for one without a class that is longer than 3 m; object only for a thing that stays within 1 m in the whole log; NULL: it may be anything
     length_m DOUBLE,                  -- box
     width_m DOUBLE                    -- box
 );
@@ -224,8 +224,8 @@ CREATE TABLE state_dynamics (
     accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample, after a hole, or its velocity is derived by a filter (quality velocity_filtered)
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
-    actor_class VARCHAR,              -- see road_user
-    indicator VARCHAR                 -- see actor_state
+    actor_class VARCHAR,              -- [actor_class] see road_user
+    indicator VARCHAR                 -- [indicator] see actor_state
 );
 
 -- lifetime: part
@@ -259,8 +259,8 @@ CREATE TABLE ego_aside (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which it is on no drivable lane, but on a way beside one
     lanelet_id VARCHAR NOT NULL,      -- the nearest such way: a shoulder, border, parking or cycle lane
-    lane_type VARCHAR NOT NULL,       -- see lanelet
-    road_type VARCHAR,                -- see lanelet
+    lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
+    road_type VARCHAR,                -- [road_type] see lanelet
     off_m DOUBLE NOT NULL,            -- distance from its centre line
     with_direction BOOLEAN            -- heading within 90 degrees of its direction; NULL: heading not known
 );
@@ -359,13 +359,13 @@ CREATE TABLE ego_state (
     length_m DOUBLE,                  -- box
     width_m DOUBLE,                   -- box
     combination_m DOUBLE,             -- length with the trailer that it draws; NULL: the trailer is not placed
-    indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
+    indicator VARCHAR,                -- [indicator] NULL: not known
     lanelet_id VARCHAR,               -- see ego_lane
     with_direction BOOLEAN,           -- see ego_lane
     in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none
-    road_type VARCHAR,                -- of the lanelet; NULL: the map does not say
+    road_type VARCHAR,                -- [road_type] of the lanelet; NULL: the map does not say
     limit_mps DOUBLE,                 -- speed limit where it is; NULL: see limit_source
-    limit_source VARCHAR,             -- what says so: lane, road_type, sign; none: the map says that there is no limit; unread: it gives one that cannot be read; NULL: it does not say
+    limit_source VARCHAR,             -- [limit_source + none] none: the map says that there is no limit; NULL: it does not say
     chain_id INTEGER,                 -- its running chain at this step; NULL: none
     s_m DOUBLE,                       -- chain station of the centre
     d_m DOUBLE,                       -- offset from the running lane's centre line, left positive
@@ -389,7 +389,7 @@ CREATE TABLE pair (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the ego's step
     object_id VARCHAR NOT NULL,       -- an actor present, and no part of the ego: one row per step from its first to its last sample, but none where it is over or under the ego's road by the heights of the log
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, a hole in its track, or off_level)
     y_m DOUBLE,                       -- its box centre
     yaw_rad DOUBLE,                   -- its heading; of a vehicle that reverses the opposite one: decided by its motion, see travel_rad of state_dynamics
@@ -439,7 +439,7 @@ CREATE TABLE lost_object (
     object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
     t_from_ns BIGINT NOT NULL,        -- unknown from here
     t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds and its track ended near the ego, when it would have been recorded again
-    code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range, lost_on_road (further away, but it may have touched the ego later)
+    code VARCHAR NOT NULL             -- [loss]
 );
 
 -- lifetime: part
@@ -456,7 +456,7 @@ CREATE TABLE unplaced (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead and cannot be placed on it
-    code VARCHAR NOT NULL             -- no_position, off_level (may be over or under the road), no_heading, no_size, off_lanes (moves beside every lane), or see unseen
+    code VARCHAR NOT NULL             -- [unplaced_cause + lost + lost_behind + appeared + beyond_map] see unseen
 );
 
 -- lifetime: part
@@ -466,7 +466,7 @@ CREATE TABLE unseen (
     t_ns BIGINT NOT NULL,             -- a step at which the log does not have the actor
     object_id VARCHAR NOT NULL,       -- an actor whose track ends before, or begins after, near enough to matter
     near BOOLEAN NOT NULL,            -- it was close by, in the sensor's range or coming towards the ego: it may be anywhere on the road
-    code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more away, over an end of the map)
+    code VARCHAR NOT NULL,            -- [unseen_cause]
     ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL
     behind_m DOUBLE,                  -- the same over the near end, so far behind the ego's rear
     off_ahead_m DOUBLE,               -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far ahead of the ego's front; else NULL
@@ -495,7 +495,7 @@ CREATE TABLE oncoming (
     speed_mps DOUBLE,                 -- its speed
     on_its_way BOOLEAN,               -- it was still on another lane: da_m is the way that it then made
     free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach
-    free_reason VARCHAR NOT NULL,     -- what ends it: map_end, corridor_end, sensor_range
+    free_reason VARCHAR NOT NULL,     -- [free_end]
     n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out
     unplaced_reason VARCHAR           -- why one of them has no place, as JSON from the macro why
 );
@@ -506,7 +506,7 @@ CREATE TABLE lead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
     speed_mps DOUBLE,                 -- its speed along the lane, whichever way
     accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
@@ -527,7 +527,7 @@ CREATE TABLE lane_ahead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- whoever is ahead in the running lane, or reaches into it and is in the ego's way or heading into it; not on foot, no animal, and a thing only where it is in the way; see lead
-    actor_class VARCHAR,              -- see road_user
+    actor_class VARCHAR,              -- [actor_class] see road_user
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
     speed_mps DOUBLE,                 -- its speed
     oncoming BOOLEAN,                 -- it heads against the corridor
@@ -621,7 +621,7 @@ CREATE TABLE overtake (
     t3_ns BIGINT,                     -- first step wholly back in the running lane
     t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
     passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front
-    status VARCHAR NOT NULL,          -- completed, aborted (back without passing, its centre over the line or not all of it seen), lane_change (stayed in a lane of its own direction), truncated (the log, a hole or the corridor ends first)
+    status VARCHAR NOT NULL,          -- [overtake_status]
     v_av_mps DOUBLE,                  -- ego's speed at t0
     v_vbp_mps DOUBLE,                 -- VBP's speed at t0
     l_av_m DOUBLE,                    -- ego's length
@@ -637,7 +637,7 @@ CREATE TABLE overtake (
     v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV the speed limit
     n_unplaced BIGINT,                -- see oncoming, at t0; NULL: the ego is not placed
     unplaced_reason VARCHAR,          -- see oncoming
-    free_reason VARCHAR,              -- see oncoming
+    free_reason VARCHAR,              -- [free_end] see oncoming
     pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t_out
     cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
 );
@@ -656,7 +656,7 @@ CREATE TABLE overtake_sda (
     sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0; observed: at its mean speed, if completed, and where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
     spare_m DOUBLE,                   -- da_m - sda_m
     spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
-    zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
+    zone VARCHAR,                     -- [zone] NULL: unknown
     reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
     pull_out_m DOUBLE,                -- of sda_m, which its parts add up to: what the ego drives to pull out; NULL: sda_m is what was driven, or undefined
     passing_m DOUBLE,                 -- of sda_m: what it drives beside the vehicle being passed; NULL: as pull_out_m
@@ -672,11 +672,11 @@ CREATE TABLE overtake_step (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see overtake
     t_ns BIGINT NOT NULL,             -- a step from t0 to t_end
-    stage VARCHAR NOT NULL,           -- pulling_out, passing, cutting_in
+    stage VARCHAR NOT NULL,           -- [overtake_stage]
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
     sure BOOLEAN NOT NULL,            -- see overtake
     free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
-    free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
+    free_reason VARCHAR,              -- [free_end] what ends it
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
     ov_reason VARCHAR,                -- why ov_known is false, and what to provide, as JSON from the macro why; not NULL where ov_known is true
@@ -707,7 +707,7 @@ CREATE TABLE opportunity (
     da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown
     sda_m DOUBLE,                     -- safe distance ahead there
     spare_s DOUBLE,                   -- time in which the spare distance closes
-    zone VARCHAR,                     -- A to D at that step; NULL: unknown
+    zone VARCHAR,                     -- [zone] at that step; NULL: unknown
     taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it
 );
 
@@ -720,7 +720,7 @@ CREATE TABLE lane_departure (
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre: the centre crossed too, or a vehicle was overtaken; on the way back, see t_return and t_back of excursion
     begin_seen BOOLEAN NOT NULL,      -- see excursion
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane
 );
 
@@ -729,7 +729,7 @@ CREATE TABLE indicator_on (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     t_on_ns BIGINT NOT NULL,          -- first step with it on, the step before being off or the other side
     t_off_ns BIGINT NOT NULL,         -- last step with it on
     at_log_start BOOLEAN NOT NULL     -- was on when the log began: t_on_ns is not its start
@@ -740,7 +740,7 @@ CREATE TABLE exit_lane (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
     from_id VARCHAR,                  -- the through lanelet beside it; NULL: it branches off without one
-    side VARCHAR NOT NULL             -- on which side it leaves: left or right
+    side VARCHAR NOT NULL             -- [side] on which it leaves
 );
 
 -- lifetime: part
@@ -749,7 +749,7 @@ CREATE TABLE exit_taken (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the exit lane's boundary
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet
     t_sign_ns BIGINT,                 -- first step at or past the last exit sign before it; NULL: passed before the log began
     sign_id VARCHAR                   -- that sign; NULL: the map has none on the way
@@ -761,7 +761,7 @@ CREATE TABLE exit_passed (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet beside the ego's way
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     t_near_ns BIGINT NOT NULL,        -- first step beside it, or on it
     t_gore_ns BIGINT,                 -- first step past its end, where the choice is made; NULL: the log ends before
     taken BOOLEAN                     -- the ego was in the exit lane at its end; NULL: not reached

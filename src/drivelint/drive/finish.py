@@ -115,8 +115,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
-    tables["quality"] = _quality(drive, findings)
+    tables = {name: owned_table(name, drive, rows, recording.format) for name, rows in content.items()}
+    tables["quality"] = _quality(drive, findings, recording.format)
     return Trace(
         drive,
         path,
@@ -132,7 +132,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     """Return the trace with one more row in `quality`."""
-    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
+    reader = trace.tables["data_log"]["format"][0].as_py()
+    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding], reader)])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
     return replace(trace, tables={**trace.tables, "quality": ordered})
 
@@ -208,10 +209,10 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
     return dict(zip(keys, distinct.sort_by([(key, "ascending") for key in keys]).select(keys).columns, strict=True))
 
 
-def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
+def _quality(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
-    return owned_table("quality", drive, [vars(row) for row in rows])
+    return owned_table("quality", drive, [vars(row) for row in rows], reader)
 
 
 def _nullable(values: Floats) -> pa.Array:

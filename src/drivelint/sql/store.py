@@ -13,6 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
+from drivelint.sql import words
 from drivelint.sql.statements import texts
 from drivelint.temporary import temporary_folder
 
@@ -228,7 +229,25 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 @cache
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
+    return {
+        table: {column: words.readable_comment(comment) for column, comment in columns.items()}
+        for table, columns in _comments(file).items()
+    }
+
+
+@cache
+def _comments(file: str = "*") -> dict[str, dict[str, str]]:
+    """Return the comments as they are written, with the marks of vocabularies."""
     return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+
+
+@cache
+def word_columns() -> dict[str, dict[str, words.WordColumn]]:
+    """Return table -> column -> the words that it may hold, for the columns that hold words of a vocabulary."""
+    return {
+        table: {column: said for column, comment in columns.items() if (said := words.word_column(comment))}
+        for table, columns in _comments().items()
+    }
 
 
 @cache
@@ -243,10 +262,12 @@ def arrow_schemas() -> dict[str, pa.Schema]:
         return {name: con.execute(sql).to_arrow_table().schema for name, sql in empty.items()}
 
 
-def owned_table(name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
+def owned_table(
+    name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
+) -> pa.Table:
     """Return a table of `schemas/` from rows, or from columns, that lack its first column: whose drive or map it is.
 
-    Errors: `KeyError` for any other column that is missing.
+    Errors: `KeyError` for any other column that is missing; `InternalError`, which names the `reader`, for a word of no vocabulary.
     """
     import pyarrow as pa
 
@@ -255,6 +276,7 @@ def owned_table(name: str, owner: str, content: Sequence[Mapping[str, Any]] | Ma
         f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in others
     }
     table = pa.table(columns, schema=pa.schema(others))
+    words.refuse_wrong_words(table, word_columns()[name], f"reader {reader}: table {name}")
     return table.add_column(0, first, pa.repeat(pa.scalar(owner), table.num_rows))
 
 
