@@ -23,7 +23,7 @@ CREATE TABLE ego_mode (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    mode VARCHAR NOT NULL,            -- a declared event whose values are on and off: engaged, emergency_manoeuvre, minimal_risk_manoeuvre, lane_change_procedure, headlights, horn, ...; one row per step for each that the ego ever declared
+    mode VARCHAR NOT NULL,            -- [mode] a declared event whose values are on and off; one row per step for each that the ego ever declared
     is_on BOOLEAN                     -- by the last declaration before the step; NULL: none yet
 );
 

@@ -101,7 +101,7 @@ CREATE TABLE lane_cell (
     cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     drivable BOOLEAN NOT NULL,        -- see lanelet
-    footway BOOLEAN NOT NULL,         -- for people on foot only
+    footway BOOLEAN,                  -- for people on foot only; NULL: what the lane is for is not known
     k INTEGER NOT NULL,               -- the segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
     len_m DOUBLE NOT NULL,            -- its length along the centre line
@@ -568,7 +568,7 @@ CREATE TABLE vehicle_ahead (
 
 -- lifetime: run
 CREATE TABLE profile (
-    profile VARCHAR NOT NULL,         -- relaxed, nominal, aggressive, observed, or a user's own
+    profile VARCHAR NOT NULL,         -- [profile_name] or a user's own
     style INTEGER NOT NULL,           -- 0 = least aggressive
     pull_out_angle_rad DOUBLE,        -- beta; NULL for observed
     cut_in_angle_rad DOUBLE,          -- theta
@@ -647,7 +647,7 @@ CREATE TABLE overtake_sda (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see overtake
-    profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
+    profile VARCHAR NOT NULL,         -- [profile_name] see profile; every one, selected or not
     t0_ns BIGINT NOT NULL,            -- see overtake
     ov_id VARCHAR,                    -- of the oncoming vehicles at t0 the one that leaves the least, see oncoming_vehicle; NULL: none
     da_m DOUBLE,                      -- distance ahead to it; NULL: unknown, or more than sda_m while another OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed (or the one that it had reached when the log ended)
@@ -675,8 +675,6 @@ CREATE TABLE overtake_step (
     stage VARCHAR NOT NULL,           -- [overtake_stage]
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
     sure BOOLEAN NOT NULL,            -- see overtake
-    free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
-    free_reason VARCHAR,              -- [free_end] what ends it
     ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
     ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
     ov_reason VARCHAR,                -- why ov_known is false, and what to provide, as JSON from the macro why; not NULL where ov_known is true
@@ -700,7 +698,7 @@ CREATE TABLE opportunity (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     object_id VARCHAR NOT NULL,       -- the slower vehicle ahead
-    profile VARCHAR NOT NULL,         -- see profile (not observed)
+    profile VARCHAR NOT NULL,         -- [profile_name] see profile (not observed)
     t_start_ns BIGINT NOT NULL,       -- held up from here
     t_end_ns BIGINT NOT NULL,         -- to here
     t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known

@@ -68,7 +68,7 @@ CREATE TABLE declared_event (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- who declared it
     t_ns BIGINT NOT NULL,             -- when
-    event VARCHAR NOT NULL,           -- what, such as mirror_check or overtake_go; recorded headlights are the event headlights
+    event VARCHAR NOT NULL,           -- [event] recorded headlights are the event headlights
     value VARCHAR                     -- its value as text, if any
 );
 

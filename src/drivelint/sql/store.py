@@ -32,7 +32,7 @@ ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
-_COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
+_COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
 
 
 def quoted(text: object) -> str:
@@ -230,23 +230,23 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     return {
-        table: {column: words.readable_comment(comment) for column, comment in columns.items()}
-        for table, columns in _comments(file).items()
+        table: {column: words.readable_comment(comment) for column, _, comment in columns}
+        for table, columns in _columns(file).items()
     }
 
 
 @cache
-def _comments(file: str = "*") -> dict[str, dict[str, str]]:
-    """Return the comments as they are written, with the marks of vocabularies."""
-    return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+def _columns(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
+    """Return table -> its columns: name, type, and the comment as it is written, with the mark of a vocabulary."""
+    return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_declarations(file))}
 
 
 @cache
 def word_columns() -> dict[str, dict[str, words.WordColumn]]:
     """Return table -> column -> the words that it may hold, for the columns that hold words of a vocabulary."""
     return {
-        table: {column: said for column, comment in columns.items() if (said := words.word_column(comment))}
-        for table, columns in _comments().items()
+        table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
+        for table, columns in _columns().items()
     }
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from difflib import get_close_matches
 from functools import cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -26,19 +27,38 @@ _MOST_LISTED: Final = 14
 """A comment lists the words of a vocabulary of at most this many; of a longer one it gives the name."""
 _NEAR: Final = 0.5
 """How alike a word that is proposed must be: `cyclist` and `bicycle` are 0.57."""
+_MISSPELLED: Final = 0.85
+"""So alike to a word of an open vocabulary is none of its own, but that word misspelled."""
 
 
 class Vocabulary(NamedTuple):
-    """A vocabulary: its name, its words in order, a regular expression of what else is a word ('': nothing), and what they mean."""
+    """A vocabulary: its name, its words in order, a regular expression of what else is a word ('': nothing), and what they mean.
+
+    `open`: any other word is one, too, if it is not nearly one of these.
+    """
 
     name: str
     words: tuple[str, ...]
     pattern: str = ""
     says: str = ""
+    open: bool = False
 
     def __contains__(self, word: object) -> bool:
         """Whether it has this word."""
-        return word in self.words or bool(self.pattern and re.fullmatch(self.pattern, str(word)))
+        if word in self.words or (self.pattern and re.fullmatch(self.pattern, str(word))):
+            return True
+        return self.open and not get_close_matches(str(word), self.words, n=1, cutoff=_MISSPELLED)
+
+    @property
+    def is_listed(self) -> bool:
+        """Whether its words are all that there are."""
+        return not self.pattern and not self.open
+
+    def spelled(self, word: str) -> str | None:
+        """Return a word as it is spelled here, whatever its case; None: it has none such."""
+        if word in self.words:
+            return word
+        return next((known for known in self.words if known.casefold() == word.casefold()), None)
 
     def problem(self, word: str) -> str | None:
         """Return what is wrong with a word, with the nearest good one; None: nothing."""
@@ -46,10 +66,11 @@ class Vocabulary(NamedTuple):
 
 
 class WordColumn(NamedTuple):
-    """A column of words, or the `field` of the STRUCTs in it ('': the column itself)."""
+    """A column of words or of lists of words, or the `field` of the STRUCTs in it ('': the column itself)."""
 
     vocabulary: Vocabulary
     field: str = ""
+    is_list: bool = False
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -61,7 +82,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
 def vocabularies() -> dict[str, Vocabulary]:
     """Return name -> vocabulary, in the order of the file."""
     facts = tomllib.loads((folder("schemas") / "words.toml").read_text(encoding="utf-8"))
-    return {name: Vocabulary(name, tuple(about["words"]), about.get("pattern", ""), about["says"]) for name, about in facts.items()}
+    return {name: Vocabulary(name, **about | {"words": tuple(about["words"])}) for name, about in facts.items()}
 
 
 def words(name: str) -> tuple[str, ...]:
@@ -69,8 +90,8 @@ def words(name: str) -> tuple[str, ...]:
     return vocabularies()[name].words
 
 
-def word_column(comment: str) -> WordColumn | None:
-    """Return what the mark of a column's comment says; None: the column holds no words. Errors: `DriveLintError`."""
+def word_column(kind: str, comment: str) -> WordColumn | None:
+    """Return what the mark of a column's comment says; None: the column, of this type, holds no words. Errors: `DriveLintError`."""
     mark = MARK.match(comment)
     if mark is None:
         return None
@@ -79,29 +100,31 @@ def word_column(comment: str) -> WordColumn | None:
         raise DriveLintError(f"schemas: there is no vocabulary [{name}] in words.toml; {hint(name, vocabularies())}")
     known = vocabularies()[name]
     besides = tuple(more.split(" + ")[1:])
-    return WordColumn(known._replace(words=known.words + besides), field or "")
+    return WordColumn(known._replace(words=known.words + besides), field or "", "[]" in kind)
 
 
 def readable_comment(comment: str) -> str:
     """Return a column's comment with the words of its vocabulary in place of the mark."""
-    column = word_column(comment)
+    column = word_column("", comment)
     if column is None:
         return comment
     known = column.vocabulary.words
     listed = ", ".join(known) if len(known) <= _MOST_LISTED else f"a word of {column.vocabulary.name}"
-    if column.vocabulary.pattern:
+    if not column.vocabulary.is_listed:
         listed += ", ..."
     rest = MARK.sub("", comment, count=1)
     return "; ".join(part for part in (f"{column.field}: {listed}" if column.field else listed, rest) if part)
 
 
 def refuse_wrong_words(table: pa.Table, columns: dict[str, WordColumn], where: str) -> None:
-    """Refuse a table that a reader made, if it holds a word that is in no vocabulary. NULL is no word.
+    """Refuse a table that a reader made, if it holds a word that is not in its vocabulary. NULL is no word; an open one has any.
 
     Errors: `InternalError` that begins with `where`, and names the column, the word and the nearest good one.
     """
     for name, column in columns.items():
-        for word in _distinct(table[name]) if name in table.column_names and not column.field else ():
+        if column.vocabulary.open or column.field or name not in table.column_names:
+            continue
+        for word in _distinct(table[name]):
             if wrong := column.vocabulary.problem(word):
                 raise InternalError(f"{where}, column {name}: {wrong}: a fault of the reader")
 
