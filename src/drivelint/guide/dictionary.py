@@ -91,7 +91,7 @@ def table_text(name: str) -> str:
 
     Errors: `UsageError` with the nearest table or vocabulary.
     """
-    if name in vocabularies():
+    if name in vocabularies() and name not in column_comments():
         return _vocabulary_text(name)
     if name not in column_comments():
         near = hint(name, [*column_comments(), *vocabularies()])

@@ -7,6 +7,7 @@ out may be anything.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -358,14 +359,14 @@ class _Walker:
         first = relation.columns[0][1] if relation.columns else None
         if node["subquery_type"] == "ANY":
             kind = self.of(node["child"], scope)
-            if node["comparison_type"] in _COMPARISONS:
-                self._compare(kind, first)
+            if node["comparison_type"] in _COMPARISONS:  # the literals of a list, as ANY has them, are written here
+                self._compare(kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first)
             return None
         return first if node["subquery_type"] == "SCALAR" else None
 
     def _compare(self, left: Type, right: Type) -> None:
         for one, other in ((left, right), (right, left)):
-            if isinstance(one, Parameter) and isinstance(other, Words):
+            if isinstance(one, Parameter) and isinstance(other, Words) and not other.direct:
                 self.parameters.setdefault(one.name, []).append(other)
         self._keep(word_types.wrong_words(left, right))
 

@@ -24,9 +24,10 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.files import is_canonical_folder
-from drivelint.formats.osi.metadata import parse_conditions
+from drivelint.formats.osi.metadata import known_findings, parse_conditions
 from drivelint.formats.tables import parquet
 from drivelint.sql.store import arrow_schemas
+from drivelint.sql.words import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -111,7 +112,7 @@ def _quality(path: Path) -> list[QualityFinding]:
     rows = parquet.table(path)
     _need(path, rows, ("check_id", "severity", "message"))
     try:
-        return [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
+        return known_findings(path, [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()])
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 
@@ -178,7 +179,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> Codes:
 
     def code_of(word: str) -> int:
         if word.casefold() not in words:
-            raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
+            raise TraceError(f"{path}: {name} is {word!r}; {nearest(word, words)} (NULL: unknown)")
         return words.index(word.casefold())
 
     return coded(column, code_of)
