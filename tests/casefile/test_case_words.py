@@ -63,7 +63,9 @@ def test_what_a_case_expects_is_in_words_of_the_verdict(tmp_path: Path, more: st
 def test_a_parameter_of_a_case_is_a_word_of_the_column_that_it_is_compared_with(tmp_path: Path) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, indicator = $side AS holds FROM ego_state"
     header = INVARIANT | HOLDS | {"reads": '["ego_state"]'}
-    rule = write(tmp_path, header, {"condition": sql}, tables='[params.side]\ndefault = "left"\nunit = ""\nwhy = "a test"')
+    rule = write(
+        tmp_path, header, {"condition": sql}, tables='[params.side]\ndefault = "left"\nunit = ""\nwhy = "a test"'
+    )
     with_cases(rule, "- name: clean\n  given: {ego_state: {t_s: 0}}\n  params: {side: rigth}\n  expect: pass\n")
     with pytest.raises(RuleError, match=r"case 'clean': params\.side: 'rigth' is no indicator; did you mean 'right'\?"):
         read_cases(rule)
@@ -86,16 +88,22 @@ COLUMNS = [(table, name, column) for table, columns in store.word_columns().item
 @pytest.mark.parametrize(("table", "name", "column"), COLUMNS, ids=[f"{table}.{name}" for table, name, _ in COLUMNS])
 def test_every_column_of_words_is_held_against_its_vocabulary(table: str, name: str, column: WordColumn) -> None:
     good = column.vocabulary.words[-1]
-    for value in (good, [None, good], {"else": None, "0..1": good}):
-        held = [{column.field: each} for each in (value if isinstance(value, list) else [good])] if column.field else value
-        refuse_wrong_word(table, name, held, "given")
     wrong = f"{good}{good[-1]}"
-    held = [{column.field: wrong, "signal_id": "any text"}] if column.field else wrong
-    with pytest.raises(RuleError, match=rf"given\.{name}: '{wrong}' is no .*did you mean '{good}'\?"):
-        refuse_wrong_word(table, name, held, "given")
+
+    def said(word: str) -> str | dict[str, str]:
+        return {column.field: word, "signal_id": "any text"} if column.field else word
+
+    for value in (said(good), [None, said(good)], {"else": None, "0..1": said(good)}):
+        refuse_wrong_word(table, name, value, "given")
+    for value in (said(wrong), [said(good), said(wrong)], {"else": said(good), "0..1": said(wrong)}):
+        with pytest.raises(RuleError, match=rf"given\.{name}: '{wrong}' is no .*did you mean '{good}'\?"):
+            refuse_wrong_word(table, name, value, "given")
 
 
 def test_ids_and_texts_are_free(tmp_path: Path) -> None:
-    given = {"pair": {"t_s": 0, "object_id": "cyclist"}, "declared_event": {"t_s": 0, "event": "door_opened", "value": "rear"}}
+    given = {
+        "pair": {"t_s": 0, "object_id": "cyclist"},
+        "declared_event": {"t_s": 0, "event": "door_opened", "value": "rear"},
+    }
     scene = complete_scene(measured(tmp_path), given, ())
     assert scene["pair"][0]["object_id"] == "cyclist"

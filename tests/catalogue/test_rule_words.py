@@ -21,7 +21,9 @@ CYCLIST = """SELECT drive_id, ego_id, t_ns, object_id,
     is_class(actor_class, 'cyclist') AS applies
 FROM pair"""
 KIND = '[params.kind]\ndefault = "{}"\nunit = ""\nwhy = "a test"'
-BY_KIND = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m > 1.5 AS holds, actor_class = $kind AS applies FROM pair"
+BY_KIND = (
+    "SELECT drive_id, ego_id, t_ns, object_id, clearance_m > 1.5 AS holds, actor_class = $kind AS applies FROM pair"
+)
 OF_PAIR = INVARIANT | HOLDS | {"reads": '["pair"]'}
 SHIPPED = load_rules()
 
@@ -87,7 +89,9 @@ def test_the_words_of_a_rules_reference_points_are_known_in_its_condition(tmp_pa
 
 
 def test_the_default_of_a_parameter_and_its_value_are_words_too(tmp_path: Path) -> None:
-    with pytest.raises(RuleError, match=r"rule\.sql:\d+: parameter 'kind': 'cyclist' is no actor class; did you mean 'bicycle'\?"):
+    with pytest.raises(
+        RuleError, match=r"rule\.sql:\d+: parameter 'kind': 'cyclist' is no actor class; did you mean 'bicycle'\?"
+    ):
         write(tmp_path, OF_PAIR, {"condition": BY_KIND}, tables=KIND.format("cyclist"))
     rule = write(tmp_path, OF_PAIR, {"condition": BY_KIND}, tables=KIND.format("bicycle"))
     assert parse_params([rule], ["pack.rule.kind=pedestrian"]) == {"pack.rule": {"kind": "pedestrian"}}
@@ -98,6 +102,9 @@ def test_the_default_of_a_parameter_and_its_value_are_words_too(tmp_path: Path) 
 
 def test_a_parameter_that_no_column_of_words_is_compared_with_may_be_any_text(tmp_path: Path) -> None:
     rule = write(
-        tmp_path, OF_PAIR, {"condition": BY_KIND.replace("actor_class = $kind", "object_id = $kind")}, tables=KIND.format("truck-7")
+        tmp_path,
+        OF_PAIR,
+        {"condition": BY_KIND.replace("actor_class = $kind", "object_id = $kind")},
+        tables=KIND.format("truck-7"),
     )
     assert parse_params([rule], ["pack.rule.kind=anybody"]) == {"pack.rule": {"kind": "anybody"}}

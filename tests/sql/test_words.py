@@ -84,7 +84,9 @@ def test_a_vocabulary_knows_its_words_and_proposes_the_nearest_for_another(vocab
         assert vocabulary.spelled(word.upper()) == word
         wrong = f"{word}{word[-1]}x" if len(word) < 3 else f"{word[:-1]}{word[-2]}{word[-1]}"
         if wrong not in vocabulary.words and vocabulary.is_listed:
-            assert vocabulary.problem(wrong).startswith(f"{wrong!r} is no {vocabulary.name.replace('_', ' ')}; "), wrong
+            assert str(vocabulary.problem(wrong)).startswith(
+                f"{wrong!r} is no {vocabulary.name.replace('_', ' ')}; "
+            ), wrong
 
 
 def test_the_nearest_word_is_named() -> None:
@@ -122,7 +124,9 @@ def check_ids() -> dict[str, set[str]]:
     """Return the check ids that stand in the sources, by the vocabulary that they must be in."""
     found: dict[str, set[str]] = {"log_check": set(), "map_check": set()}
     for file in sorted(SOURCES.rglob("*.py")):
-        for call in (node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)):
+        for call in (
+            node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)
+        ):
             name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
             said = [arg.value if isinstance(arg, ast.Constant) else None for arg in call.args]
             first, second = [*said, None, None][:2]
@@ -154,7 +158,9 @@ def test_the_mark_of_a_column_says_its_vocabulary_and_what_it_has_besides() -> N
     assert word_column("VARCHAR", "the drive") is None
     lights = store.word_columns()["way_mark"]["lights"]
     assert (lights.field, lights.is_list, lights.vocabulary.name) == ("fit", True, "light_fit")
-    with pytest.raises(DriveLintError, match=r"no vocabulary \[actor_clas\] in words\.toml; did you mean 'actor_class'\?"):
+    with pytest.raises(
+        DriveLintError, match=r"no vocabulary \[actor_clas\] in words\.toml; did you mean 'actor_class'\?"
+    ):
         word_column("VARCHAR", "[actor_clas]")
 
 
@@ -196,7 +202,16 @@ def test_a_reader_that_hands_over_another_word_is_named(table: str, name: str, c
 
 
 def test_a_readers_rows_are_held_against_the_vocabularies() -> None:
-    row = {"actor_id": "a", "actor_class": "cyclist", "length_m": 1.0, "width_m": 1.0, "height_m": None, "is_ego": False}
-    with pytest.raises(InternalError, match=r"^reader osi-mcap: table actor, column actor_class: 'cyclist' .*'bicycle'"):
+    row = {
+        "actor_id": "a",
+        "actor_class": "cyclist",
+        "length_m": 1.0,
+        "width_m": 1.0,
+        "height_m": None,
+        "is_ego": False,
+    }
+    with pytest.raises(
+        InternalError, match=r"^reader osi-mcap: table actor, column actor_class: 'cyclist' .*'bicycle'"
+    ):
         store.owned_table("actor", "d", [row], "osi-mcap")
     assert store.owned_table("actor", "d", [row | {"actor_class": "bicycle"}], "osi-mcap").num_rows == 1

@@ -42,8 +42,8 @@ from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_of, complete_scene, refuse_wrong_word
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
-from drivelint.sql.words import vocabularies
 from drivelint.reasons.reason_text import codes_in
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

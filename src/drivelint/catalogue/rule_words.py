@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from drivelint.catalogue.header import Param
+    from drivelint.sql.word_scope import Relation
 
 
 def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place: Callable[[str, int], str]) -> None:
@@ -43,7 +44,7 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
 def _checked(sections: Mapping[str, str]) -> dict[str, word_check.Checked]:
     """Return each section with its words checked; the others see the columns of @reference in the engine's tables."""
     found: dict[str, word_check.Checked] = {}
-    tables: dict[str, word_check.Relation] = {}
+    tables: dict[str, Relation] = {}
     for name in sorted(sections, key=lambda each: each != "reference"):
         found[name] = word_check.check(syntax.parse_select(sections[name], name), tables)
         if name == "reference":

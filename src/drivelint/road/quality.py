@@ -27,7 +27,7 @@ class MapQuality:
         self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _UNKNOWN_WORDS}
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
-        """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where the vocabulary has none such."""
+        """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where it has none such."""
         known = vocabularies()[vocabulary].spelled(word)
         if known is None:
             self._unknown_words[vocabulary][word] += 1
@@ -52,9 +52,7 @@ class MapQuality:
             message = f"{what} in words that are not known: {counted}: {follows}"
             if words:
                 rows.append(_row("unknown_word", severity, None, message, words.total()))
-        return sorted(
-            rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"])
-        )
+        return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 
 
 def _row(check: str, severity: str, lanelet: str | None, message: str, n: int) -> dict[str, Any]:

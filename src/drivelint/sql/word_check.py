@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.sql import store, syntax, word_types
 from drivelint.sql.macro_trees import macro, macro_texts
+from drivelint.sql.word_functions import compared, value_of
 from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, renamed, united
 from drivelint.sql.word_types import (
     NULL,
@@ -37,18 +38,7 @@ if TYPE_CHECKING:
 _COMPARISONS: Final = frozenset(
     {"COMPARE_EQUAL", "COMPARE_NOTEQUAL", "COMPARE_DISTINCT_FROM", "COMPARE_NOT_DISTINCT_FROM"}
 )
-# functions by what they return
-_ONE_OF_ALL: Final = frozenset({"coalesce", "greatest", "least", "ifnull"})
-_FIRST: Final = frozenset({
-    "any_value", "arg_max", "arg_min", "first", "first_value", "last", "last_value", "lead", "lag", "max", "max_by", "min", "min_by",
-    "mode", "nth_value", "nullif", "list_distinct", "list_reverse", "list_slice", "list_sort", "list_unique", "list_where", "array_slice",
-})  # fmt: skip
-_LISTS: Final = frozenset({"list", "array_agg", "list_value", "array_value"})
-_ITEM: Final = frozenset({"unnest", "list_extract", "list_element", "element_at", "list_min", "list_max", "flatten"})
 _LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
-# and those that compare an item, or the items, of a list
-_HAS: Final = frozenset({"contains", "list_contains", "list_has", "list_position", "list_indexof"})
-_HAS_ITEMS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list_intersect"})
 
 
 class Checked(NamedTuple):
@@ -74,7 +64,9 @@ def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
         column = word_types.of_column(known[name]) if name in known else None
         if isinstance(column, Words) and isinstance(kind, Words):
             found += [
-                WrongWord(word, place.offset, column) for word, place in kind.literals.items() if not column.may_be(word)
+                WrongWord(word, place.offset, column)
+                for word, place in kind.literals.items()
+                if not column.may_be(word)
             ]
     return found
 
@@ -90,7 +82,9 @@ def check_macro(name: str) -> list[WrongWord]:
 def _tables() -> dict[str, Relation]:
     columns = store.word_columns()
     return {
-        table: Relation([(name, word_types.of_column(columns[table][name]) if name in columns[table] else None) for name in names])
+        table: Relation(
+            [(name, word_types.of_column(columns[table][name]) if name in columns[table] else None) for name in names]
+        )
         for table, names in store.column_comments().items()
     }
 
@@ -160,7 +154,7 @@ class _Walker:
         complete = True
         for item in node["select_list"]:
             if item["class"] == "STAR":
-                star = self._star(item, scope)
+                star = self._columns_of_star(item, scope)
                 columns += star.columns
                 complete = complete and star.complete
                 continue
@@ -177,7 +171,7 @@ class _Walker:
                 self._visit(value, scope)
         return Relation(columns, complete)
 
-    def _star(self, item: Node, scope: Scope) -> Relation:
+    def _columns_of_star(self, item: Node, scope: Scope) -> Relation:
         """Return the columns that a star stands for."""
         if item.get("columns") or item.get("expr"):
             return UNKNOWN
@@ -187,7 +181,9 @@ class _Walker:
             kind = scope.lookup([wanted])
             return Relation(list(kind.fields.items())) if isinstance(kind, StructOf) else UNKNOWN
         dropped = {_last(name) for name in item.get("exclude_list") or ()}
-        replaced = {entry["key"].lower(): indirect(self.of(entry["value"], scope)) for entry in item.get("replace_list") or ()}
+        replaced = {
+            entry["key"].lower(): indirect(self.of(entry["value"], scope)) for entry in item.get("replace_list") or ()
+        }
         columns = [
             (name, replaced.get(name, kind))
             for source in sources
@@ -210,7 +206,9 @@ class _Walker:
                 relation = self.query(node["subquery"]["node"], scope.ctes, scope)
             case "EXPRESSION_LIST":
                 rows = [[self.of(value, scope) for value in row] for row in node["values"]]
-                relation = Relation([(f"col{n}", indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))])
+                relation = Relation(
+                    [(f"col{n}", indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))]
+                )
             case "TABLE_FUNCTION":
                 call = node["function"]
                 kind = self.of(call, scope)
@@ -235,32 +233,10 @@ class _Walker:
 
     def of(self, node: Node, scope: Scope) -> Type:
         """Return what an expression may be."""
-        match node["class"]:
-            case "CONSTANT":
-                return self._constant(node)
-            case "COLUMN_REF":
-                return scope.lookup([name.lower() for name in node["column_names"]])
-            case "PARAMETER":
-                return Parameter(node["identifier"])
-            case "CASE":
-                checks = node["case_checks"]
-                for each in checks:
-                    self.of(each["when_expr"], scope)
-                return union(self.of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
-            case "CAST":
-                kind = self.of(node["child"], scope)
-                return kind if node["cast_type"]["id"] == "VARCHAR" or kind == NULL else None
-            case "COMPARISON":
-                left, right = self.of(node["left"], scope), self.of(node["right"], scope)
-                if node["type"] in _COMPARISONS:
-                    self._compare(left, right)
-                return None
-            case "OPERATOR":
-                return self._operator(node, [self.of(child, scope) for child in node["children"]])
-            case "FUNCTION" | "WINDOW":
-                return self._function(node, scope)
-            case "SUBQUERY":
-                return self._subquery(node, scope)
+        of_class = getattr(self, f"_{node['class'].lower()}", None)
+        if of_class is not None:
+            kind: Type = of_class(node, scope)
+            return kind
         self._visit([value for key, value in node.items() if key != "class"], scope)
         return None
 
@@ -273,7 +249,7 @@ class _Walker:
                 if isinstance(inner, dict | list):
                     self._visit(inner, scope)
 
-    def _constant(self, node: Node) -> Type:
+    def _constant(self, node: Node, _scope: Scope) -> Type:
         value = node["value"]
         if value["is_null"]:
             return NULL
@@ -282,7 +258,32 @@ class _Walker:
         place = Literal(self._call if self._depth else syntax.offset_of(node), in_macro=bool(self._depth))
         return Words(literals={value["value"]: place}, direct=True)
 
-    def _operator(self, node: Node, kinds: list[Type]) -> Type:
+    @staticmethod
+    def _column_ref(node: Node, scope: Scope) -> Type:
+        return scope.lookup([name.lower() for name in node["column_names"]])
+
+    @staticmethod
+    def _parameter(node: Node, _scope: Scope) -> Type:
+        return Parameter(node["identifier"])
+
+    def _case(self, node: Node, scope: Scope) -> Type:
+        checks = node["case_checks"]
+        for each in checks:
+            self.of(each["when_expr"], scope)
+        return union(self.of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
+
+    def _cast(self, node: Node, scope: Scope) -> Type:
+        kind = self.of(node["child"], scope)
+        return kind if node["cast_type"]["id"] == "VARCHAR" or kind == NULL else None
+
+    def _comparison(self, node: Node, scope: Scope) -> Type:
+        left, right = self.of(node["left"], scope), self.of(node["right"], scope)
+        if node["type"] in _COMPARISONS:
+            self._compare(left, right)
+        return None
+
+    def _operator(self, node: Node, scope: Scope) -> Type:
+        kinds = [self.of(child, scope) for child in node["children"]]
         match node["type"]:
             case "COMPARE_IN" | "COMPARE_NOT_IN":
                 for kind in kinds[1:]:
@@ -295,45 +296,33 @@ class _Walker:
                 return kinds[0]
         return None
 
+    def _window(self, node: Node, scope: Scope) -> Type:
+        return self._function(node, scope)
+
     def _function(self, node: Node, scope: Scope) -> Type:
         name = node["function_name"].lower()
-        if name in _LAMBDAS:
-            return self._lambda(name, node, scope)
         children = node["children"]
+        if name in _LAMBDAS and children[1]["class"] == "LAMBDA":
+            return self._items(name, node, scope)
         kinds = [self.of(child, scope) for child in children]
         self._visit({key: value for key, value in node.items() if key not in {"children", "class"}}, scope)
         if name in macro_texts():
             return self.macro(name, kinds, node)
-        if name in _HAS and len(kinds) == 2:
-            self._compare(item_of(kinds[0]), kinds[1])
-        elif name in _HAS_ITEMS and len(kinds) == 2:
-            self._compare(item_of(kinds[0]), item_of(kinds[1]))
-        elif name == "nullif":
-            self._compare(*kinds)
+        if name == "struct_pack":
+            return StructOf(
+                {child["alias"].lower(): indirect(kind) for child, kind in zip(children, kinds, strict=True)}
+            )
+        if pair := compared(name, kinds):
+            self._compare(*pair)
         if len(kinds) == 2:
             self._keep(word_types.wrong_patterns(name, *kinds))
-        if name in _FIRST:
-            default = kinds[2:3] if name in {"lag", "lead"} else []
-            return union([kinds[0], *default])
-        if name in _ONE_OF_ALL:
-            return union(kinds)
-        if name in _LISTS:
-            return ListOf(union(kinds))
-        if name in _ITEM:
-            return item_of(kinds[0])
-        if name in {"||", "concat", "list_concat"}:
-            return union(kinds) if any(isinstance(kind, ListOf) for kind in kinds) else word_types.joined(kinds)
-        if name == "struct_pack":
-            return StructOf({child["alias"].lower(): indirect(kind) for child, kind in zip(children, kinds, strict=True)})
-        return member_of(*kinds) if name in {"struct_extract", "array_extract"} else None
+        return value_of(name, kinds)
 
-    def _lambda(self, name: str, node: Node, scope: Scope) -> Type:
+    def _items(self, name: str, node: Node, scope: Scope) -> Type:
+        """Return what a function with a lambda makes of a list."""
         items, function = self.of(node["children"][0], scope), node["children"][1]
-        if function["class"] != "LAMBDA":
-            return None
-        left = function.get("lhs") or {}
-        parameters = left.get("children") or [left]
-        names = [column["column_names"][0].lower() for column in parameters]
+        left = function["lhs"]
+        names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
         bound = {**dict.fromkeys(names), names[0]: indirect(item_of(items))}
         value = self.of(function["expr"], Scope(scope, scope.ctes, bound=bound))
         return items if name == "list_filter" else ListOf(value)
@@ -360,7 +349,9 @@ class _Walker:
         if node["subquery_type"] == "ANY":
             kind = self.of(node["child"], scope)
             if node["comparison_type"] in _COMPARISONS:  # the literals of a list, as ANY has them, are written here
-                self._compare(kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first)
+                self._compare(
+                    kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first
+                )
             return None
         return first if node["subquery_type"] == "SCALAR" else None
 

@@ -1,4 +1,4 @@
-"""What an expression of SQL may be, as far as words go: a word of a vocabulary, one of some literals, a list or STRUCT of such, a parameter.
+"""What an expression of SQL may be, as far as words go: a word of a vocabulary, a literal, a list or STRUCT of such, a parameter.
 
 None is an expression of which nothing is known: a number, or a text that the log gave.
 """
@@ -110,23 +110,20 @@ def indirect(kind: Type) -> Type:
 def union(kinds: Iterable[Type]) -> Type:
     """Return what an expression may be that is any of these; NULL adds nothing."""
     parts = [kind for kind in kinds if not (isinstance(kind, Words) and kind.is_null)]
-    match parts:
-        case []:
-            return NULL
-        case [only]:
-            return only
-    if words := [part for part in parts if isinstance(part, Words)]:
-        if len(words) < len(parts):
-            return None
+    if len(parts) < 2:
+        return parts[0] if parts else NULL
+    words = [part for part in parts if isinstance(part, Words)]
+    lists = [part for part in parts if isinstance(part, ListOf)]
+    structs = [part for part in parts if isinstance(part, StructOf)]
+    if len(words) == len(parts):
         literals = {word: place for part in reversed(words) for word, place in part.literals.items()}
         known = frozenset[Vocabulary]().union(*(part.vocabularies for part in words))
         return Words(known, literals, all(part.direct for part in words))
-    if lists := [part for part in parts if isinstance(part, ListOf)]:
-        return ListOf(union(part.item for part in lists)) if len(lists) == len(parts) else None
-    if structs := [part for part in parts if isinstance(part, StructOf)]:
+    if len(lists) == len(parts):
+        return ListOf(union(part.item for part in lists))
+    if len(structs) == len(parts):
         names = dict.fromkeys(name for part in structs for name in part.fields)
-        fields = {name: union(part.fields.get(name) for part in structs) for name in names}
-        return StructOf(fields) if len(structs) == len(parts) else None
+        return StructOf({name: union(part.fields.get(name) for part in structs) for name in names})
     return None
 
 
@@ -180,8 +177,13 @@ def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
             yield from wrong
 
 
+def _is_like(word: str, pattern: str) -> bool:
+    parts = (".*" if each == "%" else "." if each == "_" else re.escape(each) for each in pattern)
+    return re.fullmatch("".join(parts), word, re.DOTALL) is not None
+
+
 _TESTS: Final[Mapping[str, Callable[[str, str], bool]]] = {
-    **dict.fromkeys(("~~", "!~~"), lambda word, pattern: _is_like(word, pattern)),
+    **dict.fromkeys(("~~", "!~~"), _is_like),
     **dict.fromkeys(("~~*", "!~~*"), lambda word, pattern: _is_like(word.casefold(), pattern.casefold())),
     **dict.fromkeys(("starts_with", "prefix", "^@"), str.startswith),
     **dict.fromkeys(("ends_with", "suffix"), str.endswith),
@@ -199,8 +201,3 @@ def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWo
     for wanted, place in pattern.literals.items():
         if not place.in_macro and not any(_TESTS[function](word, wanted) for word in text.known):
             yield WrongWord(wanted, place.offset, text)
-
-
-def _is_like(word: str, pattern: str) -> bool:
-    parts = (".*" if each == "%" else "." if each == "_" else re.escape(each) for each in pattern)
-    return re.fullmatch("".join(parts), word, re.DOTALL) is not None

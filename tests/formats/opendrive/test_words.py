@@ -42,7 +42,9 @@ def test_a_lane_of_a_type_that_is_not_known_is_named_and_not_driven_on() -> None
     environment = load(road(lanes=lanes))
     found = {name: (row["lane_type"], row["drivable"]) for name, row in lanelets(environment).items()}
     assert found == {"1.0.1": ("driving", True), **dict.fromkeys(["1.0.-1", "1.0.-2", "1.0.-3"], ("unknown", False))}
-    message = "types of lanes in words that are not known: drivng (2), hoverlane (1): vehicles are taken not to drive there"
+    message = (
+        "types of lanes in words that are not known: drivng (2), hoverlane (1): vehicles are taken not to drive there"
+    )
     assert unknown(environment) == [("warning", message, 3)]
 
 

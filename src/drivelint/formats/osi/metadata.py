@@ -145,12 +145,12 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
     return found
 
 
-def known_findings(path: Path, findings: Sequence[QualityFinding]) -> Sequence[QualityFinding]:
+def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
     """Return findings that a log carries of its conversion. Errors: `TraceError` for one of a check that there is not."""
     for finding in findings:
         if wrong := vocabularies()["log_check"].problem(finding.check_id):
             raise TraceError(f"{path}: quality: {wrong}: convert the log again with this version")
-    return findings
+    return list(findings)
 
 
 def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
