@@ -53,15 +53,15 @@ CREATE TABLE lane_apart (
 CREATE TABLE lane_beside (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    side VARCHAR NOT NULL,            -- left or right of the driver
+    side VARCHAR NOT NULL,            -- [side]
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line; no row: nothing lies beyond that boundary in the map
     s_end_m DOUBLE NOT NULL,          -- to here
     beside_id VARCHAR NOT NULL,       -- the lanelet beyond that boundary: as the map names it, else the drivable one that runs along it, at most 2 m away, of whatever road; the opposing lane behind a narrow strip
     against BOOLEAN NOT NULL,         -- that one is driven the other way
     gap_m DOUBLE NOT NULL,            -- from the boundary to its nearer bound; 0: the map names it
-    strip VARCHAR,                    -- what the map draws as a lane between the two directions, and is looked through: median (at most 1 m wide), border or restricted (2 m); NULL: nothing
+    strip VARCHAR,                    -- [lane_strip] NULL: nothing
     drivable BOOLEAN NOT NULL,        -- see lanelet
-    lane_type VARCHAR NOT NULL,       -- see lanelet
+    lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
     width_m DOUBLE NOT NULL           -- its width
 );
 
@@ -101,7 +101,7 @@ CREATE TABLE lane_cell (
     cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     drivable BOOLEAN NOT NULL,        -- see lanelet
-    footway BOOLEAN NOT NULL,         -- for people on foot only
+    footway BOOLEAN,                  -- for people on foot only; NULL: what the lane is for is not known
     k INTEGER NOT NULL,               -- the segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
     len_m DOUBLE NOT NULL,            -- its length along the centre line
@@ -146,7 +146,7 @@ CREATE TABLE ego_part (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor that is the ego itself, and no other road user
-    part VARCHAR NOT NULL             -- trailer: the ego draws it; successor, predecessor: the id under which the ego's own track goes on or was before
+    part VARCHAR NOT NULL             -- [part_of_ego]
 );
 
 -- lifetime: part
@@ -178,7 +178,7 @@ CREATE TABLE step (
 CREATE TABLE capability (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    signal VARCHAR NOT NULL,          -- what a rule may require: map, registration, handedness, lane_types, markings, speed_limits, indicator, brake_light, ego_size, actor_classes, exit_signs, ...
+    signal VARCHAR NOT NULL,          -- [signal] what a rule may require
     available BOOLEAN NOT NULL,       -- the log and map give it
     reason VARCHAR NOT NULL           -- why the signal is available or missing, as JSON from the macro why
 );
@@ -203,9 +203,9 @@ CREATE TABLE registration (
 CREATE TABLE road_user (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
-    actor_class VARCHAR,              -- its class as far as it is known: the recorded one; vehicle also for one without a class that is longer than 3 m; object only for a thing that stays within 1 m in the whole log; NULL: it may be anything
-    length_m DOUBLE,                  -- box
-    width_m DOUBLE                    -- box
+    actor_class VARCHAR,              -- [actor_class] as far as it is known: the recorded one; vehicle also for one without a class that is longer than 3 m; object only for a thing that stays within 1 m in the whole log; NULL: it may be anything {class}
+    length_m DOUBLE,                  -- box {size}
+    width_m DOUBLE                    -- box {size}
 );
 
 -- lifetime: part
@@ -213,19 +213,19 @@ CREATE TABLE state_dynamics (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
     t_ns BIGINT NOT NULL,             -- time stamp
-    x_m DOUBLE,                       -- box centre
-    y_m DOUBLE,                       -- box centre
-    z_m DOUBLE,                       -- box centre, up; NULL: not recorded, or the same all the while as in a flat simulation
-    yaw_rad DOUBLE,                   -- heading
-    travel_rad DOUBLE,                -- direction of travel: of the motion where it moves (a vehicle: its heading, or the opposite one where it reverses), else the heading
-    vx_mps DOUBLE,                    -- velocity east
-    vy_mps DOUBLE,                    -- velocity north
-    speed_mps DOUBLE,                 -- length of the velocity vector
-    accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample, after a hole, or its velocity is derived by a filter (quality velocity_filtered)
-    length_m DOUBLE,                  -- box
-    width_m DOUBLE,                   -- box
-    actor_class VARCHAR,              -- see road_user
-    indicator VARCHAR                 -- see actor_state
+    x_m DOUBLE,                       -- box centre {position}
+    y_m DOUBLE,                       -- box centre {position}
+    z_m DOUBLE,                       -- box centre, up; NULL: not recorded, or the same all the while as in a flat simulation {position}
+    yaw_rad DOUBLE,                   -- heading {heading}
+    travel_rad DOUBLE,                -- direction of travel: of the motion where it moves (a vehicle: its heading, or the opposite one where it reverses), else the heading {heading}
+    vx_mps DOUBLE,                    -- velocity east {velocity}
+    vy_mps DOUBLE,                    -- velocity north {velocity}
+    speed_mps DOUBLE,                 -- length of the velocity vector {velocity}
+    accel_mps2 DOUBLE,                -- backward difference of speed at the log's own rate, unfiltered; NULL: first sample, after a hole, or its velocity is derived by a filter (quality velocity_filtered) {velocity}
+    length_m DOUBLE,                  -- box {size}
+    width_m DOUBLE,                   -- box {size}
+    actor_class VARCHAR,              -- [actor_class] see road_user {class}
+    indicator VARCHAR                 -- [indicator] see actor_state
 );
 
 -- lifetime: part
@@ -234,11 +234,11 @@ CREATE TABLE lane_occupancy (
     actor_id VARCHAR NOT NULL,        -- the actor
     t_ns BIGINT NOT NULL,             -- time stamp
     lanelet_id VARCHAR,               -- a lanelet that contains the box centre, one row each; NULL: on none, or no position
-    s_m DOUBLE,                       -- station of the centre along it
-    d_m DOUBLE,                       -- offset from its centre line, left of travel positive
+    s_m DOUBLE,                       -- station of the centre along it {position}
+    d_m DOUBLE,                       -- offset from its centre line, left of travel positive {position}
     half_width_m DOUBLE,              -- half its width there
-    heading_diff_rad DOUBLE,          -- actor's heading against the lane's direction, -pi..pi
-    drivable BOOLEAN                  -- see lanelet
+    heading_diff_rad DOUBLE,          -- actor's heading against the lane's direction, -pi..pi {heading}
+    drivable BOOLEAN                  -- see lanelet {position}
 );
 
 -- lifetime: part
@@ -247,11 +247,11 @@ CREATE TABLE ego_lane (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     lanelet_id VARCHAR,               -- the drivable lanelet it is on, one per step; in junctions the one that its way leads through; NULL: none
-    s_m DOUBLE,                       -- station along it
-    d_m DOUBLE,                       -- offset from its centre line, left of travel positive
+    s_m DOUBLE,                       -- station along it {position}
+    d_m DOUBLE,                       -- offset from its centre line, left of travel positive {position}
     half_width_m DOUBLE,              -- half its width there
-    with_direction BOOLEAN,           -- heading within 90 degrees of the lane's direction
-    with_traffic BOOLEAN              -- with_direction, or the lane is driven both ways
+    with_direction BOOLEAN,           -- heading within 90 degrees of the lane's direction {heading}
+    with_traffic BOOLEAN              -- with_direction, or the lane is driven both ways {position}
 );
 
 -- lifetime: part
@@ -260,10 +260,10 @@ CREATE TABLE ego_aside (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which it is on no drivable lane, but on a way beside one
     lanelet_id VARCHAR NOT NULL,      -- the nearest such way: a shoulder, border, parking or cycle lane
-    lane_type VARCHAR NOT NULL,       -- see lanelet
-    road_type VARCHAR,                -- see lanelet
-    off_m DOUBLE NOT NULL,            -- distance from its centre line
-    with_direction BOOLEAN            -- heading within 90 degrees of its direction; NULL: heading not known
+    lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
+    road_type VARCHAR,                -- [road_type] see lanelet
+    off_m DOUBLE NOT NULL,            -- distance from its centre line {position}
+    with_direction BOOLEAN            -- heading within 90 degrees of its direction; NULL: heading not known {heading}
 );
 
 -- lifetime: part
@@ -286,11 +286,11 @@ CREATE TABLE corridor (
     chain_id INTEGER NOT NULL,        -- the running chain
     seq INTEGER NOT NULL,             -- order along the chain
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
-    s_start_m DOUBLE NOT NULL,        -- see chain
-    length_m DOUBLE NOT NULL,         -- see chain
-    side INTEGER,                     -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown
+    s_start_m DOUBLE NOT NULL,        -- see chain {position}
+    length_m DOUBLE NOT NULL,         -- see chain {size}
+    side INTEGER,                     -- overtaking side: 1 left (right-hand traffic), -1 right; NULL: handedness unknown {position}
     over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side (see lane_beside), with the gap between the two, if it is there along more than half of the lanelet; through a junction, that of the lane before or after it; NULL: there is none
-    over_against BOOLEAN              -- that lane is driven the other way
+    over_against BOOLEAN              -- that lane is driven the other way {position, heading, size}
 );
 
 -- lifetime: part
@@ -328,20 +328,20 @@ CREATE TABLE ego_corridor (
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- a running chain whose strip the ego is in
     t_ns BIGINT NOT NULL,             -- the step
-    s_m DOUBLE NOT NULL,              -- chain station of the box centre
-    d_m DOUBLE NOT NULL,              -- offset of the centre from the running lane's centre line, left positive
-    left_out_m DOUBLE,                -- furthest corner beyond the running lane's left boundary; negative: all inside
-    left_in_m DOUBLE,                 -- nearest corner beyond it; positive: wholly over it
-    right_out_m DOUBLE,               -- furthest corner beyond the right boundary
-    right_in_m DOUBLE,                -- nearest corner beyond it
-    front_s_m DOUBLE,                 -- chain station of the foremost corner
-    rear_s_m DOUBLE,                  -- chain station of the rearmost corner
-    lat_half_m DOUBLE,                -- half the extent of the box across the corridor
+    s_m DOUBLE NOT NULL,              -- chain station of the box centre {position}
+    d_m DOUBLE NOT NULL,              -- offset of the centre from the running lane's centre line, left positive {position}
+    left_out_m DOUBLE,                -- furthest corner beyond the running lane's left boundary; negative: all inside {position, heading, size}
+    left_in_m DOUBLE,                 -- nearest corner beyond it; positive: wholly over it {position}
+    right_out_m DOUBLE,               -- furthest corner beyond the right boundary {position, heading, size}
+    right_in_m DOUBLE,                -- nearest corner beyond it {position}
+    front_s_m DOUBLE,                 -- chain station of the foremost corner {position, heading, size}
+    rear_s_m DOUBLE,                  -- chain station of the rearmost corner {position, heading, size}
+    lat_half_m DOUBLE,                -- half the extent of the box across the corridor {heading, size}
     half_width_m DOUBLE NOT NULL,     -- half width of the running lane at the centre's station
     over_width_m DOUBLE,              -- see corridor
-    over_against BOOLEAN,             -- see corridor
-    side INTEGER,                     -- see corridor
-    heading_diff_rad DOUBLE           -- ego's heading against the corridor, -pi..pi
+    over_against BOOLEAN,             -- see corridor {position, heading, size}
+    side INTEGER,                     -- see corridor {position}
+    heading_diff_rad DOUBLE           -- ego's heading against the corridor, -pi..pi {heading}
 );
 
 -- lifetime: part
@@ -349,32 +349,32 @@ CREATE TABLE ego_state (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    x_m DOUBLE,                       -- box centre
-    y_m DOUBLE,                       -- box centre
-    z_m DOUBLE,                       -- see state_dynamics
-    yaw_rad DOUBLE,                   -- heading
-    speed_mps DOUBLE,                 -- speed
-    accel_mps2 DOUBLE,                -- see state_dynamics
-    fastest_3s_mps DOUBLE,            -- highest speed of this step and of those in the 3 s before it; NULL: they show an ego that stands, and not all of the 3 s is recorded
-    travel_m DOUBLE,                  -- way made since the first step
-    length_m DOUBLE,                  -- box
-    width_m DOUBLE,                   -- box
-    combination_m DOUBLE,             -- length with the trailer that it draws; NULL: the trailer is not placed
-    indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
+    x_m DOUBLE,                       -- box centre {position}
+    y_m DOUBLE,                       -- box centre {position}
+    z_m DOUBLE,                       -- see state_dynamics {position}
+    yaw_rad DOUBLE,                   -- heading {heading}
+    speed_mps DOUBLE,                 -- speed {velocity}
+    accel_mps2 DOUBLE,                -- see state_dynamics {velocity}
+    fastest_3s_mps DOUBLE,            -- highest speed of this step and of those in the 3 s before it; NULL: they show an ego that stands, and not all of the 3 s is recorded {velocity}
+    travel_m DOUBLE,                  -- way made since the first step {position}
+    length_m DOUBLE,                  -- box {size}
+    width_m DOUBLE,                   -- box {size}
+    combination_m DOUBLE,             -- length with the trailer that it draws; NULL: the trailer is not placed {size}
+    indicator VARCHAR,                -- [indicator] NULL: not known
     lanelet_id VARCHAR,               -- see ego_lane
-    with_direction BOOLEAN,           -- see ego_lane
-    with_traffic BOOLEAN,             -- see ego_lane
-    in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none
-    road_type VARCHAR,                -- of the lanelet; NULL: the map does not say
+    with_direction BOOLEAN,           -- see ego_lane {heading}
+    with_traffic BOOLEAN,             -- see ego_lane {position}
+    in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none {position}
+    road_type VARCHAR,                -- [road_type] of the lanelet; NULL: the map does not say
     limit_mps DOUBLE,                 -- speed limit where it is; NULL: see limit_source
-    limit_source VARCHAR,             -- what says so: lane, road_type, sign; none: the map says that there is no limit; unread: it gives one that cannot be read; NULL: it does not say
+    limit_source VARCHAR,             -- [limit_source + none] none: the map says that there is no limit; NULL: it does not say
     chain_id INTEGER,                 -- its running chain at this step; NULL: none
-    s_m DOUBLE,                       -- chain station of the centre
-    d_m DOUBLE,                       -- offset from the running lane's centre line, left positive
-    front_s_m DOUBLE,                 -- chain station of the front bumper
-    rear_s_m DOUBLE,                  -- chain station of the rear bumper, the trailer's if it draws one
-    lat_half_m DOUBLE,                -- half the extent of the box across the corridor
-    heading_diff_rad DOUBLE           -- heading against the corridor
+    s_m DOUBLE,                       -- chain station of the centre {position}
+    d_m DOUBLE,                       -- offset from the running lane's centre line, left positive {position}
+    front_s_m DOUBLE,                 -- chain station of the front bumper {position, heading, size}
+    rear_s_m DOUBLE,                  -- chain station of the rear bumper, the trailer's if it draws one {position, heading, size}
+    lat_half_m DOUBLE,                -- half the extent of the box across the corridor {heading, size}
+    heading_diff_rad DOUBLE           -- heading against the corridor {heading}
 );
 
 -- lifetime: part
@@ -382,7 +382,7 @@ CREATE TABLE ego_footway (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known, or part of it is on nothing that the map knows
+    depth_m DOUBLE                    -- how far a corner or the middle of a side is inside a footway and on no carriageway; 0: not at all; NULL: the box is not known, or part of it is on nothing that the map knows {position, heading, size}
 );
 
 -- lifetime: part
@@ -391,27 +391,27 @@ CREATE TABLE pair (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the ego's step
     object_id VARCHAR NOT NULL,       -- an actor present, and no part of the ego: one row per step from its first to its last sample, but none where it is over or under the ego's road by the heights of the log
-    actor_class VARCHAR,              -- see road_user
-    x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, a hole in its track, or off_level)
-    y_m DOUBLE,                       -- its box centre
-    yaw_rad DOUBLE,                   -- its heading; of a vehicle that reverses the opposite one: decided by its motion, see travel_rad of state_dynamics
-    speed_mps DOUBLE,                 -- its speed
-    accel_mps2 DOUBLE,                -- see state_dynamics
-    length_m DOUBLE,                  -- box
-    width_m DOUBLE,                   -- box
-    distance_m DOUBLE,                -- centre to centre
-    off_level BOOLEAN NOT NULL,       -- over or under the ego's road there, or it may be: the map has another road there, or the heights of the log are not reliable; whoever is so by reliable heights has no row
-    clearance_m DOUBLE,               -- box to box, the trailer's box being the ego's too; negative: depth of overlap; beyond 30 m a lower bound, and off_level, where an overlap in plan is NULL
-    clearance_is_bound BOOLEAN,       -- clearance_m is only a lower bound
-    s_m DOUBLE,                       -- station of its centre on the ego's running chain; NULL: not in the corridor's strip
-    d_m DOUBLE,                       -- its offset from the running lane's centre line, left positive
-    front_s_m DOUBLE,                 -- its furthest station along the ego's direction
-    rear_s_m DOUBLE,                  -- its nearest
-    lat_half_m DOUBLE,                -- half the extent of its box across the corridor
-    heading_diff_rad DOUBLE,          -- its heading against the corridor, -pi..pi
+    actor_class VARCHAR,              -- [actor_class] see road_user {class}
+    x_m DOUBLE,                       -- its box centre; NULL: present but not placed (no position, stale, a hole in its track, or off_level) {position}
+    y_m DOUBLE,                       -- its box centre {position}
+    yaw_rad DOUBLE,                   -- its heading; of a vehicle that reverses the opposite one: decided by its motion, see travel_rad of state_dynamics {heading}
+    speed_mps DOUBLE,                 -- its speed {velocity}
+    accel_mps2 DOUBLE,                -- see state_dynamics {velocity}
+    length_m DOUBLE,                  -- box {size}
+    width_m DOUBLE,                   -- box {size}
+    distance_m DOUBLE,                -- centre to centre {position}
+    off_level BOOLEAN NOT NULL,       -- over or under the ego's road there, or it may be: the map has another road there, or the heights of the log are not reliable; whoever is so by reliable heights has no row {position}
+    clearance_m DOUBLE,               -- box to box, the trailer's box being the ego's too; negative: depth of overlap; beyond 30 m a lower bound, and off_level, where an overlap in plan is NULL {position, heading, size}
+    clearance_is_bound BOOLEAN,       -- clearance_m is only a lower bound {position, heading, size}
+    s_m DOUBLE,                       -- station of its centre on the ego's running chain; NULL: not in the corridor's strip {position}
+    d_m DOUBLE,                       -- its offset from the running lane's centre line, left positive {position}
+    front_s_m DOUBLE,                 -- its furthest station along the ego's direction {position, heading, size}
+    rear_s_m DOUBLE,                  -- its nearest {position, heading, size}
+    lat_half_m DOUBLE,                -- half the extent of its box across the corridor {heading, size}
+    heading_diff_rad DOUBLE,          -- its heading against the corridor, -pi..pi {heading}
     half_width_m DOUBLE,              -- half width of the running lane at its station
     over_width_m DOUBLE,              -- see corridor
-    over_against BOOLEAN              -- see corridor
+    over_against BOOLEAN              -- see corridor {position, heading, size}
 );
 
 -- lifetime: part
@@ -419,10 +419,10 @@ CREATE TABLE between_steps (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step; the boxes are apart at it and at the next, and may have touched between the two: they came nearer than at either
-    t_next_ns BIGINT NOT NULL,        -- the next step, not beyond a hole
+    t_next_ns BIGINT NOT NULL,        -- the next step, not beyond a hole {position}
     object_id VARCHAR NOT NULL,       -- the other actor
-    least_m DOUBLE NOT NULL,          -- least clearance between the two steps, both moved along the cubic through place and velocity at both (the chord where the velocities contradict it); negative: depth of overlap
-    blur_m DOUBLE NOT NULL            -- how far off that may be: nobody brakes or swerves by more than 8 m/s2; smaller than -least_m: contact for sure; smaller than least_m: none, and no row
+    least_m DOUBLE NOT NULL,          -- least clearance between the two steps, both moved along the cubic through place and velocity at both (the chord where the velocities contradict it); negative: depth of overlap {position, heading, size}
+    blur_m DOUBLE NOT NULL            -- how far off that may be: nobody brakes or swerves by more than 8 m/s2; smaller than -least_m: contact for sure; smaller than least_m: none, and no row {position}
 );
 
 -- lifetime: part
@@ -431,7 +431,7 @@ CREATE TABLE clearance_least (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which the clearance in pair is not known
     object_id VARCHAR NOT NULL,       -- the other actor
-    least_m DOUBLE NOT NULL           -- positive: it is no smaller, after where the two were seen before and where they are seen next
+    least_m DOUBLE NOT NULL           -- positive: it is no smaller, after where the two were seen before and where they are seen next {position, heading, size}
 );
 
 -- lifetime: part
@@ -439,9 +439,9 @@ CREATE TABLE lost_object (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor whose track ends while it could still have been there
-    t_from_ns BIGINT NOT NULL,        -- unknown from here
-    t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds and its track ended near the ego, when it would have been recorded again
-    code VARCHAR NOT NULL             -- lost_near_ego, lost_in_range, lost_on_road (further away, but it may have touched the ego later)
+    t_from_ns BIGINT NOT NULL,        -- unknown from here {position}
+    t_to_ns BIGINT NOT NULL,          -- to here: the log's end, or where data_log.in_sight holds and its track ended near the ego, when it would have been recorded again {position}
+    code VARCHAR NOT NULL             -- [loss]
 );
 
 -- lifetime: part
@@ -449,7 +449,7 @@ CREATE TABLE track_off_level (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor that pair has at some steps, but not at the last (or first) of its track: there it is over or under the ego's road
-    lost BOOLEAN NOT NULL             -- at the end of its track, or at its beginning (false)
+    lost BOOLEAN NOT NULL             -- at the end of its track, or at its beginning (false) {position}
 );
 
 -- lifetime: part
@@ -458,7 +458,7 @@ CREATE TABLE unplaced (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead and cannot be placed on it
-    code VARCHAR NOT NULL             -- no_position, off_level (may be over or under the road), no_heading, no_size, off_lanes (moves beside every lane), or see unseen
+    code VARCHAR NOT NULL             -- [unplaced_cause + lost + lost_behind + appeared + beyond_map] see unseen
 );
 
 -- lifetime: part
@@ -467,12 +467,12 @@ CREATE TABLE unseen (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which the log does not have the actor
     object_id VARCHAR NOT NULL,       -- an actor whose track ends before, or begins after, near enough to matter
-    near BOOLEAN NOT NULL,            -- it was close by, in the sensor's range or coming towards the ego: it may be anywhere on the road
-    code VARCHAR NOT NULL,            -- lost, lost_behind (driving away), appeared, beyond_map (400 m or more away, over an end of the map)
-    ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL
-    behind_m DOUBLE,                  -- the same over the near end, so far behind the ego's rear
-    off_ahead_m DOUBLE,               -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far ahead of the ego's front; else NULL
-    off_behind_m DOUBLE               -- and so far behind the ego's rear
+    near BOOLEAN NOT NULL,            -- it was close by, in the sensor's range or coming towards the ego: it may be anywhere on the road {position}
+    code VARCHAR NOT NULL,            -- [unseen_cause]
+    ahead_m DOUBLE,                   -- it came in, or left, over the far end of the map, which is so far ahead of the ego's front; else NULL {position}
+    behind_m DOUBLE,                  -- the same over the near end, so far behind the ego's rear {position}
+    off_ahead_m DOUBLE,               -- it came in, or left, over an end of the map, be it on another road: it is not on the ego's corridor, which reaches so far ahead of the ego's front; else NULL {position}
+    off_behind_m DOUBLE               -- and so far behind the ego's rear {position}
 );
 
 -- lifetime: part
@@ -481,10 +481,10 @@ CREATE TABLE oncoming_vehicle (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, a vehicle or an animal, or is parked the wrong way round in the ego's
-    vehicle BOOLEAN,                  -- NULL: its class is not known
-    da_m DOUBLE,                      -- along the corridor, the ego's front to its nearest corner; on its way: what it has yet to go as well
-    speed_mps DOUBLE,                 -- its speed
-    on_its_way BOOLEAN NOT NULL       -- it is not on the corridor yet and gets there within 15 s
+    vehicle BOOLEAN,                  -- NULL: its class is not known {class}
+    da_m DOUBLE,                      -- along the corridor, the ego's front to its nearest corner; on its way: what it has yet to go as well {position}
+    speed_mps DOUBLE,                 -- its speed {velocity}
+    on_its_way BOOLEAN NOT NULL       -- it is not on the corridor yet and gets there within 15 s {position, heading, velocity}
 );
 
 -- lifetime: part
@@ -493,12 +493,12 @@ CREATE TABLE oncoming (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; no row: the ego itself is not placed
     object_id VARCHAR,                -- OV: the nearest oncoming vehicle on the overtaking chain or on its way to it; NULL: none seen
-    da_m DOUBLE,                      -- distance ahead: ego front to OV front, along the corridor; NULL: no OV
-    speed_mps DOUBLE,                 -- its speed
-    on_its_way BOOLEAN,               -- it was still on another lane: da_m is the way that it then made
-    free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach
-    free_reason VARCHAR NOT NULL,     -- what ends it: map_end, corridor_end, sensor_range
-    n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out
+    da_m DOUBLE,                      -- distance ahead: ego front to OV front, along the corridor; NULL: no OV {position}
+    speed_mps DOUBLE,                 -- its speed {velocity}
+    on_its_way BOOLEAN,               -- it was still on another lane: da_m is the way that it then made {position, heading, velocity}
+    free_m DOUBLE NOT NULL,           -- how far ahead of the ego's front the corridor and the sensor reach {position, heading, size}
+    free_reason VARCHAR NOT NULL,     -- [free_end]
+    n_unplaced BIGINT NOT NULL,       -- other vehicles that cannot be placed: a nearer OV is not ruled out {position}
     unplaced_reason VARCHAR           -- why one of them has no place, as JSON from the macro why
 );
 
@@ -508,19 +508,19 @@ CREATE TABLE lead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
-    actor_class VARCHAR,              -- see road_user
-    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
-    speed_mps DOUBLE,                 -- its speed along the lane, whichever way
-    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
-    ego_speed_mps DOUBLE,             -- the ego's speed
-    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane: it follows, and does not overtake beside it
-    oncoming BOOLEAN,                 -- it heads against the corridor
-    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap
-    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
-    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
-    error_mps DOUBLE NOT NULL,        -- what the difference of the two speeds may be off by: 0.25 m/s for each that ingest derives by a filter (quality velocity_filtered), else 0
-    t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one
-    joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there
+    actor_class VARCHAR,              -- [actor_class] see road_user {class}
+    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
+    speed_mps DOUBLE,                 -- its speed along the lane, whichever way {velocity}
+    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known {velocity}
+    ego_speed_mps DOUBLE,             -- the ego's speed {velocity}
+    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane: it follows, and does not overtake beside it {position}
+    oncoming BOOLEAN,                 -- it heads against the corridor {position, heading, velocity}
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap {position, heading, size}
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive {velocity}
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive {velocity}
+    error_mps DOUBLE NOT NULL,        -- what the difference of the two speeds may be off by: 0.25 m/s for each that ingest derives by a filter (quality velocity_filtered), else 0 {velocity}
+    t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one {position}
+    joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there {position}
 );
 
 -- lifetime: part
@@ -529,15 +529,15 @@ CREATE TABLE lane_ahead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- whoever is ahead in the running lane, or reaches into it and is in the ego's way or heading into it; not on foot, no animal, and a thing only where it is in the way; see lead
-    actor_class VARCHAR,              -- see road_user
-    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap
-    speed_mps DOUBLE,                 -- its speed
-    oncoming BOOLEAN,                 -- it heads against the corridor
-    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap, it is in the ego's way
-    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
-    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
-    soon BOOLEAN,                     -- it is in the ego's way, or will be within 3 s at the present speeds across
-    outside BOOLEAN                   -- nothing of it is in the running lane: it is turned towards the ego, which is in its way beside the lane
+    actor_class VARCHAR,              -- [actor_class] see road_user {class}
+    gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
+    speed_mps DOUBLE,                 -- its speed {velocity}
+    oncoming BOOLEAN,                 -- it heads against the corridor {position, heading, velocity}
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap, it is in the ego's way {position, heading, size}
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive {velocity}
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive {velocity}
+    soon BOOLEAN,                     -- it is in the ego's way, or will be within 3 s at the present speeds across {position, heading, velocity}
+    outside BOOLEAN                   -- nothing of it is in the running lane: it is turned towards the ego, which is in its way beside the lane {position}
 );
 
 -- lifetime: part
@@ -546,31 +546,31 @@ CREATE TABLE vehicle_ahead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step; none: it cannot be told who is ahead
     object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and those whom that may hide: the nearest one in the ego's way, one nearer that is heading into it, and the nearest that comes towards the ego, in the running lane or in the ego's way beside it; NULL: nobody there, or see known
-    nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none
-    known BOOLEAN NOT NULL,           -- false: nobody is seen, or the lead is beside the ego's way, and somebody without a place or of no known class may be in it: further away than free_m
-    gap_m DOUBLE,                     -- see lead
-    speed_mps DOUBLE,                 -- its speed along the lane, whichever way
-    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known
-    ego_speed_mps DOUBLE,             -- the ego's speed
-    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane
-    oncoming BOOLEAN,                 -- it heads against the corridor
-    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap
-    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive
-    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive
-    error_mps DOUBLE NOT NULL,        -- see lead
-    joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen
-    let_in_ns BIGINT,                 -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in
-    passes_by BOOLEAN,                -- at the present velocities the two boxes pass each other by: where lanes turn or cross, who is ahead along the lane is not in the way; NULL: it takes over 3 s, or is not known
-    grazes BOOLEAN,                   -- at the present velocities the boxes miss each other by less than those and the lane leave open: whether they pass each other by is not known
-    free_m DOUBLE,                    -- where not known: nobody is nearer to the ego's front in its lane than this
-    free_mps DOUBLE                   -- where not known: nobody comes nearer faster than this: one that stands, or one that comes at 70 mph, unless it goes the ego's way
+    nearest BOOLEAN NOT NULL,         -- it is the lead, or there is none {position}
+    known BOOLEAN NOT NULL,           -- false: nobody is seen, or the lead is beside the ego's way, and somebody without a place or of no known class may be in it: further away than free_m {position}
+    gap_m DOUBLE,                     -- see lead {position, heading, size}
+    speed_mps DOUBLE,                 -- its speed along the lane, whichever way {velocity}
+    accel_mps2 DOUBLE,                -- its acceleration, mean over the 0.5 s up to the step; NULL: not known {velocity}
+    ego_speed_mps DOUBLE,             -- the ego's speed {velocity}
+    in_lane BOOLEAN,                  -- some of the ego's box is in the running lane {position}
+    oncoming BOOLEAN,                 -- it heads against the corridor {position, heading, velocity}
+    across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap {position, heading, size}
+    ego_across_mps DOUBLE,            -- ego's speed across the corridor, towards it positive {velocity}
+    across_mps DOUBLE,                -- its speed across the corridor, towards the ego positive {velocity}
+    error_mps DOUBLE NOT NULL,        -- see lead {velocity}
+    joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen {position}
+    let_in_ns BIGINT,                 -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in {position}
+    passes_by BOOLEAN,                -- at the present velocities the two boxes pass each other by: where lanes turn or cross, who is ahead along the lane is not in the way; NULL: it takes over 3 s, or is not known {position}
+    grazes BOOLEAN,                   -- at the present velocities the boxes miss each other by less than those and the lane leave open: whether they pass each other by is not known {position, heading, size}
+    free_m DOUBLE,                    -- where not known: nobody is nearer to the ego's front in its lane than this {position, heading, size}
+    free_mps DOUBLE                   -- where not known: nobody comes nearer faster than this: one that stands, or one that comes at 70 mph, unless it goes the ego's way {velocity}
 );
 
 -- ---- the overtake (paper, Appendix A)
 
 -- lifetime: run
 CREATE TABLE profile (
-    profile VARCHAR NOT NULL,         -- relaxed, nominal, aggressive, observed, or a user's own
+    profile VARCHAR NOT NULL,         -- [profile_name] or a user's own
     style INTEGER NOT NULL,           -- 0 = least aggressive
     pull_out_angle_rad DOUBLE,        -- beta; NULL for observed
     cut_in_angle_rad DOUBLE,          -- theta
@@ -586,22 +586,22 @@ CREATE TABLE excursion (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- the running chain that is left
-    side INTEGER NOT NULL,            -- 1 over the left boundary, -1 over the right
-    overtaking BOOLEAN,               -- that is the side to overtake on; NULL: handedness unknown
-    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary
-    t_pull_ns BIGINT NOT NULL,        -- t0; where the ego stayed over the boundary with its centre in the lane first, the last step at which it gained less than 0.1 m in a second
-    begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane
-    t_end_ns BIGINT NOT NULL,         -- last step over it
-    t_back_ns BIGINT,                 -- the step after that, wholly inside again; NULL: the log, a hole or the corridor ends first
-    t_over_ns BIGINT,                 -- first step wholly over; NULL: never
-    t_out_ns BIGINT NOT NULL,         -- t_over; where it is never wholly over, the first step within 0.1 m of its furthest
-    t_turn_ns BIGINT,                 -- last step after t_out before the lateral speed turned back for good; NULL: never
-    t_return_ns BIGINT,               -- first step after that with a corner over the line again; NULL: never
-    max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got
-    centre_over BOOLEAN NOT NULL,     -- the centre crossed too: a manoeuvre, not a wobble
+    side INTEGER NOT NULL,            -- 1 over the left boundary, -1 over the right {position}
+    overtaking BOOLEAN,               -- that is the side to overtake on; NULL: handedness unknown {position}
+    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary {position}
+    t_pull_ns BIGINT NOT NULL,        -- t0; where the ego stayed over the boundary with its centre in the lane first, the last step at which it gained less than 0.1 m in a second {position}
+    begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane {position}
+    t_end_ns BIGINT NOT NULL,         -- last step over it {position}
+    t_back_ns BIGINT,                 -- the step after that, wholly inside again; NULL: the log, a hole or the corridor ends first {position}
+    t_over_ns BIGINT,                 -- first step wholly over; NULL: never {position, heading, size}
+    t_out_ns BIGINT NOT NULL,         -- t_over; where it is never wholly over, the first step within 0.1 m of its furthest {position}
+    t_turn_ns BIGINT,                 -- last step after t_out before the lateral speed turned back for good; NULL: never {position}
+    t_return_ns BIGINT,               -- first step after that with a corner over the line again; NULL: never {position}
+    max_out_m DOUBLE NOT NULL,        -- how far the furthest corner got {position, heading, size}
+    centre_over BOOLEAN NOT NULL,     -- the centre crossed too: a manoeuvre, not a wobble {position}
     lane_width_m DOUBLE NOT NULL,     -- width of the running lane at t0
     over_width_m DOUBLE,              -- width of the lane beside it on the overtaking side at t0; NULL: none
-    over_against BOOLEAN              -- that lane is driven the other way
+    over_against BOOLEAN              -- that lane is driven the other way {position, heading, size}
 );
 
 -- lifetime: part
@@ -610,38 +610,38 @@ CREATE TABLE overtake (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; each vehicle passed in one go is one more
     chain_id INTEGER NOT NULL,        -- the running chain
-    opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: no lane beside, or unknown
-    side INTEGER NOT NULL,            -- 1 left, -1 right
-    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it
-    vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known
-    sure BOOLEAN NOT NULL,            -- it is an overtake: two of the three hold, the VBP was placed at t0, the ego passed it, the ego's centre was over the line or the ego stayed astride of it for 3 s; else it may be one
-    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane
-    t0_ns BIGINT NOT NULL,            -- t_pull of the excursion: first step with a corner more than 0.05 m over the boundary, or, after a look past the vehicle ahead, when it pulls out
-    t1_ns BIGINT,                     -- first step wholly in the overtaking lane
-    t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1, or for an overtake astride the line the first step within 0.1 m of its furthest
-    t2_ns BIGINT,                     -- lateral speed turns back
-    t3_ns BIGINT,                     -- first step wholly back in the running lane
-    t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion
-    passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front
-    status VARCHAR NOT NULL,          -- completed, aborted (back without passing, its centre over the line or not all of it seen), lane_change (stayed in a lane of its own direction), truncated (the log, a hole or the corridor ends first)
-    v_av_mps DOUBLE,                  -- ego's speed at t0
-    v_vbp_mps DOUBLE,                 -- VBP's speed at t0
-    l_av_m DOUBLE,                    -- ego's length
-    l_vbp_m DOUBLE,                   -- VBP's length
+    opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: no lane beside, or unknown {position}
+    side INTEGER NOT NULL,            -- 1 left, -1 right {position}
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed, or one that may be it {position}
+    vbp_placed BOOLEAN NOT NULL,      -- it was placed at t0; else only its presence is known {position}
+    sure BOOLEAN NOT NULL,            -- it is an overtake: two of the three hold, the VBP was placed at t0, the ego passed it, the ego's centre was over the line or the ego stayed astride of it for 3 s; else it may be one {position}
+    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before it is there and inside the lane {position}
+    t0_ns BIGINT NOT NULL,            -- t_pull of the excursion: first step with a corner more than 0.05 m over the boundary, or, after a look past the vehicle ahead, when it pulls out {position}
+    t1_ns BIGINT,                     -- first step wholly in the overtaking lane {position}
+    t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1, or for an overtake astride the line the first step within 0.1 m of its furthest {position}
+    t2_ns BIGINT,                     -- lateral speed turns back {position}
+    t3_ns BIGINT,                     -- first step wholly back in the running lane {position}
+    t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion {position}
+    passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front {position}
+    status VARCHAR NOT NULL,          -- [overtake_status] {position}
+    v_av_mps DOUBLE,                  -- ego's speed at t0 {velocity}
+    v_vbp_mps DOUBLE,                 -- VBP's speed at t0 {velocity}
+    l_av_m DOUBLE,                    -- ego's length {size}
+    l_vbp_m DOUBLE,                   -- VBP's length {size}
     lane_width_m DOUBLE,              -- w_L, width of the running lane at t0
-    vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor; negative: the VBP is beside the ego then
-    span_m DOUBLE,                    -- from the rear of the first vehicle passed in this go to the front of this one, at t0: L_VBP if it is alone
-    t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2
-    t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3
-    v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3
-    ov_id VARCHAR,                    -- see oncoming, at t0
-    da_m DOUBLE,                      -- distance ahead at t0; without an OV how far the road was free
-    v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV the speed limit
-    n_unplaced BIGINT,                -- see oncoming, at t0; NULL: the ego is not placed
+    vbp_gap_m DOUBLE,                 -- ego front to VBP rear at t0, along the corridor; negative: the VBP is beside the ego then {position, heading, size}
+    span_m DOUBLE,                    -- from the rear of the first vehicle passed in this go to the front of this one, at t0: L_VBP if it is alone {position}
+    t2_gap_m DOUBLE,                  -- VBP front to ego rear at t2 {position, heading, size}
+    t3_gap_m DOUBLE,                  -- VBP front to ego rear at t3 {position, heading, size}
+    v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3 {velocity}
+    ov_id VARCHAR,                    -- see oncoming, at t0 {position}
+    da_m DOUBLE,                      -- distance ahead at t0; without an OV how far the road was free {position}
+    v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV the speed limit {velocity}
+    n_unplaced BIGINT,                -- see oncoming, at t0; NULL: the ego is not placed {position}
     unplaced_reason VARCHAR,          -- see oncoming
-    free_reason VARCHAR,              -- see oncoming
-    pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t_out
-    cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3
+    free_reason VARCHAR,              -- [free_end] see oncoming
+    pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal way from t0 to t_out {heading}
+    cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3 {heading}
 );
 
 -- lifetime: part
@@ -649,23 +649,23 @@ CREATE TABLE overtake_sda (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see overtake
-    profile VARCHAR NOT NULL,         -- see profile; every one, selected or not
-    t0_ns BIGINT NOT NULL,            -- see overtake
-    ov_id VARCHAR,                    -- of the oncoming vehicles at t0 the one that leaves the least, see oncoming_vehicle; NULL: none
-    da_m DOUBLE,                      -- distance ahead to it; NULL: unknown, or more than sda_m while another OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed (or the one that it had reached when the log ended)
-    at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line)
-    nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m
-    sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0; observed: at its mean speed, if completed, and where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined
-    spare_m DOUBLE,                   -- da_m - sda_m
-    spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV
-    zone VARCHAR,                     -- A unsafe, B under 0.5 s, C 0.5 to 2.5 s, D over 2.5 s; NULL: unknown
+    profile VARCHAR NOT NULL,         -- [profile_name] see profile; every one, selected or not
+    t0_ns BIGINT NOT NULL,            -- see overtake {position}
+    ov_id VARCHAR,                    -- of the oncoming vehicles at t0 the one that leaves the least, see oncoming_vehicle; NULL: none {position}
+    da_m DOUBLE,                      -- distance ahead to it; NULL: unknown, or more than sda_m while another OV is not ruled out, or too little at the ego's speed at t0 and enough at its mean speed (or the one that it had reached when the log ended) {position}
+    at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound (a sight line) {position}
+    nobody BOOLEAN NOT NULL,          -- every vehicle placed, and no OV as far as da_m {position}
+    sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0; observed: at its mean speed, if completed, and where da_m is no more than what the ego and the OV covered while the ego was out and the OV's stopping distance: at least that; NULL: undefined {position, heading, velocity, size}
+    spare_m DOUBLE,                   -- da_m - sda_m {position, heading, velocity, size}
+    spare_s DOUBLE,                   -- the time in which it closes, at v_AV + v_OV {position, heading, velocity, size}
+    zone VARCHAR,                     -- [zone] NULL: unknown {position, heading, velocity, size}
     reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
-    pull_out_m DOUBLE,                -- of sda_m, which its parts add up to: what the ego drives to pull out; NULL: sda_m is what was driven, or undefined
-    passing_m DOUBLE,                 -- of sda_m: what it drives beside the vehicle being passed; NULL: as pull_out_m
-    cut_in_m DOUBLE,                  -- of sda_m: what it drives to cut in; NULL: as pull_out_m
-    oncoming_m DOUBLE,                -- of sda_m: what the OV drives meanwhile; NULL: as pull_out_m
-    covered_m DOUBLE,                 -- of sda_m: what the ego and the OV covered while the ego was out, until both stand; NULL: sda_m is no more than the formula's, or undefined
-    stopping_m DOUBLE                 -- of sda_m: the OV's stopping distance; NULL: undefined
+    pull_out_m DOUBLE,                -- of sda_m, which its parts add up to: what the ego drives to pull out; NULL: sda_m is what was driven, or undefined {position, heading, velocity, size}
+    passing_m DOUBLE,                 -- of sda_m: what it drives beside the vehicle being passed; NULL: as pull_out_m {position, heading, velocity, size}
+    cut_in_m DOUBLE,                  -- of sda_m: what it drives to cut in; NULL: as pull_out_m {position, heading, velocity, size}
+    oncoming_m DOUBLE,                -- of sda_m: what the OV drives meanwhile; NULL: as pull_out_m {position, heading, velocity, size}
+    covered_m DOUBLE,                 -- of sda_m: what the ego and the OV covered while the ego was out, until both stand; NULL: sda_m is no more than the formula's, or undefined {position, heading, velocity, size}
+    stopping_m DOUBLE                 -- of sda_m: the OV's stopping distance; NULL: undefined {position, heading, velocity, size}
 );
 
 -- lifetime: part
@@ -674,26 +674,24 @@ CREATE TABLE overtake_step (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see overtake
     t_ns BIGINT NOT NULL,             -- a step from t0 to t_end
-    stage VARCHAR NOT NULL,           -- pulling_out, passing, cutting_in
-    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
-    sure BOOLEAN NOT NULL,            -- see overtake
-    free_m DOUBLE,                    -- how far ahead of the ego's front the corridor and the sensor reach at t0
-    free_reason VARCHAR,              -- what ends it: map_end, corridor_end, sensor_range
-    ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none
-    ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed
+    stage VARCHAR NOT NULL,           -- [overtake_stage] {position}
+    vbp_id VARCHAR NOT NULL,          -- the vehicle being passed {position}
+    sure BOOLEAN NOT NULL,            -- see overtake {position}
+    ov_id VARCHAR,                    -- of the oncoming vehicles at this step the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none {position}
+    ov_known BOOLEAN NOT NULL,        -- no other vehicle may come: every one is placed {position}
     ov_reason VARCHAR,                -- why ov_known is false, and what to provide, as JSON from the macro why; not NULL where ov_known is true
-    sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space
-    ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper
-    ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive
-    ds_av_half_m DOUBLE,              -- half its width: half the vehicle's
-    sd_ov_m DOUBLE,                   -- stopping distance of the oncoming vehicle
-    ds_ov_s_m DOUBLE,                 -- where its danger space begins, reaching against the corridor
-    ds_ov_d_m DOUBLE,                 -- middle of its danger space across the corridor
-    ds_ov_half_m DOUBLE,              -- half its width
-    vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much)
-    ov_in_ds_av_m DOUBLE,             -- an OV inside the ego's, the most of any; NULL: not known of one, and of the others none is inside
-    av_in_ds_ov_m DOUBLE,             -- likewise the ego inside an OV's
-    ds_overlap_m DOUBLE               -- likewise the two danger spaces inside each other
+    sd_av_m DOUBLE,                   -- stopping distance of the ego: length of its danger space {position, heading, velocity, size}
+    ds_av_s_m DOUBLE,                 -- where that danger space begins along the corridor: the middle of the front bumper {position, heading, velocity, size}
+    ds_av_d_m DOUBLE,                 -- middle of that danger space across the corridor: where the front bumper's middle is, left positive {position, heading, velocity, size}
+    ds_av_half_m DOUBLE,              -- half its width: half the vehicle's {position, heading, velocity, size}
+    sd_ov_m DOUBLE,                   -- stopping distance of the oncoming vehicle {position, heading, velocity, size}
+    ds_ov_s_m DOUBLE,                 -- where its danger space begins, reaching against the corridor {position, heading, velocity, size}
+    ds_ov_d_m DOUBLE,                 -- middle of its danger space across the corridor {position, heading, velocity, size}
+    ds_ov_half_m DOUBLE,              -- half its width {position, heading, velocity, size}
+    vbp_in_ds_av_m DOUBLE,            -- along the corridor, how far the VBP is inside the ego's danger space (negative: clear of it by that much) {position, heading, velocity, size}
+    ov_in_ds_av_m DOUBLE,             -- an OV inside the ego's, the most of any; NULL: not known of one, and of the others none is inside {position, heading, velocity, size}
+    av_in_ds_ov_m DOUBLE,             -- likewise the ego inside an OV's {position, heading, velocity, size}
+    ds_overlap_m DOUBLE               -- likewise the two danger spaces inside each other {position, heading, velocity, size}
 );
 
 -- lifetime: part
@@ -702,15 +700,15 @@ CREATE TABLE opportunity (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     object_id VARCHAR NOT NULL,       -- the slower vehicle ahead
-    profile VARCHAR NOT NULL,         -- see profile (not observed)
-    t_start_ns BIGINT NOT NULL,       -- held up from here
-    t_end_ns BIGINT NOT NULL,         -- to here
-    t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known
-    da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown
-    sda_m DOUBLE,                     -- safe distance ahead there
-    spare_s DOUBLE,                   -- time in which the spare distance closes
-    zone VARCHAR,                     -- A to D at that step; NULL: unknown
-    taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it
+    profile VARCHAR NOT NULL,         -- [profile_name] see profile (not observed)
+    t_start_ns BIGINT NOT NULL,       -- held up from here {position}
+    t_end_ns BIGINT NOT NULL,         -- to here {position}
+    t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known {position}
+    da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown {position}
+    sda_m DOUBLE,                     -- safe distance ahead there {position, heading, velocity, size}
+    spare_s DOUBLE,                   -- time in which the spare distance closes {position, heading, velocity, size}
+    zone VARCHAR,                     -- [zone] at that step; NULL: unknown {position, heading, velocity, size}
+    taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it {position}
 );
 
 -- ---- crossing boundaries, signalling, exits
@@ -721,9 +719,9 @@ CREATE TABLE lane_departure (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre: the centre crossed too, or a vehicle was overtaken; on the way back, see t_return and t_back of excursion
-    begin_seen BOOLEAN NOT NULL,      -- see excursion
-    side VARCHAR NOT NULL,            -- left or right
-    back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane
+    begin_seen BOOLEAN NOT NULL,      -- see excursion {position}
+    side VARCHAR NOT NULL,            -- [side] {position}
+    back BOOLEAN NOT NULL             -- it is the way back of an excursion: the boundary is crossed towards the running lane {position}
 );
 
 -- lifetime: part
@@ -731,7 +729,7 @@ CREATE TABLE indicator_on (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side]
     t_on_ns BIGINT NOT NULL,          -- first step with it on, the step before being off or the other side
     t_off_ns BIGINT NOT NULL,         -- last step with it on
     at_log_start BOOLEAN NOT NULL     -- was on when the log began: t_on_ns is not its start
@@ -742,7 +740,7 @@ CREATE TABLE exit_lane (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
     from_id VARCHAR,                  -- the through lanelet beside it; NULL: it branches off without one
-    side VARCHAR NOT NULL             -- on which side it leaves: left or right
+    side VARCHAR NOT NULL             -- [side] on which it leaves
 );
 
 -- lifetime: part
@@ -751,9 +749,9 @@ CREATE TABLE exit_taken (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the exit lane's boundary
-    side VARCHAR NOT NULL,            -- left or right
+    side VARCHAR NOT NULL,            -- [side] {position}
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet
-    t_sign_ns BIGINT,                 -- first step at or past the last exit sign before it; NULL: passed before the log began
+    t_sign_ns BIGINT,                 -- first step at or past the last exit sign before it; NULL: passed before the log began {position}
     sign_id VARCHAR                   -- that sign; NULL: the map has none on the way
 );
 
@@ -763,10 +761,10 @@ CREATE TABLE exit_passed (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet beside the ego's way
-    side VARCHAR NOT NULL,            -- left or right
-    t_near_ns BIGINT NOT NULL,        -- first step beside it, or on it
-    t_gore_ns BIGINT,                 -- first step past its end, where the choice is made; NULL: the log ends before
-    taken BOOLEAN                     -- the ego was in the exit lane at its end; NULL: not reached
+    side VARCHAR NOT NULL,            -- [side] {position}
+    t_near_ns BIGINT NOT NULL,        -- first step beside it, or on it {position}
+    t_gore_ns BIGINT,                 -- first step past its end, where the choice is made; NULL: the log ends before {position}
+    taken BOOLEAN                     -- the ego was in the exit lane at its end; NULL: not reached {position}
 );
 
 -- lifetime: run

@@ -16,11 +16,11 @@ CREATE TABLE scene (
 CREATE TABLE lane_shape (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet near a scene
-    lane_type VARCHAR NOT NULL,       -- see lanelet
+    lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
     drivable BOOLEAN NOT NULL,        -- see lanelet
     in_junction BOOLEAN NOT NULL,     -- a connecting lane of a junction
-    left_marking VARCHAR,             -- marking of most of the left bound; NULL: the map does not say
-    right_marking VARCHAR,            -- marking of most of the right bound
+    left_marking VARCHAR,             -- [marking] of most of the left bound; NULL: the map does not say
+    right_marking VARCHAR,            -- [marking] of most of the right bound; NULL: the map does not say
     left_x_m DOUBLE[] NOT NULL,       -- left bound in the direction of travel, true to 10 cm
     left_y_m DOUBLE[] NOT NULL,       -- left bound
     right_x_m DOUBLE[] NOT NULL,      -- right bound in the direction of travel
@@ -62,7 +62,7 @@ CREATE TABLE track (
     actor_id VARCHAR NOT NULL,        -- an ego, or the other road user of a finding or near miss
     part INTEGER NOT NULL,            -- 0.. in time order: a new part begins after each hole of the track
     is_ego BOOLEAN NOT NULL,          -- see actor
-    actor_class VARCHAR,              -- see actor
+    actor_class VARCHAR,              -- [actor_class] see actor
     t_ns BIGINT[] NOT NULL,           -- at most five samples a second, and the last one
     x_m DOUBLE[] NOT NULL,            -- its box centre at each
     y_m DOUBLE[] NOT NULL             -- its box centre at each
@@ -73,7 +73,7 @@ CREATE TABLE overtake_record (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order, see overtake
-    status VARCHAR NOT NULL,          -- completed, aborted, lane_change, truncated
+    status VARCHAR NOT NULL,          -- [overtake_status]
     opposing BOOLEAN,                 -- the overtaking lane is driven the other way; NULL: not known
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed
     ov_id VARCHAR,                    -- the oncoming vehicle at t0; NULL: none seen
@@ -108,6 +108,6 @@ CREATE TABLE opportunity_record (
     da_m DOUBLE,                      -- distance ahead there, or how far it was free; NULL: unknown
     sda_m DOUBLE,                     -- safe distance ahead there
     spare_s DOUBLE,                   -- time in which the spare distance closes
-    zone VARCHAR,                     -- A to D at that step; NULL: unknown
+    zone VARCHAR,                     -- [zone] at that step; NULL: unknown
     taken BOOLEAN NOT NULL            -- an overtake of that vehicle began in it
 );

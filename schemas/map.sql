@@ -9,8 +9,8 @@ CREATE TABLE environment (
     format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi, argoverse2, 123d, scenarionet
     offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
-    handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on
-    handedness_source VARCHAR NOT NULL, -- option, attribute, junctions, lanes (beside each other, driven in opposite directions), traces, default: how it was found (default: a guess)
+    handedness VARCHAR NOT NULL,      -- [handedness]
+    handedness_source VARCHAR NOT NULL, -- [handedness_source]
     geo_reference VARCHAR,            -- projection (a PROJ string or what else PROJ understands), if the map has one
     geo_offset_x_m DOUBLE,            -- the map's own coordinates, without offset_x_m and offset_y_m, are turned by geo_offset_yaw_rad and then moved by this to be those of geo_reference; NULL: no geo_reference
     geo_offset_y_m DOUBLE,            -- the same for y
@@ -27,12 +27,12 @@ CREATE TABLE lanelet (
     road_id VARCHAR NOT NULL,         -- the road it belongs to
     section INTEGER NOT NULL,         -- index of the lane section along the road, from 0
     lane_no INTEGER NOT NULL,         -- OpenDRIVE lane number (negative: right of the reference line)
-    lane_type VARCHAR NOT NULL,       -- driving, entry, exit, onRamp, offRamp, connectingRamp, bidirectional, bus, taxi, HOV, biking, sidewalk, walking, shoulder, stop, parking, border, median, restricted, curb, none, tram, rail, ...
+    lane_type VARCHAR NOT NULL,       -- [lane_type]
     drivable BOOLEAN NOT NULL,        -- motor vehicles may drive here (by lane_type)
     bidirectional BOOLEAN NOT NULL,   -- driven in both directions; its points then run as the road's right-hand side would
     along_road INTEGER NOT NULL,      -- 1: direction of travel is that of the reference line, -1: against it
     junction_id VARCHAR,              -- the junction it is a connecting lane of; NULL: none
-    road_type VARCHAR,                -- motorway, rural, town, lowSpeed, pedestrian, bicycle, ...; NULL: the map does not say
+    road_type VARCHAR,                -- [road_type] NULL: the map does not say
     length_m DOUBLE NOT NULL,         -- along the centre line
     width_m DOUBLE NOT NULL,          -- mean width
     area_m2 DOUBLE NOT NULL,          -- area between the bounds
@@ -74,12 +74,12 @@ CREATE TABLE lane_link (
 CREATE TABLE lane_boundary (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
-    side VARCHAR NOT NULL,            -- left or right of the driver
+    side VARCHAR NOT NULL,            -- [side]
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
-    marking VARCHAR,                  -- solid, broken, solid_solid, solid_broken, broken_solid, broken_broken, botts_dots, grass, curb, none; of a double line the one nearer to this lanelet is named first; NULL: the map does not say
-    color VARCHAR,                    -- standard, white, yellow, ...; NULL: the map does not say
-    lane_change VARCHAR               -- none, both, increase, decrease as the map says; NULL: it does not
+    marking VARCHAR,                  -- [marking] NULL: the map does not say, or not in a word that is known
+    color VARCHAR,                    -- [marking_color] NULL: the map does not say
+    lane_change VARCHAR               -- [lanes_changed] as the map says; NULL: it does not
 );
 
 -- lifetime: map
@@ -89,21 +89,21 @@ CREATE TABLE speed_limit (
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
     limit_mps DOUBLE,                 -- the limit; NULL: said to have none, or not readable
-    source VARCHAR NOT NULL           -- sign, lane, road_type; unread: the map gives a limit that cannot be read
+    source VARCHAR NOT NULL           -- [limit_source]
 );
 
 -- lifetime: map
 CREATE TABLE traffic_signal (
     environment_id VARCHAR NOT NULL,  -- the map
     signal_id VARCHAR NOT NULL,       -- id in the map
-    kind VARCHAR,                     -- traffic_light, stop, give_way, speed_limit, exit, no_overtaking, ...; NULL: not recognised
+    kind VARCHAR,                     -- [sign_kind] NULL: not recognised
     country VARCHAR,                  -- code list it is from, lower case
     type VARCHAR,                     -- code
     subtype VARCHAR,                  -- code
     value DOUBLE,                     -- the number on it, in the map's own unit
     unit VARCHAR,                     -- that unit
     dynamic BOOLEAN NOT NULL,         -- changes its state
-    turns VARCHAR[],                  -- of a traffic light: the turns it holds for, of left, straight, right and u_turn: those of its arrow, or all four for a full light; NULL: the map does not say
+    turns VARCHAR[],                  -- [turn] of a traffic light: the turns it holds for: those of its arrow, or all four for a full light; NULL: the map does not say
     road_id VARCHAR NOT NULL,         -- road it is listed on
     road_s_m DOUBLE NOT NULL,         -- station on that road
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it holds for; one row each
@@ -119,7 +119,7 @@ CREATE TABLE stop_line (
     stop_line_id VARCHAR NOT NULL,    -- id in the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it crosses; one row each
     lane_s_m DOUBLE NOT NULL,         -- where, along that lanelet
-    source VARCHAR NOT NULL,          -- object, signal, connection (of a SUMO net: where a lane with a light or a stop sign ends): what in the map says so
+    source VARCHAR NOT NULL,          -- [stop_line_source]
     geom GEOMETRY                     -- the line across that lanelet, from its left to its right bound
 );
 
@@ -127,7 +127,7 @@ CREATE TABLE stop_line (
 CREATE TABLE road_object (
     environment_id VARCHAR NOT NULL,  -- the map
     object_id VARCHAR NOT NULL,       -- id in the map
-    kind VARCHAR NOT NULL,            -- crossing, stop_line, parking_space, obstacle, barrier, pole, tree, building, island, marking, other
+    kind VARCHAR NOT NULL,            -- [object_kind]
     name VARCHAR,                     -- the map's name for it
     road_id VARCHAR NOT NULL,         -- road it is listed on
     road_s_m DOUBLE NOT NULL,         -- station on that road
@@ -145,15 +145,15 @@ CREATE TABLE crossing (
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet it lies across; one row each
     s_start_m DOUBLE NOT NULL,        -- from here, along that lanelet
     s_end_m DOUBLE NOT NULL,          -- to here
-    kind VARCHAR,                     -- zebra, signalled, other; NULL: the map does not say
+    kind VARCHAR,                     -- [crossing_kind] NULL: the map does not say
     geom GEOMETRY                     -- its part of that lanelet: a polygon
 );
 
 -- lifetime: run
 CREATE TABLE map_quality (
     environment_id VARCHAR NOT NULL,  -- the map
-    check_id VARCHAR NOT NULL,        -- invalid_lane, missing_link, handedness_disagrees, handedness_default, unknown_geometry, ...
-    severity VARCHAR NOT NULL,        -- info, warning, error
+    check_id VARCHAR NOT NULL,        -- [map_check] which check
+    severity VARCHAR NOT NULL,        -- [check_severity]
     lanelet_id VARCHAR,               -- the lanelet or road concerned; NULL: the whole map
     n BIGINT NOT NULL,                -- how often
     message VARCHAR NOT NULL          -- what was seen and what follows from it

@@ -31,7 +31,7 @@ CREATE TABLE data_log (
 CREATE TABLE actor (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the log's own id of the actor, as text
-    actor_class VARCHAR,              -- car, van, truck, bus, motorcycle, bicycle, trailer, vehicle (kind not said), pedestrian, animal, object; NULL: unknown
+    actor_class VARCHAR,              -- [actor_class] NULL: unknown
     length_m DOUBLE,                  -- box length; NULL: unknown
     width_m DOUBLE,                   -- box width; NULL: unknown
     height_m DOUBLE,                  -- box height; NULL: unknown
@@ -51,8 +51,8 @@ CREATE TABLE actor_state (
     vy_mps DOUBLE,                    -- velocity north (world frame)
     ax_mps2 DOUBLE,                   -- acceleration east as recorded; NULL: not recorded
     ay_mps2 DOUBLE,                   -- acceleration north as recorded; NULL: not recorded
-    indicator VARCHAR,                -- off, left, right, hazard; NULL: not known
-    brake_light VARCHAR               -- off, on, strong; NULL: not known
+    indicator VARCHAR,                -- [indicator] NULL: not known
+    brake_light VARCHAR               -- [brake_light] NULL: not known
 );
 
 -- lifetime: drive
@@ -60,7 +60,7 @@ CREATE TABLE signal_state (
     drive_id VARCHAR NOT NULL,        -- the drive
     signal_id VARCHAR NOT NULL,       -- traffic signal, by the map's or the log's id
     t_ns BIGINT NOT NULL,             -- time stamp
-    state VARCHAR                     -- red, red_amber, amber, green, flashing, off; NULL: not known
+    state VARCHAR                     -- [light_state] NULL: not known
 );
 
 -- lifetime: drive
@@ -68,16 +68,16 @@ CREATE TABLE declared_event (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- who declared it
     t_ns BIGINT NOT NULL,             -- when
-    event VARCHAR NOT NULL,           -- what, such as mirror_check or overtake_go; recorded headlights are the event headlights
+    event VARCHAR NOT NULL,           -- [event] recorded headlights are the event headlights
     value VARCHAR                     -- its value as text, if any
 );
 
 -- lifetime: run
 CREATE TABLE drive_condition (
     drive_id VARCHAR NOT NULL,        -- the drive
-    condition VARCHAR NOT NULL,       -- nation, weather, light, vehicle_class, road_type, carriageway, area, engaged
+    condition VARCHAR NOT NULL,       -- [condition]
     value VARCHAR NOT NULL,           -- one of the words of its column in ego_condition
-    source VARCHAR NOT NULL           -- env: given on the command line or in the settings; trace: said by the log
+    source VARCHAR NOT NULL           -- [condition_source]
 );
 
 -- lifetime: part
@@ -89,8 +89,8 @@ CREATE TABLE deferred_ego (
 -- lifetime: run
 CREATE TABLE quality (
     drive_id VARCHAR NOT NULL,        -- the drive
-    check_id VARCHAR NOT NULL,        -- which check: duplicate_state, velocity_mismatch, yaw_mismatch, length_below_width, gap, clock_jump, not_finite, ...
-    severity VARCHAR NOT NULL,        -- info, warning, error
+    check_id VARCHAR NOT NULL,        -- [log_check] which check
+    severity VARCHAR NOT NULL,        -- [check_severity]
     actor_id VARCHAR,                 -- the actor concerned; NULL: the whole drive
     n BIGINT NOT NULL,                -- how many samples
     t_first_ns BIGINT,                -- the first of them; of lost_time: the last time before it, NULL: it begins with the log
@@ -103,8 +103,8 @@ CREATE TABLE quality (
 CREATE TABLE doubt (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor of whom the log is doubted
-    quantity VARCHAR NOT NULL,        -- existence, identity, position, heading, velocity, size, class: what of it
+    quantity VARCHAR NOT NULL,        -- [quantity] what of it
     t_from_ns BIGINT NOT NULL,        -- from here
     t_to_ns BIGINT NOT NULL,          -- to here, this time included
-    code VARCHAR NOT NULL             -- the check that doubts it: check_id of quality
+    code VARCHAR NOT NULL             -- [log_check] the check that doubts it
 );

@@ -9,8 +9,8 @@ CREATE TABLE drive (
     environment_id VARCHAR,           -- the map it was judged on; NULL: no map
     map_name VARCHAR,                 -- file name of that map
     map_sha256 VARCHAR,               -- hash of that map's bytes
-    handedness VARCHAR,               -- lht or rht; NULL: no map
-    handedness_source VARCHAR,        -- option, attribute, junctions, traces, default
+    handedness VARCHAR,               -- [handedness] NULL: no map
+    handedness_source VARCHAR,        -- [handedness_source] NULL: no map
     utc_start_ns BIGINT,              -- UTC of the first time stamp; NULL: the log does not say
     t_start_ns BIGINT,                -- first time stamp of any actor, on the log's own clock
     duration_s DOUBLE,                -- from the first to the last time stamp; NULL: no states
@@ -40,11 +40,11 @@ CREATE TABLE rule (
     title VARCHAR NOT NULL,           -- what it asks for, in a few words
     clause VARCHAR NOT NULL,          -- the clause it comes from
     hypothesis VARCHAR NOT NULL,      -- the same as a question
-    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    kind VARCHAR NOT NULL,            -- [rule_kind]
     subtype VARCHAR,                  -- temporal, physical; NULL: neither pre- nor postcondition
     window_s DOUBLE,                  -- length of the period before or after the reference point as used; NULL: none
     derivation VARCHAR NOT NULL,      -- direct, model
-    severity VARCHAR NOT NULL,        -- critical, major, minor
+    severity VARCHAR NOT NULL,        -- [rule_severity]
     legal VARCHAR NOT NULL,           -- must, should
     status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
     sense VARCHAR NOT NULL,           -- relation that must hold between observed and required

@@ -6,9 +6,9 @@ CREATE TABLE verdict (
     ego_id VARCHAR NOT NULL,          -- the ego; '' where the drive has none
     rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
     rule_version VARCHAR NOT NULL,    -- hash of the rule's file
-    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    kind VARCHAR NOT NULL,            -- [rule_kind]
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
-    severity VARCHAR NOT NULL,        -- critical, major, minor
+    severity VARCHAR NOT NULL,        -- [rule_severity]
     object_id VARCHAR,                -- the other actor; NULL: none
     occurrence INTEGER NOT NULL,      -- counts verdicts, 0.. per drive, ego, rule, profile and object, in time order; not that of findings, see finding_ids
     ref_id INTEGER,                   -- the assertion reference point, 0.. per drive, ego and rule; NULL: invariant
@@ -16,7 +16,7 @@ CREATE TABLE verdict (
     t_start_ns BIGINT,                -- start of the judged interval
     t_end_ns BIGINT,                  -- its end
     t_worst_ns BIGINT,                -- earliest step with the least margin
-    verdict VARCHAR NOT NULL,         -- pass, fail, unknown, not_applicable, error
+    verdict VARCHAR NOT NULL,         -- [verdict]
     reason_code VARCHAR NOT NULL,     -- machine-readable reason
     reason VARCHAR NOT NULL,          -- the same for a person
     cause_code VARCHAR,               -- why it is so, as a code: what the rule says, or what is missing; text: in words of the rule's own; NULL: reason_code says all
@@ -45,9 +45,9 @@ CREATE TABLE finding (
     ego_id VARCHAR NOT NULL,          -- the ego
     rule_id VARCHAR NOT NULL,         -- the rule
     rule_version VARCHAR NOT NULL,    -- hash of the rule's file
-    kind VARCHAR NOT NULL,            -- invariant, execution, precondition, postcondition
+    kind VARCHAR NOT NULL,            -- [rule_kind]
     profile VARCHAR,                  -- profile judged against; NULL: the rule has none
-    severity VARCHAR NOT NULL,        -- critical, major, minor
+    severity VARCHAR NOT NULL,        -- [rule_severity]
     object_id VARCHAR,                -- the other actor; NULL: none
     occurrence INTEGER NOT NULL,      -- counts findings, 0.. per drive, ego, rule, profile and object, in time order; not that of verdicts, see finding_ids there
     ref_id INTEGER,                   -- the assertion reference point; NULL: invariant

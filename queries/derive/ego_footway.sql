@@ -32,7 +32,7 @@ point_depth AS (
             hw0_m + a0 / (a0 + a1) * (hw1_m - hw0_m)
             - abs(offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1)) AS depth_m
         FROM point_candidate
-        WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0
+        WHERE a0 >= -slack0_m AND a1 > -slack1_m AND a0 + a1 > 0 AND footway IS NOT NULL
     )
     WHERE depth_m > -0.02
     GROUP BY ALL

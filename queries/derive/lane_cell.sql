@@ -2,7 +2,7 @@
 -- diagonal of that area. Each row holds the segment itself, so that one join places a point.
 WITH segment_box AS (
     SELECT
-        g.*, n.drivable, n.lane_type IN ('sidewalk', 'walking') AS footway, greatest(hw0_m, hw1_m) + 0.1 AS reach_m,
+        g.*, n.drivable, nullif(n.lane_type, 'unknown') IN ('sidewalk', 'walking') AS footway, greatest(hw0_m, hw1_m) + 0.1 AS reach_m,
         floor((least(x0_m, x1_m) - greatest(hw0_m, hw1_m) - 0.1) / 2)::BIGINT AS ix0,
         floor((greatest(x0_m, x1_m) + greatest(hw0_m, hw1_m) + 0.1) / 2)::BIGINT AS ix1,
         floor((least(y0_m, y1_m) - greatest(hw0_m, hw1_m) - 0.1) / 2)::BIGINT AS iy0,

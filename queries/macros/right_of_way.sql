@@ -1,7 +1,7 @@
 -- Macros that the rules on junctions, crossings and stopping share.
 
 -- Whether a light forbids going on (Highway Code Rule 175): red, and red with amber.
-CREATE OR REPLACE MACRO forbids(light) AS light IN ('red', 'red_amber');
+CREATE OR REPLACE MACRO forbids(state) AS state IN ('red', 'red_amber');
 
 -- A vehicle that stands closer than stands_near_m behind an actor stands because of it. A vehicle slower than moves_up_mps moves up in a
 -- queue.

@@ -167,7 +167,7 @@ LEFT JOIN lost_object l ON l.{other} = e.{other}"""
   given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 12}}
   expect: pass
 - name: unknown, somebody was lost
-  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 12}, lost_object: {object_id: b, t_from_s: 0, t_to_s: 1, code: x}}
+  given: {ego_state: {t_s: 0..1 by 0.1, speed_mps: 12}, lost_object: {object_id: b, t_from_s: 0, t_to_s: 1, code: lost_near_ego}}
   expect: unknown
 """,
     )

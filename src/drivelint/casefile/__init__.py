@@ -39,9 +39,11 @@ import msgspec
 import yaml
 
 from drivelint.casefile import merged_cases
-from drivelint.casefile.scene import Row, column_of, complete_scene
+from drivelint.casefile.scene import Row, column_of, complete_scene, refuse_wrong_word
+from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
 from drivelint.reasons.reason_text import codes_in
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -126,9 +128,25 @@ def read_cases(rule: Rule) -> list[Case]:
             raise RuleError(
                 f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
             )
+        with _placed(rule, case):
+            _refuse_wrong_words(rule, case)
         if "capability" not in rule.reads and (idle := sorted(set(case.missing) - set(rule.requires))):
             raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
     return cases
+
+
+def _refuse_wrong_words(rule: Rule, case: Case) -> None:
+    """Refuse words that no verdict has, or that no column has which the rule compares with a parameter. Errors: `RuleError`."""
+    expected = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
+    for row in expected:
+        for name, value in row.items():
+            refuse_wrong_word("verdict", column_of("verdict", name, "expect")[0], value, "expect")
+    for name, value in case.params.items():
+        if problem := parameter_problem(rule.sections, name, value):
+            raise RuleError(f"params.{name}: {problem}")
+    for signal in case.missing:
+        if problem := vocabularies()["signal"].problem(signal):
+            raise RuleError(f"missing: {problem}")
 
 
 def cases_path(rule: Rule) -> Path:

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import duckdb
 
 from drivelint.errors import RuleError
+from drivelint.phrases import hint
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
 
@@ -76,7 +77,7 @@ def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str])
 def _rows(table: str, given: Any) -> list[Row]:
     """Spread the blocks of one table into rows."""
     if table not in _tables():
-        raise RuleError(f"given: there is no table {table!r}")
+        raise RuleError(f"given: there is no table {table!r}; {hint(table, _tables())}")
     rows: list[Row] = []
     for block in given if isinstance(given, list) else [given]:
         if not isinstance(block, dict):
@@ -89,6 +90,7 @@ def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
     columns: dict[str, Any] = {}
     for name, value in block.items():
         column, scale = column_of(table, name, where)
+        refuse_wrong_word(table, column, value, where)
         columns[column] = _values(value, scale)
     lengths = {len(v) for v in columns.values() if isinstance(v, list)}
     if len(lengths) > 1:
@@ -114,7 +116,34 @@ def column_of(table: str, name: str, where: str) -> tuple[str, int]:
         return name, 1
     if name.endswith("_s") and f"{name[:-2]}_ns" in columns:
         return f"{name[:-2]}_ns", 1_000_000_000
-    raise RuleError(f"{where} has no column {name!r}; it has: {', '.join(columns)}")
+    near = hint(name, columns)
+    known = near if near.startswith("did") else f"it has: {', '.join(columns)}"
+    raise RuleError(f"{where} has no column {name!r}; {known}")
+
+
+def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
+    """Refuse a word that the column never has; `value` may be a list or a mapping of times to words, too.
+
+    Errors: `RuleError` with column, word and the nearest good one.
+    """
+    known = store.word_columns()[table].get(column)
+    if known is None:
+        return
+    for word in _texts(value, known.field):
+        if wrong := known.vocabulary.problem(word):
+            raise RuleError(f"{where}.{column}: {wrong}")
+
+
+def _texts(value: Any, field: str) -> Iterator[str]:
+    """Yield the texts in a value, or with `field` those that stand under this key in its STRUCTs."""
+    if isinstance(value, dict):
+        inner = [(value[field], "")] if field in value else [(part, field) for part in value.values()]
+    else:
+        inner = [(part, field) for part in value] if isinstance(value, list) else []
+    if isinstance(value, str) and not field:
+        yield value
+    for part, wanted in inner:
+        yield from _texts(part, wanted)
 
 
 def _spread(first: Decimal, last: Decimal, scale: int, n: int) -> list[float | int]:

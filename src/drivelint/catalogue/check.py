@@ -15,7 +15,7 @@ import duckdb
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.sql.syntax import column_name, parser, syntax_tree, tables_needing_rows, walk
+from drivelint.sql.syntax import column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
@@ -158,7 +158,7 @@ class _Found:
                 "nothing but the tables, and the library's macros",
             )
         if name == "why":
-            place = self._text.at(_offset(part))
+            place = self._text.at(offset_of(part))
             code, *rest = part["children"]
             arguments = _fields(rest[0]) if rest else frozenset[str]()
             self.reasons += [GivenReason(each, arguments, place) for each in _results(code)]
@@ -189,7 +189,7 @@ class _Found:
             self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
 
     def _refuse(self, part: Node, message: str) -> None:
-        raise RuleError(f"{self._text.at(_offset(part))}: {message}")
+        raise RuleError(f"{self._text.at(offset_of(part))}: {message}")
 
 
 def _results(part: Node) -> list[str]:
@@ -207,21 +207,6 @@ def _fields(part: Node) -> frozenset[str] | None:
     if str(part.get("function_name", "")).lower() != "struct_pack":
         return None
     return frozenset(str(child["alias"]) for child in part["children"])
-
-
-def _offset(part: Any) -> int | None:
-    """Return the byte offset of a node, else the first offset inside it."""
-    todo = [part]
-    while todo:
-        node = todo.pop(0)
-        if isinstance(node, dict):
-            place = node.get("query_location")
-            if isinstance(place, int) and place < 1 << 62:
-                return place
-            todo.extend(node.values())
-        elif isinstance(node, list):
-            todo.extend(node)
-    return None
 
 
 def _is_foreign(part: Node) -> bool:

@@ -12,6 +12,7 @@ import msgspec
 
 from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
 from drivelint.catalogue.header import OTHERS, Header, line_of, parse_header
+from drivelint.catalogue.rule_words import check_words
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons.reason_text import shared_texts
@@ -20,7 +21,7 @@ from drivelint.sql import store
 from drivelint.sql.derivations import with_sources
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
@@ -89,8 +90,8 @@ def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     Errors: `RuleError` with file and line, for two rules with one id, and for a folder without rules.
     """
     rules: dict[str, Rule] = {}
-    for file in (file for root in (folder("queries") / "assertions", *dirs) for file in rule_files(root)):
-        rule = read_rule(file)
+    for file, is_shipped in _all_files(dirs):
+        rule = read_rule(file, with_words=not is_shipped)
         if rule.id in rules:
             raise RuleError(
                 f"{file}: rule {rule.id} exists already in {rules[rule.id].path}; give this one another name or pack"
@@ -104,8 +105,14 @@ def load_rule(rule_id: str, dirs: Sequence[Path] = ()) -> Rule | None:
 
     Errors: `RuleError` with file and line, and for a folder without rules.
     """
-    files = (file for root in (folder("queries") / "assertions", *dirs) for file in rule_files(root))
-    return next((read_rule(file) for file in files if rule_id_of(file) == rule_id), None)
+    files = ((file, is_shipped) for file, is_shipped in _all_files(dirs) if rule_id_of(file) == rule_id)
+    return next((read_rule(file, with_words=not is_shipped) for file, is_shipped in files), None)
+
+
+def _all_files(dirs: Sequence[Path]) -> Iterator[tuple[Path, bool]]:
+    """Yield the files of rules, and whether each is shipped."""
+    for n, root in enumerate((folder("queries") / "assertions", *dirs)):
+        yield from ((file, n == 0) for file in rule_files(root))
 
 
 def rule_files(root: Path) -> list[Path]:
@@ -124,13 +131,18 @@ def rule_id_of(file: Path) -> str:
     return f"{file.resolve().parent.name}.{file.stem}"
 
 
-def read_rule(file: Path) -> Rule:
-    """Read and check one rule file. Errors: `RuleError` with file and line."""
-    return _checked_rule(file, file.resolve().parent.name, _title(file.resolve().parent), file.read_bytes())
+def read_rule(file: Path, *, with_words: bool = True) -> Rule:
+    """Read and check one rule file. Errors: `RuleError` with file and line.
+
+    `with_words`: the words in its SQL too, see `check_words`. Of the shipped rules the tests do so: at each start, it would take a third of
+    the time to read them.
+    """
+    pack = file.resolve().parent
+    return _checked_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
 
 
 @lru_cache(maxsize=1024)  # a process that checks many times reads its rules each time, and they seldom change
-def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes) -> Rule:
+def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
     for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
             raise RuleError(
@@ -153,6 +165,8 @@ def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes) -> Rul
     _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
     _check_params(header, queries, file, toml)
     _check_reasons(header, queries, file, toml)
+    if with_words:
+        _check_words(header, sections, file, toml)
     return Rule(
         **msgspec.structs.asdict(header),
         id=f"{pack}.{file.stem}",
@@ -334,6 +348,16 @@ def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: s
         raise RuleError(
             f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
         )
+
+
+def _check_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
+    def place(part: str, offset: int) -> str:
+        if part not in sections:
+            return f"{file}:{line_of(toml, part)}"
+        before = sections[part].sql.encode()[:offset]
+        return f"{file}:{sections[part].sql_line + before.count(10)}"
+
+    check_words({name: section.sql for name, section in sections.items()}, header.params, place)
 
 
 def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:

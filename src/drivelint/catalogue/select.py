@@ -21,6 +21,7 @@ from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Final
 
+from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
 
@@ -161,7 +162,10 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
         if param not in params:
             names = ", ".join(params) or "none"
             raise UsageError(f"--param {setting!r}: {rule_id} has no parameter {param!r}; it has: {names}")
-        values.setdefault(rule_id, {})[param] = _typed(text.strip(), params[param].default, setting)
+        value = _typed(text.strip(), params[param].default, setting)
+        if problem := parameter_problem(known[rule_id].sections, param, value):
+            raise UsageError(f"--param {setting!r}: {problem}")
+        values.setdefault(rule_id, {})[param] = value
     return values
 
 

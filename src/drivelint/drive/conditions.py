@@ -1,7 +1,7 @@
 """Names the conditions that may restrict a rule, the values of each, and which values include which.
 
-One vocabulary for the rules' `[applies]`, for `--env` and for what a log may say of itself; the columns are those of
-`ego_condition`.
+Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for what a log may say of itself;
+the columns are those of `ego_condition`.
 """
 
 from __future__ import annotations
@@ -12,48 +12,45 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 from drivelint.resources import toml_beside
+from drivelint.sql.words import vocabularies, words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_FACTS: Final = toml_beside(__file__, "conditions.toml")
-DRIVE_CONDITION_VALUES: Final = {name: tuple(about["words"]) for name, about in _FACTS["condition"].items()}
+DRIVE_CONDITION_VALUES: Final = {name: words(name) for name in words("condition")}
 """Condition -> its words, of a drive: those by which rules are restricted, and whether the automated driver drives."""
-CONDITION_VALUES: Final = {name: words for name, words in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
+CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition by which rules are restricted -> its words; `nation` also takes any other country's, see `value_problem`."""
-CONDITION_TEXTS: Final = {name: str(about["says"]) for name, about in _FACTS["condition"].items()}
+CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
 """Condition -> what its words say."""
-_NARROWER: Final[dict[str, list[str]]] = _FACTS["narrower"]
+_NARROWER: Final[dict[str, list[str]]] = toml_beside(__file__, "conditions.toml")["narrower"]
 _COUNTRY = re.compile(r"[a-z]{2}")
 _SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
 
 def value_problem(condition: str, word: str) -> str | None:
     """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
-    words = DRIVE_CONDITION_VALUES[condition]
-    if word in words or (condition == "nation" and word != "uk" and _COUNTRY.fullmatch(word)):
-        return None
     if condition == "nation" and word.lower() == "uk":
         return "'uk' is no country code: use 'gb', or gb-eng, gb-wls, gb-sct"
-    return f"{word!r} is no {condition.replace('_', ' ')}; {hint(word, words)}"
+    return vocabularies()[condition].problem(word)
 
 
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
     """Return a condition and its word as they are spelled here, whatever their case; what is not known stays as it is."""
     condition = _SPELLED.get(condition.casefold(), condition)
-    words = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
+    spelled = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
-    return condition, words.get(word.casefold(), word.casefold() if country else word)
+    return condition, spelled.get(word.casefold(), word.casefold() if country else word)
 
 
-def with_narrower_values(words: tuple[str, ...]) -> list[str]:
+def with_narrower_values(values: tuple[str, ...]) -> list[str]:
     """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
-    return sorted({part for word in words for part in (word, *_NARROWER.get(word, ()))})
+    return sorted({part for word in values for part in (word, *_NARROWER.get(word, ()))})
 
 
-def broader_values(words: tuple[str, ...]) -> list[str]:
+def broader_values(values: tuple[str, ...]) -> list[str]:
     """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
-    inside = with_narrower_values(words)
+    inside = with_narrower_values(values)
     return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
 
 

@@ -137,9 +137,9 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
-    tables["quality"] = _quality(drive, findings)
-    tables["doubt"] = _doubts(drive, findings)
+    tables = {name: owned_table(name, drive, rows, recording.format) for name, rows in content.items()}
+    tables["quality"] = _quality(drive, findings, recording.format)
+    tables["doubt"] = _doubts(drive, findings, recording.format)
     return Trace(
         drive,
         path,
@@ -157,7 +157,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     """Return the trace with one more row in `quality`."""
-    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding])])
+    reader = trace.tables["data_log"]["format"][0].as_py()
+    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding], reader)])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
     return replace(trace, tables={**trace.tables, "quality": ordered})
 
@@ -238,17 +239,17 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
     return dict(zip(keys, distinct.sort_by([(key, "ascending") for key in keys]).select(keys).columns, strict=True))
 
 
-def _quality(drive: str, findings: list[QualityFinding]) -> pa.Table:
+def _quality(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     # a converted log brings findings that may be found again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
-    return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows])
+    return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows], reader)
 
 
-def _doubts(drive: str, findings: list[QualityFinding]) -> pa.Table:
+def _doubts(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     rows = sorted({(*doubt, finding.check_id) for finding in findings for doubt in finding.doubts})
     names = (*Doubt._fields, "code")
-    return owned_table("doubt", drive, [dict(zip(names, row, strict=True)) for row in rows])
+    return owned_table("doubt", drive, [dict(zip(names, row, strict=True)) for row in rows], reader)
 
 
 def _nullable(values: Floats) -> pa.Array:

@@ -10,6 +10,7 @@ import numpy as np
 
 from drivelint.drive import conditions
 from drivelint.phrases import listed
+from drivelint.sql.words import words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,16 +27,14 @@ STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", 
 """The double columns of `actor_state`, in its order."""
 SIZE_COLUMNS = ("length_m", "width_m", "height_m")
 """The double columns of `actor`, in its order."""
-INDICATORS = ("off", "left", "right", "hazard")
-BRAKE_LIGHTS = ("off", "on", "strong")
-ACTOR_CLASSES = (
-    "car", "van", "truck", "bus", "motorcycle", "bicycle", "trailer", "vehicle", "pedestrian", "animal", "object",
-)  # fmt: skip
+INDICATORS = words("indicator")
+BRAKE_LIGHTS = words("brake_light")
+ACTOR_CLASSES = words("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
 LEAST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
-SIGNAL_STATES = ("red", "red_amber", "amber", "green", "flashing", "off")
+SIGNAL_STATES = words("light_state")
 
 
 @dataclass(frozen=True)

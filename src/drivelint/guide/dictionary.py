@@ -1,4 +1,4 @@
-"""The data dictionary: every table of `schemas/*.sql` with its columns, and from which tables the derived ones are derived.
+"""The data dictionary: every table of `schemas/*.sql` with its columns, the words that these may hold, and what is derived from what.
 
 Beside it, as made from the sources too: every reason code with its words, and every macro that SQL can call.
 """
@@ -21,6 +21,7 @@ from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
 from drivelint.sql.store import column_comments, lifetimes
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -30,7 +31,11 @@ _SAYS: Final = """Every table that drivelint fills, with the meaning of each col
 Distances are metres, speeds metres per second, angles radians, and times integer nanoseconds of the log's own clock. NULL
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
+
+A column that holds words has those of one vocabulary and no others. They stand with the column, or under *Words*. A rule, a case, a
+mapping and a reader's output with another word are refused.
 """
+_WORDS: Final = "drivelint docs dictionary NAME prints one of them."
 _MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE)
 _MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _GROUPS: Final = {
@@ -67,6 +72,7 @@ def page() -> str:
         levels=derivation_levels(read),
         read=read,
         groups={heading: column_comments(file) for file, heading in _GROUPS.items()},
+        vocabularies=vocabularies(),
     )
 
 
@@ -76,16 +82,19 @@ def text() -> str:
         f"{heading.upper()}\n\n" + "\n".join(map(table_text, column_comments(file)))
         for file, heading in _GROUPS.items()
     )
-    return "\n".join([_SAYS, *groups])
+    words = f"WORDS\n\n{_WORDS}\n\n" + "\n".join(map(_vocabulary_text, vocabularies()))
+    return "\n".join([_SAYS, *groups, words])
 
 
 def table_text(name: str) -> str:
-    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning.
+    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning; or one vocabulary.
 
-    Errors: `UsageError` with the nearest table.
+    Errors: `UsageError` with the nearest table or vocabulary.
     """
+    if name in vocabularies() and name not in column_comments():
+        return _vocabulary_text(name)
     if name not in column_comments():
-        near = hint(name, column_comments())
+        near = hint(name, [*column_comments(), *vocabularies()])
         advice = "drivelint docs dictionary prints all" if near.startswith("known") else near
         raise UsageError(f"docs dictionary {name}: no table {name!r}: {advice}")
     columns = [(column, _types()[name, column], comment) for column, comment in column_comments()[name].items()]
@@ -93,6 +102,12 @@ def table_text(name: str) -> str:
     said = [line for line in (_about(name), " ".join(_facts(name, tables_read(), ", ".join))) if line]
     rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
     return "\n".join([name, *said, *rows]) + "\n"
+
+
+def _vocabulary_text(name: str) -> str:
+    """Return a vocabulary as plain text: its name, its words and what they mean."""
+    known = vocabularies()[name]
+    return f"[{name}]\n  {', '.join(known.words)}{'' if known.is_listed else ', ...'}\n  {known.says}\n"
 
 
 def escaped(said: str) -> str:

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any, Final
+
+from drivelint.phrases import listed, shown
+from drivelint.sql.words import vocabularies
 
 SIGNS_UNMAPPED: Final = "signs_unmapped"
 """The check of a map that has no stop and give-way signs, whether they stand there or not."""
+_UNKNOWN_WORDS: Final = {
+    "lane_type": ("warning", "types of lanes", "vehicles are taken not to drive there"),
+    "road_type": ("info", "types of roads", "taken as not said"),
+    "marking": ("info", "road marks", "whether they may be crossed is not known"),
+    "marking_color": ("info", "colors of road marks", "taken as not said"),
+    "lanes_changed": ("info", "lane changes over road marks", "taken as not said"),
+}
+"""Vocabulary -> severity, what has the words, and what follows where one is not known."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
 
@@ -14,11 +26,19 @@ class MapQuality:
 
     def __init__(self) -> None:
         self.rows: list[dict[str, Any]] = []
+        self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _UNKNOWN_WORDS}
+
+    def known_word(self, vocabulary: str, word: str) -> str | None:
+        """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where it has none such."""
+        known = vocabularies()[vocabulary].spelled(word)
+        if known is None:
+            self._unknown_words[vocabulary][word] += 1
+        return known
 
     def add(self, check: str, severity: str, lanelet: str | None, message: str, n: int = 1) -> None:
         """Add a row; `lanelet` is the lanelet or road concerned, None the whole map."""
         assert severity in _ORDER, severity  # noqa: S101 - a mistake of ours
-        self.rows.append({"check_id": check, "severity": severity, "lanelet_id": lanelet, "n": n, "message": message})
+        self.rows.append(_row(check, severity, lanelet, message, n))
 
     def geo_unusable(self, reference: str, why: object) -> None:
         """Say that the map has a geo reference, and why it gives no positions on the earth."""
@@ -26,7 +46,16 @@ class MapQuality:
         self.add("geo_reference_unusable", "info", None, message)
 
     def sorted_rows(self) -> list[dict[str, Any]]:
-        """Return the rows, the most severe first."""
-        return sorted(
-            self.rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"])
-        )
+        """Return the rows, the most severe first, with one for each vocabulary that lacks words of the map."""
+        rows = list(self.rows)
+        for vocabulary, words in self._unknown_words.items():
+            severity, what, follows = _UNKNOWN_WORDS[vocabulary]
+            counted = listed([f"{shown(word[:40])} ({n})" for word, n in sorted(words.items())])
+            message = f"{what} in words that are not known: {counted}: {follows}"
+            if words:
+                rows.append(_row("unknown_word", severity, None, message, words.total()))
+        return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
+
+
+def _row(check: str, severity: str, lanelet: str | None, message: str, n: int) -> dict[str, Any]:
+    return {"check_id": check, "severity": severity, "lanelet_id": lanelet, "n": n, "message": message}

@@ -59,7 +59,7 @@ def map_tables(
     # a side that is only the standard's default is marked: the traces of another drive may tell it for sure
     marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
-    tables = {table: owned_table(table, name, rows) for table, rows in content.items()}
+    tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}
     trouble = _geo_trouble(geo, tables["lane_point"], request) if geo else None
     if geo and trouble:
         quality.geo_unusable(geo.reference, trouble)
@@ -71,8 +71,8 @@ def map_tables(
         "geo_usable": trouble is None if geo else None,
         "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED for row in quality.rows),
     }  # fmt: skip
-    about = owned_table("environment", name, [environment])
-    found = owned_table("map_quality", name, quality.sorted_rows())
+    about = owned_table("environment", name, [environment], kind)
+    found = owned_table("map_quality", name, quality.sorted_rows(), kind)
     return MapTables(name, *side, {"environment": about, **tables, "map_quality": found})
 
 

@@ -13,6 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
+from drivelint.sql import words
 from drivelint.sql.statements import texts
 from drivelint.temporary import temporary_folder
 
@@ -31,7 +32,7 @@ ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 _AS_TOLD = frozenset({"margin"})
 """Tables whose ids a rule gave: it may speak of an actor that no log has."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
-_COLUMN = re.compile(r"^    (\w+) .*?,?\s*-- (.+)$", re.MULTILINE)
+_COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
 _QUANTITIES = re.compile(r"\{([a-z, ]+)\}$")
 """Ends the comment of a column that is made of these quantities of the ego or of another actor."""
 
@@ -230,7 +231,25 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 @cache
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
-    return {name: dict(_COLUMN.findall(body)) for name, body in _TABLE.findall(_declarations(file))}
+    return {
+        table: {column: words.readable_comment(comment) for column, _, comment in columns}
+        for table, columns in _columns(file).items()
+    }
+
+
+@cache
+def _columns(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
+    """Return table -> its columns: name, type, and the comment as it is written, with the mark of a vocabulary."""
+    return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_declarations(file))}
+
+
+@cache
+def word_columns() -> dict[str, dict[str, words.WordColumn]]:
+    """Return table -> column -> the words that it may hold, for the columns that hold words of a vocabulary."""
+    return {
+        table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
+        for table, columns in _columns().items()
+    }
 
 
 @cache
@@ -238,11 +257,11 @@ def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
     """Return table -> column -> the quantities of actors that it is made of, for the columns whose comment ends in a list of them."""
     return {
         table: {
-            name: frozenset(words[1].split(", "))
-            for name, text in columns.items()
-            if (words := _QUANTITIES.search(text))
+            name: frozenset(made_of[1].split(", "))
+            for name, _, comment in columns
+            if (made_of := _QUANTITIES.search(comment))
         }
-        for table, columns in column_comments().items()
+        for table, columns in _columns().items()
     }
 
 
@@ -258,10 +277,12 @@ def arrow_schemas() -> dict[str, pa.Schema]:
         return {name: con.execute(sql).to_arrow_table().schema for name, sql in empty.items()}
 
 
-def owned_table(name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
+def owned_table(
+    name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
+) -> pa.Table:
     """Return a table of `schemas/` from rows, or from columns, that lack its first column: whose drive or map it is.
 
-    Errors: `KeyError` for any other column that is missing.
+    Errors: `KeyError` for any other column that is missing; `InternalError`, which names the `reader`, for a word of no vocabulary.
     """
     import pyarrow as pa
 
@@ -270,6 +291,7 @@ def owned_table(name: str, owner: str, content: Sequence[Mapping[str, Any]] | Ma
         f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in others
     }
     table = pa.table(columns, schema=pa.schema(others))
+    words.refuse_wrong_words(table, word_columns()[name], f"reader {reader}: table {name}")
     return table.add_column(0, first, pa.repeat(pa.scalar(owner), table.num_rows))
 
 

@@ -143,6 +143,21 @@ def column_name(item: Node) -> str:
     return _folded(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
+def offset_of(part: Any) -> int | None:
+    """Return the byte of the SQL where a node stands, else the first one inside it; None: the tree does not say."""
+    todo = [part]
+    while todo:
+        node = todo.pop(0)
+        if isinstance(node, dict):
+            place = node.get("query_location")
+            if isinstance(place, int) and place < 1 << 62:
+                return place
+            todo.extend(node.values())
+        elif isinstance(node, list):
+            todo.extend(node)
+    return None
+
+
 def _is_cte(table: Node, ctes: Container[str]) -> bool:
     return _folded(table["table_name"]) in ctes and not table["schema_name"] and not table["catalog_name"]
 

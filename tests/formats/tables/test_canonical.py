@@ -121,7 +121,7 @@ def test_a_signal_state_that_is_no_word_is_refused(tmp_path: Path, source: Trace
     path = folder(tmp_path / "d", source)
     states = source.tables["signal_state"].to_pylist()
     pq.write_table(pa.Table.from_pylist([states[0] | {"state": "REDD"}]), path / "signal_state.parquet")
-    with pytest.raises(TraceError, match=r"signal_state\.parquet: state is 'REDD': use one of red"):
+    with pytest.raises(TraceError, match=r"signal_state\.parquet: state is 'REDD'; did you mean 'red'\?"):
         read(path)
 
 
@@ -178,7 +178,7 @@ def test_actors_without_states_stay(tmp_path: Path, source: Trace) -> None:
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
-        ({"indicator": ["left", "lefft"]}, "indicator is 'lefft': use one of off, left, right, hazard, or NULL"),
+        ({"indicator": ["left", "lefft"]}, r"indicator is 'lefft'; did you mean 'left'\? \(NULL: unknown\)"),
         ({"actor_class": ["car", "lorry"]}, "actor_class is 'lorry'"),
         ({"x_m": ["a", "b"]}, "column 'x_m' is string, not double"),
         ({"drive_id": ["d", "e"]}, "holds 2 drives"),

@@ -47,6 +47,11 @@ def test_the_registration_of_the_case_study_lives_in_its_mapping() -> None:
         (LONG.replace("length = 4.5\n", "") + '[reference]\npoint = "front_bumper"\n', r"needs columns\.length"),
         (LONG + "[reference]\nforward = 1.0\n", r"need reference\.point = 'rear_axle'"),
         (LONG + '[reference]\npoint = "axle"\n', r"Invalid enum value 'axle'"),
+        (
+            LONG + '[class]\ncolumn = "x"\npatterns = [{ match = "a", is = "cyclist" }]\n',
+            r"'cyclist' .*did you mean 'bicycle'\?",
+        ),
+        (LONG + '[brake_light]\ncolumn = "x"\nvalues = { b = "onn" }\n', r"brake_light: 'onn' .*did you mean 'on'\?"),
         (LONG + '[class]\ncolumn = "x"\ndefault = "lorry"\n', r"class: 'lorry' is not one of its words: known are car"),
         (LONG + '[indicator]\ncolumn = "x"\nvalues = { l = "lefft" }\n', r"indicator: 'lefft' .*did you mean 'left'\?"),
         (LONG + '[class]\ncolumn = "x"\npatterns = [{ match = "(", is = "car" }]\n', r"not a regular expression"),

@@ -189,7 +189,7 @@ def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality)
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = [(number(t, "s", 0.0), t.get("type", "unknown")) for t in element.findall("type")]
+    types = [(number(t, "s", 0.0), _road_type(t.get("type", "unknown"), quality)) for t in element.findall("type")]
     return Road(
         road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
@@ -226,7 +226,7 @@ def _strips(element: etree._Element, length: float, quality: MapQuality) -> tupl
     for index, section in sections:
         sides = [side for side in ("left", "right") if section in ends[side]]
         start = number(section, "s")
-        marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start))
+        marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start, quality))
         together = len({ends[side][section] for side in sides}) == 1
         groups = [sides] if together else [[side] for side in sides]
         for group in groups:
@@ -249,13 +249,18 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
 
 def _lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
     lane_no = integer(element, "id")
+    kind = quality.known_word("lane_type", element.get("type", "none")) or "unknown"
     try:
-        return _valid_lane(element, lane_no, section_start, quality)
+        return _valid_lane(element, lane_no, kind, section_start, quality)
     except MalformedError as error:
-        return Lane(lane_no, element.get("type", "none"), invalid=str(error))
+        return Lane(lane_no, kind, invalid=str(error))
 
 
-def _valid_lane(element: etree._Element, lane_no: int, section_start: float, quality: MapQuality) -> Lane:
+def _road_type(word: str, quality: MapQuality) -> str:
+    return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
+
+
+def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
     if (side == "left") != (lane_no > 0) or lane_no == 0:
@@ -266,29 +271,34 @@ def _valid_lane(element: etree._Element, lane_no: int, section_start: float, qua
     user = next(iter(element.iterfind("userData//vectorLane")), None)
     return Lane(
         number=lane_no,
-        kind=element.get("type", "none"),
+        kind=kind,
         predecessors=tuple(integer(e, "id") for e in element.findall("link/predecessor")),
         successors=tuple(integer(e, "id") for e in element.findall("link/successor")),
         widths=cubics(widths, "sOffset", section_start) if widths else None,
         borders=None if widths else cubics(borders, "sOffset", section_start),
-        marks=tuple(_marks(element, section_start)),
+        marks=tuple(_marks(element, section_start, quality)),
         speeds=_speeds(element.findall("speed"), "sOffset", section_start, quality),
         travel=None if user is None else user.get("travelDir"),
         direction=element.get("direction"),
     )
 
 
-def _marks(lane: etree._Element, section_start: float) -> list[RoadMark]:
+def _marks(lane: etree._Element, section_start: float, quality: MapQuality) -> list[RoadMark]:
     marks = [
         RoadMark(
             section_start + number(mark, "sOffset", 0.0),
-            "_".join(mark.get("type", "none").split()),
-            mark.get("color"),
-            mark.get("laneChange"),
+            quality.known_word("marking", "_".join(mark.get("type", "none").split())),
+            _known_attribute(mark, "color", "marking_color", quality),
+            _known_attribute(mark, "laneChange", "lanes_changed", quality),
         )
         for mark in lane.findall("roadMark")
     ]
     return sorted(marks, key=lambda mark: mark.start_m)
+
+
+def _known_attribute(mark: etree._Element, name: str, vocabulary: str, quality: MapQuality) -> str | None:
+    word = mark.get(name)
+    return quality.known_word(vocabulary, word) if word else None
 
 
 SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}

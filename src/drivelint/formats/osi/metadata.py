@@ -16,8 +16,9 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive import conditions
-from drivelint.drive.trace import ACTOR_CLASSES, FOUND_ANEW, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.trace import FOUND_ANEW, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -147,6 +148,14 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
     return found
 
 
+def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
+    """Return findings that a log carries of its conversion. Errors: `TraceError` for one of a check that there is not."""
+    for finding in findings:
+        if wrong := vocabularies()["log_check"].problem(finding.check_id):
+            raise TraceError(f"{path}: quality: {wrong}: convert the log again with this version")
+    return list(findings)
+
+
 def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
     recording.conditions = parse_conditions(path, said.conditions.items())
     if said.map_offset_m is not None:
@@ -161,7 +170,8 @@ def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     # a frame that holds traffic lights alone was none of the log that was converted
     recording.frames_ns = np.array(said.nobody_ns, np.int64)
-    recording.findings += (f for f in said.quality if not said.as_recorded or f.check_id not in FOUND_ANEW)
+    kept = [f for f in said.quality if not said.as_recorded or f.check_id not in FOUND_ANEW]
+    recording.findings += known_findings(path, kept)
 
 
 def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) -> None:
@@ -171,10 +181,8 @@ def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) 
             f"{path}: the metadata record {ACTORS_RECORD} gives two actors one name: convert the log again"
         )
     for row in rows.values():
-        if row.actor_class is not None and row.actor_class not in ACTOR_CLASSES:
-            raise TraceError(
-                f"{path}: the metadata record {ACTORS_RECORD} has the class {row.actor_class!r}: not one of ours"
-            )
+        if row.actor_class is not None and (wrong := vocabularies()["actor_class"].problem(row.actor_class)):
+            raise TraceError(f"{path}: the metadata record {ACTORS_RECORD}: {wrong}")
     recording.states.ids = names
     known = sorted(rows.values(), key=lambda row: row.actor_id)
     columns = ("actor_id", "actor_class", *SIZE_COLUMNS, "is_ego")

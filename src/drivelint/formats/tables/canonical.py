@@ -28,9 +28,10 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.folders import is_canonical_folder
-from drivelint.formats.osi.metadata import parse_conditions
+from drivelint.formats.osi.metadata import known_findings, parse_conditions
 from drivelint.formats.tables import parquet
 from drivelint.sql.store import arrow_schemas
+from drivelint.sql.words import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -119,7 +120,7 @@ def _quality(path: Path) -> list[QualityFinding]:
     again = FOUND_ANEW if AS_RECORDED.encode() in (rows.schema.metadata or {}) else ()
     try:
         found = [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
-        return [finding for finding in found if finding.check_id not in again]
+        return known_findings(path, [finding for finding in found if finding.check_id not in again])
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 
@@ -210,7 +211,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> Codes:
 
     def code_of(word: str) -> int:
         if word.casefold() not in words:
-            raise TraceError(f"{path}: {name} is {word!r}: use one of {', '.join(words)}, or NULL for unknown")
+            raise TraceError(f"{path}: {name} is {word!r}; {nearest(word, words)} (NULL: unknown)")
         return words.index(word.casefold())
 
     return coded(column, code_of)

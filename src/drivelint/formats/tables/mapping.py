@@ -17,6 +17,7 @@ import msgspec
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.sql.words import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
@@ -295,7 +296,7 @@ def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[boo
 def _validate_words(path: Path, name: str, spec: WordMapping, allowed: tuple[str, ...]) -> None:
     for word in (*spec.values.values(), *(p.word for p in spec.patterns), spec.default):
         if word is not None and word not in allowed:
-            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {hint(word, allowed)}")
+            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {nearest(word, allowed)}")
     for pattern in spec.patterns:
         try:
             re.compile(pattern.match)

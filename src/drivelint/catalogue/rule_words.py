@@ -1,0 +1,53 @@
+"""Refuses a rule that compares a column with a word that it never has: such a rule never applies, and passes everything."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from drivelint.errors import RuleError
+from drivelint.sql import syntax, word_check
+from drivelint.sql.word_types import Literal, Words, wrong_words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from drivelint.catalogue.header import Param
+    from drivelint.sql.word_scope import Relation
+
+
+def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place: Callable[[str, int], str]) -> None:
+    """Check the words in the SQL of a rule, by section, and in the defaults of its parameters.
+
+    `place`: section and byte of its SQL, or `params.NAME.default` and 0 -> file:line.
+    Errors: `RuleError` for the first wrong word, with the nearest good one.
+    """
+    for name, checked in _checked(sections).items():
+        for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0):
+            raise RuleError(f"{place(name, wrong.offset or 0)}: {wrong.message}")
+    for name, param in params.items():
+        if problem := parameter_problem(sections, name, param.default):
+            raise RuleError(f"{place(f'params.{name}.default', 0)}: parameter {name!r}: {problem}")
+
+
+def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> str | None:
+    """Return why no column that a rule compares with this parameter ever has this value, with the nearest good word; None: one may."""
+    if not isinstance(value, str):
+        return None
+    given = Words(literals={value: Literal(None)}, direct=True)
+    for checked in _checked(sections).values():
+        for other in checked.parameters.get(name, ()):
+            for wrong in wrong_words(given, other):
+                return wrong.message
+    return None
+
+
+def _checked(sections: Mapping[str, str]) -> dict[str, word_check.Checked]:
+    """Return each section with its words checked; the others see the columns of @reference in the engine's tables."""
+    found: dict[str, word_check.Checked] = {}
+    tables: dict[str, Relation] = {}
+    for name in sorted(sections, key=lambda each: each != "reference"):
+        found[name] = word_check.check(syntax.parse_select(sections[name], name), tables)
+        if name == "reference":
+            columns = found[name].relation._replace(complete=False)
+            tables = {"reference": columns, "reference_step": columns}
+    return found

@@ -1,0 +1,381 @@
+"""Finds words in SQL that a column can never have: `is_class(actor_class, 'cyclist')` is never true, and the rule never applies.
+
+DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and for each
+expression it is worked out what words it may be: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
+out may be anything.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.sql import store, syntax, word_types
+from drivelint.sql.macro_trees import macro, macro_texts
+from drivelint.sql.word_functions import compared, value_of
+from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, renamed, united
+from drivelint.sql.word_types import (
+    NULL,
+    ListOf,
+    Literal,
+    Parameter,
+    StructOf,
+    Type,
+    Words,
+    WrongWord,
+    indirect,
+    item_of,
+    member_of,
+    union,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    Node = dict[str, Any]
+
+_COMPARISONS: Final = frozenset(
+    {"COMPARE_EQUAL", "COMPARE_NOTEQUAL", "COMPARE_DISTINCT_FROM", "COMPARE_NOT_DISTINCT_FROM"}
+)
+_LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
+
+
+class Checked(NamedTuple):
+    """A query's columns, the wrong words in it, and what each parameter is compared with."""
+
+    relation: Relation
+    wrong: Sequence[WrongWord]
+    parameters: Mapping[str, Sequence[Words]]
+
+
+def check(tree: Node, tables: Mapping[str, Relation] | None = None) -> Checked:
+    """Check the tree of a SELECT. `tables`: those it reads beside the tables of `schemas/`, such as a rule's reference points."""
+    walker = _Walker({**_tables(), **(tables or {})})
+    relation = walker.query(tree, {}, None)
+    return Checked(relation, walker.wrong, walker.parameters)
+
+
+def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
+    """Return the literals that a query puts into columns of this table, of which they are no words. UNIONs go by place, so does this."""
+    known = store.word_columns()[table]
+    found = []
+    for name, kind in relation.columns:
+        column = word_types.of_column(known[name]) if name in known else None
+        if isinstance(column, Words) and isinstance(kind, Words):
+            found += [
+                WrongWord(word, place.offset, column)
+                for word, place in kind.literals.items()
+                if not column.may_be(word)
+            ]
+    return found
+
+
+def check_macro(name: str) -> list[WrongWord]:
+    """Return the wrong words in a macro: its parameters are taken for the columns of their names."""
+    walker = _Walker(_tables())
+    walker.macro(name, None)
+    return walker.wrong
+
+
+@cache
+def _tables() -> dict[str, Relation]:
+    columns = store.word_columns()
+    return {
+        table: Relation(
+            [(name, word_types.of_column(columns[table][name]) if name in columns[table] else None) for name in names]
+        )
+        for table, names in store.column_comments().items()
+    }
+
+
+@cache
+def _columns_of_words() -> dict[str, Type]:
+    """Return column -> what it may be, for the columns that are the same in every table that has them."""
+    found: dict[str, list[Type]] = {}
+    for columns in store.word_columns().values():
+        for name, column in columns.items():
+            found.setdefault(name, []).append(word_types.of_column(column))
+    return {name: kinds[0] for name, kinds in found.items() if all(kind == kinds[0] for kind in kinds)}
+
+
+class _Walker:
+    """Walks trees: each method returns what its node may be, and keeps the wrong words in it."""
+
+    def __init__(self, tables: Mapping[str, Relation]) -> None:
+        self._tables = tables
+        self._depth = 0
+        """How many macros are around what is walked."""
+        self._call: int | None = None
+        """Where the call of the outermost of them stands."""
+        self._wrong: dict[tuple[str, int | None], WrongWord] = {}
+        self.parameters: dict[str, list[Words]] = {}
+
+    @property
+    def wrong(self) -> list[WrongWord]:
+        """The wrong words, each once."""
+        return list(self._wrong.values())
+
+    # ---- queries
+
+    def query(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+        known = dict(ctes)
+        for entry in node.get("cte_map", {}).get("map", ()):
+            value = entry["value"]
+            name = entry["key"].lower()
+            known[name] = renamed(self.query(value["query"]["node"], known, outer), value.get("aliases", ()))
+        match node["type"]:
+            case "SELECT_NODE":
+                return self._select(node, known, outer)
+            case "SET_OPERATION_NODE":
+                left, right = self.query(node["left"], known, outer), self.query(node["right"], known, outer)
+                return united(left, right, by_name="BY_NAME" in node["setop_type"])
+            case "RECURSIVE_CTE_NODE":
+                return self._recursive(node, known, outer)
+        return UNKNOWN
+
+    def _recursive(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+        """Return the columns of a recursive CTE; what is wrong shows when all that it yields is known."""
+        name = node["cte_name"].lower()
+        relation = self.query(node["left"], ctes, outer)
+        for _ in range(4):
+            apart = _Walker(self._tables)
+            more = united(relation, apart.query(node["right"], {**ctes, name: relation}, outer), by_name=False)
+            if more == relation:
+                self.query(node["right"], {**ctes, name: relation}, outer)
+                return relation
+            relation = more
+        return Relation([(column, None) for column, _ in relation.columns], relation.complete)
+
+    def _select(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+        scope = Scope(outer, ctes)
+        scope.sources = self._sources(node["from_table"], scope)
+        columns: list[tuple[str, Type]] = []
+        complete = True
+        for item in node["select_list"]:
+            if item["class"] == "STAR":
+                star = self._columns_of_star(item, scope)
+                columns += star.columns
+                complete = complete and star.complete
+                continue
+            kind = self.of(item, scope)
+            if item.get("function_name", "").lower() == "unnest" and isinstance(kind, StructOf) and _is_recursive(item):
+                columns += kind.fields.items()
+                continue
+            name = syntax.column_name(item)
+            columns.append((name, indirect(kind)))
+            if item.get("alias"):
+                scope.aliases.setdefault(name, indirect(kind))
+        for key, value in node.items():
+            if key not in {"select_list", "from_table", "cte_map"}:
+                self._visit(value, scope)
+        return Relation(columns, complete)
+
+    def _columns_of_star(self, item: Node, scope: Scope) -> Relation:
+        """Return the columns that a star stands for."""
+        if item.get("columns") or item.get("expr"):
+            return UNKNOWN
+        wanted = item.get("relation_name", "").lower()
+        sources = [source for source in scope.sources if not wanted or source.name == wanted]
+        if wanted and not sources:
+            kind = scope.lookup([wanted])
+            return Relation(list(kind.fields.items())) if isinstance(kind, StructOf) else UNKNOWN
+        dropped = {_last(name) for name in item.get("exclude_list") or ()}
+        replaced = {
+            entry["key"].lower(): indirect(self.of(entry["value"], scope)) for entry in item.get("replace_list") or ()
+        }
+        columns = [
+            (name, replaced.get(name, kind))
+            for source in sources
+            for name, kind in source.relation.columns
+            if name not in dropped and (wanted or name not in source.hidden)
+        ]
+        return Relation(columns, all(source.relation.complete for source in sources) and not item.get("rename_list"))
+
+    def _sources(self, node: Node, scope: Scope) -> list[Source]:
+        name = (node.get("alias") or node.get("table_name") or "").lower()
+        match node["type"]:
+            case "EMPTY":
+                return []
+            case "JOIN":
+                return self._join(node, scope)
+            case "BASE_TABLE":
+                table = node["table_name"].lower()
+                relation = scope.ctes.get(table) or self._tables.get(table) or UNKNOWN
+            case "SUBQUERY":
+                relation = self.query(node["subquery"]["node"], scope.ctes, scope)
+            case "EXPRESSION_LIST":
+                rows = [[self.of(value, scope) for value in row] for row in node["values"]]
+                relation = Relation(
+                    [(f"col{n}", indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))]
+                )
+            case "TABLE_FUNCTION":
+                call = node["function"]
+                kind = self.of(call, scope)
+                known = call["function_name"].lower() in {"unnest", "range", "generate_series"}
+                relation = Relation([(call["function_name"].lower(), indirect(kind))], complete=known)
+            case _:
+                relation = UNKNOWN
+        return [Source(name, renamed(relation, node.get("column_name_alias", ())))]
+
+    def _join(self, node: Node, scope: Scope) -> list[Source]:
+        left = self._sources(node["left"], scope)
+        right = self._sources(node["right"], Scope(scope.outer, scope.ctes, left))
+        self._visit(node.get("condition"), Scope(scope.outer, scope.ctes, [*left, *right]))
+        if node.get("join_type") in {"SEMI", "ANTI"}:
+            return left
+        shared = {name.lower() for name in node.get("using_columns", ())}
+        if node.get("ref_type") == "NATURAL":
+            shared |= {name for source in left for name, _ in source.relation.columns}
+        return [*left, *(source.hiding(frozenset(shared)) for source in right)]
+
+    # ---- expressions
+
+    def of(self, node: Node, scope: Scope) -> Type:
+        """Return what an expression may be."""
+        of_class = getattr(self, f"_{node['class'].lower()}", None)
+        if of_class is not None:
+            kind: Type = of_class(node, scope)
+            return kind
+        self._visit([value for key, value in node.items() if key != "class"], scope)
+        return None
+
+    def _visit(self, part: Any, scope: Scope) -> None:
+        """Look at all expressions in part of a tree."""
+        if isinstance(part, dict) and "class" in part:
+            self.of(part, scope)
+        elif isinstance(part, dict | list):
+            for inner in part.values() if isinstance(part, dict) else part:
+                if isinstance(inner, dict | list):
+                    self._visit(inner, scope)
+
+    def _constant(self, node: Node, _scope: Scope) -> Type:
+        value = node["value"]
+        if value["is_null"]:
+            return NULL
+        if value["type"]["id"] != "VARCHAR":
+            return None
+        place = Literal(self._call if self._depth else syntax.offset_of(node), in_macro=bool(self._depth))
+        return Words(literals={value["value"]: place}, direct=True)
+
+    @staticmethod
+    def _column_ref(node: Node, scope: Scope) -> Type:
+        return scope.lookup([name.lower() for name in node["column_names"]])
+
+    @staticmethod
+    def _parameter(node: Node, _scope: Scope) -> Type:
+        return Parameter(node["identifier"])
+
+    def _case(self, node: Node, scope: Scope) -> Type:
+        checks = node["case_checks"]
+        for each in checks:
+            self.of(each["when_expr"], scope)
+        return union(self.of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
+
+    def _cast(self, node: Node, scope: Scope) -> Type:
+        kind = self.of(node["child"], scope)
+        return kind if node["cast_type"]["id"] == "VARCHAR" or kind == NULL else None
+
+    def _comparison(self, node: Node, scope: Scope) -> Type:
+        left, right = self.of(node["left"], scope), self.of(node["right"], scope)
+        if node["type"] in _COMPARISONS:
+            self._compare(left, right)
+        return None
+
+    def _operator(self, node: Node, scope: Scope) -> Type:
+        kinds = [self.of(child, scope) for child in node["children"]]
+        match node["type"]:
+            case "COMPARE_IN" | "COMPARE_NOT_IN":
+                for kind in kinds[1:]:
+                    self._compare(kinds[0], kind.item if isinstance(kind, ListOf) else kind)
+            case "OPERATOR_COALESCE":
+                return union(kinds)
+            case "ARRAY_EXTRACT" | "STRUCT_EXTRACT":
+                return member_of(*kinds)
+            case "ARRAY_SLICE":
+                return kinds[0]
+        return None
+
+    def _window(self, node: Node, scope: Scope) -> Type:
+        return self._function(node, scope)
+
+    def _function(self, node: Node, scope: Scope) -> Type:
+        name = node["function_name"].lower()
+        children = node["children"]
+        if name in _LAMBDAS and children[1]["class"] == "LAMBDA":
+            return self._items(name, node, scope)
+        kinds = [self.of(child, scope) for child in children]
+        self._visit({key: value for key, value in node.items() if key not in {"children", "class"}}, scope)
+        if name in macro_texts():
+            return self.macro(name, kinds, node)
+        if name == "struct_pack":
+            return StructOf(
+                {child["alias"].lower(): indirect(kind) for child, kind in zip(children, kinds, strict=True)}
+            )
+        if pair := compared(name, kinds):
+            self._compare(*pair)
+        if len(kinds) == 2:
+            self._keep(word_types.wrong_patterns(name, *kinds))
+        return value_of(name, kinds)
+
+    def _items(self, name: str, node: Node, scope: Scope) -> Type:
+        """Return what a function with a lambda makes of a list."""
+        items, function = self.of(node["children"][0], scope), node["children"][1]
+        left = function["lhs"]
+        names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
+        bound = {**dict.fromkeys(names), names[0]: indirect(item_of(items))}
+        value = self.of(function["expr"], Scope(scope, scope.ctes, bound=bound))
+        return items if name == "list_filter" else ListOf(value)
+
+    def macro(self, name: str, kinds: Sequence[Type] | None, call: Node | None = None) -> Type:
+        """Return what a macro may be, called with arguments that may be `kinds`; None: with any."""
+        called = macro(name)
+        if called is None or (kinds is not None and len(kinds) != len(called.parameters)):
+            return None
+        if kinds is not None and all(kind is None for kind in kinds):
+            return _of_macro(name)
+        given = zip(called.parameters, kinds or [None] * len(called.parameters), strict=True)
+        bound = {parameter: _columns_of_words().get(parameter) if kind is None else kind for parameter, kind in given}
+        if not self._depth:
+            self._call = None if call is None else syntax.offset_of(call)
+        self._depth += 1
+        kind = self.of(called.value, Scope(bound=bound))
+        self._depth -= 1
+        return indirect(kind)
+
+    def _subquery(self, node: Node, scope: Scope) -> Type:
+        relation = self.query(node["subquery"]["node"], scope.ctes, scope)
+        first = relation.columns[0][1] if relation.columns else None
+        if node["subquery_type"] == "ANY":
+            kind = self.of(node["child"], scope)
+            if node["comparison_type"] in _COMPARISONS:  # the literals of a list, as ANY has them, are written here
+                self._compare(
+                    kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first
+                )
+            return None
+        return first if node["subquery_type"] == "SCALAR" else None
+
+    def _compare(self, left: Type, right: Type) -> None:
+        for one, other in ((left, right), (right, left)):
+            if isinstance(one, Parameter) and isinstance(other, Words) and not other.direct:
+                self.parameters.setdefault(one.name, []).append(other)
+        self._keep(word_types.wrong_words(left, right))
+
+    def _keep(self, found: Iterable[WrongWord]) -> None:
+        for wrong in found:
+            self._wrong.setdefault((wrong.word, wrong.offset), wrong)
+
+
+@cache
+def _of_macro(name: str) -> Type:
+    """Return what a macro may be, whatever its arguments are."""
+    return _Walker(_tables()).macro(name, None)
+
+
+def _is_recursive(unnest: Node) -> bool:
+    return any(child.get("alias") == "recursive" for child in unnest["children"])
+
+
+def _last(name: Any) -> str:
+    """Return the name of a column that a star leaves out, in lower case."""
+    return str(name if isinstance(name, str) else name["column"]).lower()

@@ -1,0 +1,75 @@
+"""What functions of DuckDB return and what they compare, as far as words go."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from drivelint.sql.word_types import ListOf, Type, item_of, joined, member_of, union
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    Kinds = Sequence[Type]
+
+_FIRST: Final = (
+    *(
+        "any_value",
+        "arg_max",
+        "arg_min",
+        "first",
+        "first_value",
+        "last",
+        "last_value",
+        "max",
+        "max_by",
+        "min",
+        "min_by",
+        "mode",
+    ),
+    *(
+        "nth_value",
+        "nullif",
+        "list_distinct",
+        "list_reverse",
+        "list_slice",
+        "list_sort",
+        "list_unique",
+        "list_where",
+        "array_slice",
+    ),
+)
+_ITEM: Final = ("unnest", "list_extract", "list_element", "element_at", "list_min", "list_max", "flatten")
+_HAS: Final = frozenset({"contains", "list_contains", "list_has", "list_position", "list_indexof"})
+_HAS_ITEMS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list_intersect"})
+
+
+def _together(kinds: Kinds) -> Type:
+    return union(kinds) if any(isinstance(kind, ListOf) for kind in kinds) else joined(kinds)
+
+
+_VALUES: Final[Mapping[str, Callable[[Kinds], Type]]] = {
+    **dict.fromkeys(_FIRST, lambda kinds: kinds[0]),
+    **dict.fromkeys(("lag", "lead"), lambda kinds: union([kinds[0], *kinds[2:3]])),
+    **dict.fromkeys(("coalesce", "greatest", "least", "ifnull"), union),
+    **dict.fromkeys(("list", "array_agg", "list_value", "array_value"), lambda kinds: ListOf(union(kinds))),
+    **dict.fromkeys(_ITEM, lambda kinds: item_of(kinds[0])),
+    **dict.fromkeys(("||", "concat", "list_concat"), _together),
+    **dict.fromkeys(("struct_extract", "array_extract"), lambda kinds: member_of(*kinds)),
+}
+
+
+def value_of(function: str, kinds: Kinds) -> Type:
+    """Return what a function returns that is called with these; None: nothing is known of it."""
+    return _VALUES[function](kinds) if function in _VALUES and kinds else None
+
+
+def compared(function: str, kinds: Kinds) -> tuple[Type, Type] | None:
+    """Return the two that a function compares: an item of a list with a value or with another's items; None: it compares none."""
+    if len(kinds) != 2:
+        return None
+    first, second = kinds
+    if function in _HAS:
+        return item_of(first), second
+    if function in _HAS_ITEMS:
+        return item_of(first), item_of(second)
+    return (first, second) if function == "nullif" else None

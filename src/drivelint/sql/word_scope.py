@@ -1,0 +1,89 @@
+"""What the names in a SELECT stand for, as far as words go: columns of its sources, its aliases, what is around it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+from drivelint.sql.word_types import Type, field_of, union
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+class Relation(NamedTuple):
+    """The columns of a table or query in order, names in lower case; `complete`: it has no others."""
+
+    columns: Sequence[tuple[str, Type]]
+    complete: bool = True
+
+
+UNKNOWN = Relation([], complete=False)
+
+
+class Source:
+    """A relation in a FROM, the name that it goes by, and those of its columns that a star leaves out."""
+
+    def __init__(self, name: str, relation: Relation, hidden: frozenset[str] = frozenset()) -> None:
+        self.name, self.relation, self.hidden = name, relation, hidden
+
+    @cached_property
+    def kinds(self) -> dict[str, Type]:
+        """What each column may be; of two of one name the first."""
+        return dict(reversed(self.relation.columns))
+
+    def hiding(self, names: frozenset[str]) -> Source:
+        """Return the same, with more columns that a star leaves out."""
+        return Source(self.name, self.relation, self.hidden | names)
+
+
+class Scope:
+    """What names stand for: `bound` parameters of a macro or lambda, sources of a FROM, aliases of a SELECT, and the scope around it."""
+
+    def __init__(
+        self,
+        outer: Scope | None = None,
+        ctes: Mapping[str, Relation] | None = None,
+        sources: Sequence[Source] = (),
+        bound: Mapping[str, Type] | None = None,
+    ) -> None:
+        self.outer, self.ctes, self.sources, self.bound = outer, ctes or {}, sources, bound or {}
+        self.aliases: dict[str, Type] = {}
+
+    def lookup(self, names: Sequence[str]) -> Type:
+        """Return what a column may be, by its names in lower case: [source], column, [fields]."""
+        first, *rest = names
+        if first in self.bound:
+            return field_of(self.bound[first], rest)
+        for source in self.sources:
+            if rest and source.name == first and rest[0] in source.kinds:
+                return field_of(source.kinds[rest[0]], rest[1:])
+        for source in self.sources:
+            if first in source.kinds:
+                return field_of(source.kinds[first], rest)
+        if first in self.aliases:
+            return field_of(self.aliases[first], rest)
+        if self.outer is None or not all(source.relation.complete for source in self.sources):
+            return None
+        return self.outer.lookup(names)
+
+
+def renamed(relation: Relation, names: Sequence[str]) -> Relation:
+    """Return a relation whose first columns have other names."""
+    columns = list(relation.columns)
+    columns[: len(names)] = [(name.lower(), kind) for name, (_, kind) in zip(names, columns, strict=False)]
+    return Relation(columns, relation.complete)
+
+
+def united(left: Relation, right: Relation, *, by_name: bool) -> Relation:
+    """Return the columns of a UNION."""
+    complete = left.complete and right.complete
+    if by_name:
+        first, second = dict(left.columns), dict(right.columns)
+        names = dict.fromkeys([*first, *second])
+        kinds = {name: [each[name] for each in (first, second) if name in each] for name in names}
+        return Relation([(name, union(kinds[name])) for name in names], complete)
+    if not complete:
+        return Relation([(name, None) for name, _ in left.columns], complete=False)
+    pairs = zip(left.columns, right.columns, strict=False)
+    return Relation([(name, union([kind, other])) for (name, kind), (_, other) in pairs])

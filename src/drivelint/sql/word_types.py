@@ -1,0 +1,203 @@
+"""What an expression of SQL may be, as far as words go: a word of a vocabulary, a literal, a list or STRUCT of such, a parameter.
+
+None is an expression of which nothing is known: a number, or a text that the log gave.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from itertools import product
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.sql.words import Vocabulary, nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from drivelint.sql.words import WordColumn
+
+_MOST_PRODUCTS = 200
+"""More texts than this are not put together from parts."""
+
+
+class Literal(NamedTuple):
+    """Where a literal stands: the byte of the SQL (of the call, where a macro has it; None: not said), and whether a macro has it."""
+
+    offset: int | None
+    in_macro: bool = False
+
+
+@dataclass(frozen=True)
+class Words:
+    """A text: a word of any of these vocabularies, or one of these literals; without either it is NULL.
+
+    `direct`: nothing but literals, written at this place.
+    """
+
+    vocabularies: frozenset[Vocabulary] = frozenset()
+    literals: Mapping[str, Literal] = field(default_factory=dict)
+    direct: bool = False
+
+    def may_be(self, word: str) -> bool:
+        """Whether it may be this word."""
+        return word in self.literals or any(word in known for known in self.vocabularies)
+
+    @property
+    def is_null(self) -> bool:
+        """Whether it is nothing but NULL."""
+        return not self.vocabularies and not self.literals
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """All words that it may be."""
+        ordered = sorted(self.vocabularies)
+        return tuple(dict.fromkeys([*(word for known in ordered for word in known.words), *self.literals]))
+
+
+@dataclass(frozen=True)
+class ListOf:
+    """A list."""
+
+    item: Type
+
+
+@dataclass(frozen=True)
+class StructOf:
+    """A STRUCT."""
+
+    fields: Mapping[str, Type]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter `$name`."""
+
+    name: str
+
+
+Type = Words | ListOf | StructOf | Parameter | None
+NULL = Words(direct=True)
+
+
+class WrongWord(NamedTuple):
+    """A literal that what it is compared with can never be; `offset`: the byte of the SQL where it stands, None: not said."""
+
+    word: str
+    offset: int | None
+    against: Words
+
+    @property
+    def message(self) -> str:
+        """What is wrong, with the nearest good word."""
+        names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
+        what = f"is no {names}" if names else "is never what it is compared with"
+        return f"{self.word!r} {what}; {nearest(self.word, self.against.known)}"
+
+
+def of_column(column: WordColumn) -> Type:
+    """Return what a column of a table may be."""
+    item: Type = Words(frozenset({column.vocabulary}))
+    item = StructOf({column.field: item}) if column.field else item
+    return ListOf(item) if column.is_list else item
+
+
+def indirect(kind: Type) -> Type:
+    """Return the same as it is read elsewhere: by the name of a column, or as the result of a macro."""
+    return replace(kind, direct=False) if isinstance(kind, Words) else kind
+
+
+def union(kinds: Iterable[Type]) -> Type:
+    """Return what an expression may be that is any of these; NULL adds nothing."""
+    parts = [kind for kind in kinds if not (isinstance(kind, Words) and kind.is_null)]
+    if len(parts) < 2:
+        return parts[0] if parts else NULL
+    words = [part for part in parts if isinstance(part, Words)]
+    lists = [part for part in parts if isinstance(part, ListOf)]
+    structs = [part for part in parts if isinstance(part, StructOf)]
+    if len(words) == len(parts):
+        literals = {word: place for part in reversed(words) for word, place in part.literals.items()}
+        known = frozenset[Vocabulary]().union(*(part.vocabularies for part in words))
+        return Words(known, literals, all(part.direct for part in words))
+    if len(lists) == len(parts):
+        return ListOf(union(part.item for part in lists))
+    if len(structs) == len(parts):
+        names = dict.fromkeys(name for part in structs for name in part.fields)
+        return StructOf({name: union(part.fields.get(name) for part in structs) for name in names})
+    return None
+
+
+def joined(parts: Iterable[Type]) -> Type:
+    """Return the texts that are put together from these, where there are few."""
+    texts: list[list[tuple[str, Literal]]] = []
+    for part in parts:
+        if not isinstance(part, Words) or not all(known.is_listed for known in part.vocabularies):
+            return None
+        texts.append([(word, part.literals.get(word, Literal(None))) for word in part.known])
+    combinations = list(product(*texts)) if len(texts) < 4 else []
+    if not 0 < len(combinations) <= _MOST_PRODUCTS:
+        return None
+    return Words(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
+
+
+def field_of(kind: Type, names: Iterable[str]) -> Type:
+    """Return the field of a STRUCT, or of one in it."""
+    for name in names:
+        kind = kind.fields.get(name) if isinstance(kind, StructOf) else None
+    return kind
+
+
+def item_of(kind: Type) -> Type:
+    """Return what an item of a list may be."""
+    return kind.item if isinstance(kind, ListOf) else None
+
+
+def member_of(kind: Type, key: Type) -> Type:
+    """Return what stands under a key in brackets: an item of a list, or a field of a STRUCT."""
+    return field_of(kind, map(str.lower, key.literals)) if isinstance(key, Words) else item_of(kind)
+
+
+def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
+    """Yield the literals on one side of a comparison that the other side can never be.
+
+    Of a macro's own literals only those are wrong that are in no vocabulary: what else it is called with may be narrower. Of literals that
+    come from elsewhere, as from a CASE in a CTE, none is wrong as long as one is good: the others may stand for "none of these".
+    """
+    for literals, other in ((left, right), (right, left)):
+        if not (isinstance(literals, Words) and isinstance(other, Words)) or literals.vocabularies:
+            continue
+        if other.direct or not (literals.direct or other.vocabularies):
+            continue
+        wrong = [
+            WrongWord(word, place.offset, other)
+            for word, place in literals.literals.items()
+            if (other.vocabularies or (other.literals and not place.in_macro)) and not other.may_be(word)
+        ]
+        if literals.direct or len(wrong) == len(literals.literals):
+            yield from wrong
+
+
+def _is_like(word: str, pattern: str) -> bool:
+    parts = (".*" if each == "%" else "." if each == "_" else re.escape(each) for each in pattern)
+    return re.fullmatch("".join(parts), word, re.DOTALL) is not None
+
+
+_TESTS: Final[Mapping[str, Callable[[str, str], bool]]] = {
+    **dict.fromkeys(("~~", "!~~"), _is_like),
+    **dict.fromkeys(("~~*", "!~~*"), lambda word, pattern: _is_like(word.casefold(), pattern.casefold())),
+    **dict.fromkeys(("starts_with", "prefix", "^@"), str.startswith),
+    **dict.fromkeys(("ends_with", "suffix"), str.endswith),
+    "contains": str.__contains__,
+}
+"""Function -> whether it holds of a word and a pattern."""
+
+
+def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWord]:
+    """Yield the pattern of a LIKE, or of a function such as starts_with, that no word fits which the text may be."""
+    if function not in _TESTS or not (isinstance(text, Words) and isinstance(pattern, Words) and pattern.direct):
+        return
+    if text.direct or text.is_null or not all(known.is_listed for known in text.vocabularies):
+        return
+    for wanted, place in pattern.literals.items():
+        if not place.in_macro and not any(_TESTS[function](word, wanted) for word in text.known):
+            yield WrongWord(wanted, place.offset, text)

@@ -1,0 +1,267 @@
+"""Words in SQL that a column never has: found in every form in which a rule may compare, and nothing else is taken for one."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from drivelint.resources import folder
+from drivelint.sql import macro_trees, store, syntax, word_check
+from drivelint.sql.derivations import derivations
+from drivelint.sql.word_check import Checked, check
+from drivelint.sql.word_scope import Relation
+from drivelint.sql.words import Vocabulary, WordColumn
+
+
+def checked(sql: str, tables: dict[str, Relation] | None = None) -> Checked:
+    return check(syntax.parse_select(sql, "a test"), tables)
+
+
+def wrong(sql: str) -> list[str]:
+    """Return what is wrong in a SELECT, in order of place."""
+    return [each.message for each in sorted(checked(sql).wrong, key=lambda each: each.offset or 0)]
+
+
+WRONG = [
+    # compared
+    "SELECT actor_class = 'cyclist' FROM pair",
+    "SELECT 'cyclist' <> p.actor_class FROM pair p",
+    "SELECT actor_class IS DISTINCT FROM 'cyclist' FROM pair",
+    "SELECT ACTOR_CLASS = 'cyclist' FROM Pair",
+    "SELECT actor_class IN ('car', 'cyclist') FROM pair",
+    "SELECT actor_class NOT IN ('cyclist') FROM pair",
+    "SELECT actor_class IN ['car', 'cyclist'] FROM pair",
+    "SELECT actor_class = ANY(['car', 'cyclist']) FROM pair",
+    "SELECT actor_class IN (SELECT * FROM (VALUES ('car'), ('cyclist'))) FROM pair",
+    "SELECT CASE actor_class WHEN 'cyclist' THEN 1 ELSE 2 END AS x FROM pair",
+    "SELECT nullif(actor_class, 'cyclist') FROM pair",
+    "SELECT list_contains(['car', 'cyclist'], actor_class) FROM pair",
+    "SELECT list_contains(list(actor_class), 'cyclist') FROM pair",
+    "SELECT ['cyclist'] && list(actor_class) FROM pair",
+    "SELECT list_filter(list(actor_class), lambda each: each = 'cyclist') FROM pair",
+    "SELECT [each FOR each IN list(actor_class) IF each = 'cyclist'] FROM pair",
+    "SELECT actor_class LIKE 'cyclist%' FROM pair",
+    "SELECT starts_with(actor_class, 'cyclist') FROM pair",
+    # given to a macro
+    "SELECT is_class(actor_class, 'cyclist') FROM pair",
+    "SELECT is_class(p.actor_class, CASE WHEN p.off_level THEN 'car' ELSE 'cyclist' END) FROM pair p",
+    "SELECT is_class(lower(actor_class), 'cyclist') FROM pair",
+    # read under another name, or through a function
+    "WITH seen AS (SELECT actor_class AS kind FROM pair) SELECT s.kind = 'cyclist' FROM seen s",
+    "WITH a(kind) AS (SELECT actor_class FROM pair), b AS (FROM a) SELECT kind = 'cyclist' FROM b",
+    "SELECT k = 'cyclist' FROM (SELECT actor_class AS k FROM pair)",
+    "SELECT actor_class AS k, k = 'cyclist' AS is_one FROM pair",
+    "SELECT x.k = 'cyclist' FROM (SELECT * EXCLUDE (x_m) REPLACE (actor_class AS object_id) FROM pair) AS x(a, b, c, k)",
+    "SELECT k = 'cyclist' FROM (SELECT actor_class AS k FROM pair UNION ALL SELECT actor_class FROM actor)",
+    "SELECT actor_class = 'cyclist' FROM (FROM pair UNION ALL BY NAME FROM actor)",
+    "SELECT coalesce(actor_class, 'car') = 'cyclist' FROM pair",
+    "SELECT max(actor_class) = 'cyclist' FROM pair",
+    "SELECT lag(actor_class) OVER (ORDER BY t_ns) = 'cyclist' FROM pair",
+    "SELECT arg_max(actor_class, t_ns) = 'cyclist' FROM pair",
+    "SELECT min({'t': t_ns, 'k': actor_class}).k = 'cyclist' FROM pair",
+    "SELECT (CASE WHEN off_level THEN actor_class END) = 'cyclist' FROM pair",
+    "SELECT actor_class::VARCHAR = 'cyclist' FROM pair",
+    "SELECT (SELECT actor_class FROM actor LIMIT 1) = 'cyclist'",
+    "SELECT l[1] = 'cyclist' FROM (SELECT list(actor_class) AS l FROM pair)",
+    "SELECT u = 'cyclist' FROM (SELECT unnest(list(actor_class)) AS u FROM pair)",
+    "SELECT u.k = 'cyclist' FROM (SELECT list(actor_class) AS l FROM pair) s, unnest(s.l) AS u(k)",
+    "WITH RECURSIVE r AS (SELECT actor_class AS k FROM pair UNION ALL SELECT k FROM r) SELECT k = 'cyclist' FROM r",
+    # wherever an expression may stand
+    "SELECT count(*) FILTER (actor_class = 'cyclist') FROM pair",
+    "SELECT 1 FROM pair WHERE actor_class = 'cyclist' AND off_level",
+    "SELECT 1 FROM pair p JOIN actor a ON a.actor_id = p.object_id AND a.actor_class = 'cyclist'",
+    "SELECT 1 FROM pair p LEFT JOIN LATERAL (SELECT p.actor_class = 'cyclist' AS y) ON true",
+    "SELECT 1 FROM pair WHERE EXISTS (FROM actor WHERE actor_class = 'cyclist')",
+    "SELECT 1 FROM ego_state e WHERE e.ego_id IN (SELECT ego_id FROM pair WHERE actor_class = 'cyclist')",
+    "SELECT count(*) FROM pair GROUP BY actor_class HAVING actor_class = 'cyclist'",
+    "SELECT 1 FROM pair QUALIFY row_number() OVER (PARTITION BY actor_class = 'cyclist') = 1",
+    "SELECT 1 FROM pair ORDER BY actor_class = 'cyclist'",
+    "SELECT list(t_ns ORDER BY actor_class = 'cyclist') FROM pair",
+]
+
+
+@pytest.mark.parametrize("sql", WRONG)
+def test_a_class_that_does_not_exist_is_found(sql: str) -> None:
+    found = checked(sql).wrong
+    assert [each.word.rstrip("%") for each in found] == ["cyclist"], sql
+    assert "did you mean 'bicycle'?" in found[0].message
+    place = found[0].offset
+    assert place is not None
+    assert place <= sql.encode().find(b"'cyclist")  # there, or where the macro is called
+
+
+@pytest.mark.parametrize("sql", WRONG)
+def test_a_class_that_exists_is_none(sql: str) -> None:
+    assert wrong(re.sub(r"'cyclist(%?)'", r"'bicycle\1'", sql)) == []
+
+
+GOOD = [
+    "SELECT coalesce(lane_type, '') <> '' FROM lanelet",
+    "SELECT coalesce(actor_class, 'nobody') = 'nobody' FROM pair",
+    "SELECT ifnull(state, 'dark') IN ('dark', 'red') FROM mark_phase",
+    "SELECT CASE WHEN drivable THEN lane_type ELSE 'other' END = 'other' FROM lanelet",
+    # texts of the log's own
+    "SELECT value = 'anything', event = 'door_opened' FROM declared_event",
+    "SELECT mode = 'platooning' FROM ego_mode",
+    "SELECT object_id = 'cyclist' FROM pair",
+    "SELECT nation = 'fr' FROM ego_condition",
+    "SELECT starts_with(nation, 'f') FROM ego_condition",
+    "SELECT lower(actor_class) = 'CYCLIST' FROM pair",
+    "SELECT starts_with(road_type, 'town'), actor_class LIKE '%cycle', lane_type LIKE '_us' FROM ego_state, pair, lanelet",
+    # words of a rule's own
+    "SELECT part = 'before' FROM (SELECT CASE WHEN k = 0 THEN 'before' ELSE 'after' END AS part FROM step)",
+    "SELECT v.part = 'a' FROM (VALUES ('a', 1), ('b', 2)) AS v(part, n)",
+    # a class that is none of a narrower set, by way of a macro or of a set
+    "SELECT is_vehicle(kind) FROM (SELECT CASE WHEN k = 0 THEN 'car' ELSE 'bus' END AS kind FROM step)",
+    "SELECT p.actor_class = s.kind FROM pair p, (SELECT CASE WHEN k = 0 THEN 'car' ELSE 'none of these' END AS kind FROM step) s",
+    # a recursive CTE whose second part has more words than its first
+    "WITH RECURSIVE r AS (SELECT 'a' AS s UNION ALL SELECT CASE WHEN s = 'b' THEN 'c' ELSE 'b' END FROM r) SELECT s = 'c' FROM r",
+    "SELECT NULL::VARCHAR = 'anything', NULL IN ('a')",
+    "SELECT code = 'no_class' FROM (SELECT code FROM unplaced UNION ALL SELECT 'no_class' FROM oncoming_vehicle)",
+    "SELECT columns_of_a_table_that_nobody_knows = 'x', t.actor_class = 'cyclist' FROM elsewhere t",
+    "SELECT e.x = 'y' FROM (SELECT * FROM elsewhere) e",
+    "SELECT COLUMNS('a.*') = 'cyclist' FROM elsewhere",
+    "SELECT lights[1].fit = 'own', list_filter(lights, lambda l: l.fit IN ('own', 'maybe')) FROM way_mark",
+    "SELECT list_contains(turns, 'left') FROM traffic_signal",
+    "SELECT unnest(turns) = 'u_turn' FROM traffic_signal",
+]
+
+
+@pytest.mark.parametrize("sql", GOOD)
+def test_what_may_be_so_is_not_refused(sql: str) -> None:
+    assert wrong(sql) == []
+
+
+@pytest.mark.parametrize(
+    ("sql", "message"),
+    [
+        ("SELECT part = 'befor' FROM (SELECT CASE WHEN k = 0 THEN 'before' ELSE 'after' END AS part FROM step)",
+         "'befor' is never what it is compared with; did you mean 'before'?"),
+        ("SELECT relation_of(1.0) = 'oncomming'", "'oncomming' is never what it is compared with; did you mean 'oncoming'?"),
+        ("SELECT is_class(n.lane_type, 'car') FROM lanelet n", "'vehicle' is no lane type; "),
+        ("SELECT lights[1].fit = 'mine' FROM way_mark", "'mine' is no light fit; "),
+        ("SELECT list_contains(turns, 'lefft') FROM traffic_signal", "'lefft' is no turn; did you mean 'left'?"),
+        ("SELECT beyond = 'oposing' FROM line_step", "'oposing' is no lane type; did you mean 'opposing'?"),
+        ("SELECT event = 'mirror_chek' FROM declared_event", "'mirror_chek' is no event; did you mean 'mirror_check'?"),
+        ("SELECT mode = 'horns' FROM ego_mode", "'horns' is no mode; did you mean 'horn'?"),
+        ("SELECT profile = 'agressive' FROM overtake_sda", "'agressive' is no profile name; did you mean 'aggressive'?"),
+        ("SELECT check_id = 'lost_tim' FROM quality", "'lost_tim' is no log check; did you mean 'lost_time'?"),
+        ("SELECT signal = 'indicators' FROM capability", "'indicators' is no signal; did you mean 'indicator'?"),
+        ("SELECT nation = 'gb-scot' FROM ego_condition", "'gb-scot' is no nation; did you mean 'gb-sct'?"),
+        ("SELECT lane_type LIKE 'Driv%' FROM lanelet", "'Driv%' is no lane type; did you mean 'driving'?"),
+    ],
+)  # fmt: skip
+def test_other_words_are_found_with_the_nearest(sql: str, message: str) -> None:
+    (found,) = {each for each in wrong(sql) if each.startswith(message[:8])}
+    assert found.startswith(message)
+
+
+COLUMNS = [
+    (table, name, column)
+    for file in ("model", "map", "derived", "conduct", "junctions")
+    for table in store.column_comments(file)
+    for name, column in store.word_columns()[table].items()
+    if not column.field and not column.is_list
+]
+FORMS = (
+    "SELECT {c} = {w} FROM {t}",
+    "SELECT {w} IS DISTINCT FROM x.{c} FROM {t} x",
+    "SELECT {c} IN ({w}) FROM {t}",
+    "WITH a AS (SELECT {c} AS renamed FROM {t}) SELECT CASE renamed WHEN {w} THEN 1 END FROM a",
+    "SELECT count(*) FILTER (last_value({c}) OVER () = {w}) FROM {t}",
+    "SELECT list_contains(list({c}), {w}) FROM {t}",
+    "SELECT any_value({{'k': {c}}}).k = {w} FROM {t} GROUP BY ALL",
+)
+
+
+@pytest.mark.parametrize(("table", "name", "column"), COLUMNS, ids=[f"{table}.{name}" for table, name, _ in COLUMNS])
+def test_every_column_of_words_is_known_in_sql(table: str, name: str, column: WordColumn) -> None:
+    good = column.vocabulary.words[-1]
+    for form in FORMS:
+        assert wrong(form.format(t=table, c=name, w=f"'{good}'")) == [], form
+        (found,) = wrong(form.format(t=table, c=name, w=f"'{good}{good[-1]}'"))
+        assert found.endswith(f"did you mean {good!r}?"), form
+
+
+TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=12)
+
+
+@given(st.sampled_from(COLUMNS), st.sampled_from(FORMS), TEXTS)
+@example(COLUMNS[0], FORMS[0], "it's")
+@example(COLUMNS[0], FORMS[3], "")
+def test_a_text_is_refused_exactly_if_it_is_no_word(place: tuple[str, str, WordColumn], form: str, text: str) -> None:
+    """A law: what a SELECT may compare with a column is what its vocabulary has."""
+    table, name, column = place
+    found = wrong(form.format(t=table, c=name, w=store.quoted(text)))
+    assert bool(found) == (text not in column.vocabulary)
+    assert all(each.startswith(f"{text!r} is no ") for each in found)
+
+
+def test_what_a_parameter_is_compared_with_is_known() -> None:
+    found = checked(
+        "SELECT actor_class = $kind, speed_mps > $most_mps, is_class(actor_class, $word) FROM pair"
+    ).parameters
+    assert {name: [kind.known[0] for kind in kinds] for name, kinds in found.items()} == {
+        "kind": ["car"],
+        "word": ["car"],
+    }
+
+
+def test_tables_beside_those_of_the_schemas_are_known() -> None:
+    reference = checked("SELECT drive_id, ego_id, t_ns, side AS to_side FROM lane_change").relation._replace(
+        complete=False
+    )
+    found = checked("SELECT r.to_side = 'lefft', r.ref_id = 'x' FROM reference r", {"reference": reference}).wrong
+    assert [each.message for each in found] == ["'lefft' is no side; did you mean 'left'?"]
+
+
+@pytest.mark.parametrize("name", sorted(derivations()))
+def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column(name: str) -> None:
+    """Both what it compares and what it gives; a column that nothing fills would be NULL for ever."""
+    found = checked(derivations()[name].sql)
+    assert [each.message for each in (*found.wrong, *word_check.wrong_in_columns(name, found.relation))] == []
+    assert found.relation.complete
+    filled = dict(found.relation.columns)
+    assert list(store.column_comments()[name].keys() - filled.keys() - {"geom"}) == []
+    # what it is made of is known, but for the conditions of a drive, whose words are in one column
+    unknown = [column for column in store.word_columns()[name] if filled[column] is None]
+    assert unknown == (list(store.word_columns()[name]) if name == "ego_condition" else [])
+
+
+def test_a_derivation_that_gives_another_word_is_found() -> None:
+    found = checked("SELECT CASE WHEN k = 0 THEN 'left' ELSE 'rigth' END AS side FROM step")
+    (only,) = word_check.wrong_in_columns("lane_change", found.relation)
+    assert (only.message, only.offset) == ("'rigth' is no side; did you mean 'right'?", 40)
+
+
+@pytest.mark.parametrize("name", sorted(macro_trees.macro_texts()))
+def test_a_macro_has_only_words_of_the_columns_that_its_parameters_are_named_after(name: str) -> None:
+    assert [each.message for each in word_check.check_macro(name)] == []
+
+
+def test_every_macro_is_read_but_that_of_two_signatures() -> None:
+    defined = {name.lower() for name in re.findall(r"\bMACRO (\w+)\(", store.macro_definitions())}
+    assert defined == macro_trees.macro_texts().keys()
+    assert [name for name in macro_trees.macro_texts() if macro_trees.macro(name) is None] == ["why"]
+
+
+@pytest.mark.parametrize("part", ["evidence", "inspect", "incident", "judging", "robustness", "watch"])
+def test_what_reads_the_tables_beside_the_rules_has_only_words_that_they_have(part: str) -> None:
+    read = 0
+    for file in sorted((folder("queries") / part).glob("*.sql")):
+        tree = syntax.syntax_tree(
+            re.sub(r"^(CREATE|INSERT)\b.*?\bAS\b", "", file.read_text(encoding="utf-8"), flags=re.DOTALL)
+        )
+        if tree["error"]:
+            continue  # with fragments, or no SELECT
+        read += 1
+        assert [each.message for each in check(tree["statements"][0]["node"]).wrong] == [], file.name
+    assert read
+
+
+def test_the_nearest_word_of_a_column_with_words_besides_is_one_of_both() -> None:
+    beyond: Vocabulary = store.word_columns()["line_step"]["beyond"].vocabulary
+    assert {"opposing", "same", "shoulder"} < set(beyond.words)
