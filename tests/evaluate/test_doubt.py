@@ -21,7 +21,7 @@ GAP = "SELECT drive_id, ego_id, object_id, t_ns, clearance_m AS observed, 0 AS r
 
 
 def doubt(actor: str, quantity: str, t_s: tuple[float, float] = (0.8, 1.2)) -> dict[str, Any]:
-    return {"doubt": {"actor_id": actor, "quantity": quantity, "t_from_s": t_s[0], "t_to_s": t_s[1], "code": "a_check"}}
+    return {"doubt": {"actor_id": actor, "quantity": quantity, "t_from_s": t_s[0], "t_to_s": t_s[1], "code": "velocity_jolt"}}
 
 
 def speed_rule(folder: Path) -> Rule:
@@ -43,7 +43,7 @@ def drive(speed: Any = 12, gap: Any = 3) -> dict[str, Any]:
 def test_a_doubted_step_is_neither_kept_nor_broken(tmp_path: Path, speed: Any) -> None:
     (row,) = verdicts(speed_rule(tmp_path), drive(speed) | doubt("e", "velocity"))
     assert (row["verdict"], row["reason_code"], row["cause_code"]) == ("unknown", "doubted", "doubted")
-    assert "the velocity of the ego is not believed then (a_check)" in row["reason"]
+    assert "the velocity of the ego is not believed then (velocity_jolt)" in row["reason"]
 
 
 @pytest.mark.parametrize("speed", [12, {"else": 12, "1": 9}])

@@ -127,7 +127,9 @@ def test_sensor_view(tmp_path: Path) -> None:
     trace = read(path)
     assert [k for k, v in actors(trace).items() if v["is_ego"]] == ["1"]
     assert len([row for row in states(trace) if row["x_m"] is not None]) == 15
-    assert quality(trace)["ego_absent"]["message"].startswith("the ego 1 is absent for 8.6 of 9.0 s (96 %), from 0.400 s")
+    assert quality(trace)["ego_absent"]["message"].startswith(
+        "the ego 1 is absent for 8.6 of 9.0 s (96 %), from 0.400 s"
+    )
 
 
 def test_host_unset(tmp_path: Path) -> None:

@@ -80,9 +80,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
     parts |= own_rows
     if not sum(map(len, parts.values())):
-        silent = silent_topics(
-            bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY}
-        )
+        silent = silent_topics(bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: "
             + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")

@@ -85,9 +85,16 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
         raise PickleError("its centre line has fewer than two points")
     own = stations(line)
     whole = shapely.LineString(line[:, :2])
-    corners = np.unique(shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M)))))
+    corners = np.unique(
+        shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
+    )
     pieces = np.maximum(1, np.ceil(np.diff(corners) / _SPACING_M)).astype(int)
-    s = np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)), own[-1:]])
+    s = np.concatenate(
+        [
+            *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
+            own[-1:],
+        ]
+    )
     at = np.column_stack([np.interp(s, own, column) for column in line.T])
     way = np.diff(at[:, :2], axis=0)
     way /= np.hypot(*way.T)[:, None]

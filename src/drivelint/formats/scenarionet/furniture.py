@@ -114,7 +114,9 @@ def _crossings(
         area = shapely.Polygon(outline + offset).buffer(0.0)
         crossed = tree.query(area, predicate="intersects")
         if not len(crossed):
-            quality.add("object_without_lane", "info", None, f"crossing {name} lies across no lane that vehicles drive on")
+            quality.add(
+                "object_without_lane", "info", None, f"crossing {name} lies across no lane that vehicles drive on"
+            )
         for i in crossed:
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))

@@ -75,7 +75,9 @@ def find_neighbours(lanes: Sequence[BoundedLane]) -> None:
             votes = _beside(lane, lanes, tree, side)
             for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
                 other = lanes[i]
-                share = set(lane.successors) & set(other.successors) or before[lane.lanelet_id] & before[other.lanelet_id]
+                share = (
+                    set(lane.successors) & set(other.successors) or before[lane.lanelet_id] & before[other.lanelet_id]
+                )
                 if len(votes[i]) >= _MOST and not share:
                     setattr(lane, f"{side}_id", other.lanelet_id)
                     setattr(lane, f"{side}_against", sum(votes[i]) < 0)

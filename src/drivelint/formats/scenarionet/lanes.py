@@ -108,7 +108,9 @@ def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
         begin, end = (float(lane.s[at][k] / lane.s[-1]) for k in (0, -1))
         if end > begin:
             word = str(scenario.features.get(name, {}).get("type"))
-            marking = next((marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None)
+            marking = next(
+                (marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None
+            )
             marks.append(Mark(("left", "right")[side], begin, end, marking))
     known = {mark.side for mark in marks}
     marks += [Mark(side, 0.0, 1.0, None) for side in ("left", "right") if side not in known]
