@@ -21,7 +21,15 @@ GAP = "SELECT drive_id, ego_id, object_id, t_ns, clearance_m AS observed, 0 AS r
 
 
 def doubt(actor: str, quantity: str, t_s: tuple[float, float] = (0.8, 1.2)) -> dict[str, Any]:
-    return {"doubt": {"actor_id": actor, "quantity": quantity, "t_from_s": t_s[0], "t_to_s": t_s[1], "code": "velocity_jolt"}}
+    return {
+        "doubt": {
+            "actor_id": actor,
+            "quantity": quantity,
+            "t_from_s": t_s[0],
+            "t_to_s": t_s[1],
+            "code": "velocity_jolt",
+        }
+    }
 
 
 def speed_rule(folder: Path) -> Rule:

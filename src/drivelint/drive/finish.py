@@ -70,16 +70,9 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     findings = [*told, *picked, *lost, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
     named = recording.ego_ids if asked is None else [asked]
+    states, split, parted = (states, jumps.NO_SPLIT, []) if assumed else _tracks(states, named)
     step = steps(states)
-    split = jumps.NO_SPLIT
-    if not assumed:
-        states, gone = jumps.without_removed_actors(states, step, kept=named)
-        step = steps(states) if gone else step
-        split = jumps.split_tracks(states, step, kept=named)
-        findings += [*gone, *split.findings]
-    if split.alias:
-        states = sorted_states(states)
-        step = steps(states)
+    findings += parted
     if "yaw_rad" in states.numbers:
         states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
     # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
@@ -109,6 +102,40 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     findings += moved
     if recorded is not None:
         states = recorded.completed()
+    return Trace(
+        identity.drive_id,
+        path,
+        _tables(identity, recording, options, states=states, actors=actors, egos=egos, findings=findings),
+        recording.embedded_map,
+        recording.map_offset,
+        recording.notes,
+        recording.frame_times,
+        recording.geo_reference,
+        recording.geo_offset,
+        nobody_ns,
+        in_log_order=recorded is not None and bool(restarts),
+    )
+
+
+def _tracks(states: States, kept: list[str]) -> tuple[States, jumps.SplitTracks, list[QualityFinding]]:
+    """Return the states (in order) without actors that are removed, and with tracks parted where they jump to another actor's."""
+    step = steps(states)
+    states, removed = jumps.without_removed_actors(states, step, kept=kept)
+    split = jumps.split_tracks(states, steps(states) if removed else step, kept=kept)
+    return sorted_states(states) if split.alias else states, split, [*removed, *split.findings]
+
+
+def _tables(
+    identity: Identity,
+    recording: Recording,
+    options: IngestOptions,
+    *,
+    states: States,
+    actors: actor_rows.Actors,
+    egos: list[str],
+    findings: list[QualityFinding],
+) -> dict[str, pa.Table]:
+    """Return the tables of the trace (states in order)."""
     is_ego = _is_ego(states, egos)
     drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
@@ -140,19 +167,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     tables = {name: owned_table(name, drive, rows, recording.format) for name, rows in content.items()}
     tables["quality"] = _quality(drive, findings, recording.format)
     tables["doubt"] = _doubts(drive, findings, recording.format)
-    return Trace(
-        drive,
-        path,
-        tables,
-        recording.embedded_map,
-        recording.map_offset,
-        recording.notes,
-        recording.frame_times,
-        recording.geo_reference,
-        recording.geo_offset,
-        nobody_ns,
-        in_log_order=recorded is not None and bool(restarts),
-    )
+    return tables
 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
