@@ -12,7 +12,7 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 from drivelint.formats.osi.metadata import ego_independent_quality
-from tests.convert.test_convert import messages
+from tests.convert.stock_reader import messages
 from tests.formats.logs import LONG, mapping, table
 from tests.formats.osi import osi_log
 

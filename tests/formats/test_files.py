@@ -105,7 +105,13 @@ def test_a_link_to_a_folder_is_named_and_not_followed(tmp_path: Path) -> None:
         folder.mkdir(parents=True)
     for file in (logs / "a.csv", other / "b.csv", drive / "actor_state.parquet"):
         file.write_text("x")
-    for name, target in (("round", logs), ("inside", logs / "sub"), ("linked", other), ("drive", drive), ("up", tmp_path)):
+    for name, target in (
+        ("round", logs),
+        ("inside", logs / "sub"),
+        ("linked", other),
+        ("drive", drive),
+        ("up", tmp_path),
+    ):
         (logs / name).symlink_to(target)
     # what lies within the folder is searched anyway, and a folder that is one drive needs no search
     assert names(expand_traces([str(logs)])) == ["up", "drive", "a.csv", "linked"]

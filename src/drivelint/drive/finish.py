@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.arrays import spelled
-from drivelint.drive import actors as actor_rows
 from drivelint.drive import absence, checks, contradiction, ego, jumps
+from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.arrays import Floats, Mask
+    from drivelint.drive.order import Steps
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
 LONGEST_ID = 1000
@@ -65,19 +66,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     told = recording.findings if asked is None else absence.without_choices(recording.findings)
     findings = [*told, *picked, *lost, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
-    named = recording.ego_ids if asked is None else [asked]
-    step = steps(states)
-    split = jumps.NO_SPLIT
-    if not assumed:
-        states, gone = jumps.without_removed_actors(states, step, kept=named)
-        step = steps(states) if gone else step
-        split = jumps.split_tracks(states, step, kept=named)
-        findings += [*gone, *split.findings]
-    if split.alias:
-        states = sorted_states(states)
-        step = steps(states)
-    if "yaw_rad" in states.numbers:
-        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+    states, step, split, jumped = _tracks(states, recording.ego_ids if asked is None else [asked], assumed=assumed)
+    findings += jumped
     # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
     findings += complete_velocities(states, step, most_replaced_share=most_replaced)
@@ -99,11 +89,53 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     states = absence.with_absent_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
     states, moved = align_to_ego(states, egos)
-    findings += moved
-    if recorded is not None:
-        states = recorded.completed()
+    states = states if recorded is None else recorded.completed()
+    tables = _tables(identity, recording, options, states=states, actors=actors, egos=egos)
+    tables["quality"] = _quality(identity.drive_id, [*findings, *moved])
+    return Trace(
+        identity.drive_id,
+        path,
+        tables,
+        recording.embedded_map,
+        recording.map_offset,
+        recording.notes,
+        recording.frame_times,
+        recording.geo_reference,
+        recording.geo_offset,
+        nobody_ns,
+        in_log_order=recorded is not None and bool(restarts),
+    )
+
+
+def _tracks(
+    states: States, named: list[str], *, assumed: bool
+) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
+    """Return the states with their tracks parted where they jump, but for the egos that are named, and the steps of these."""
+    step, split, findings = steps(states), jumps.NO_SPLIT, []
+    if not assumed:
+        states, gone = jumps.without_removed_actors(states, step, kept=named)
+        step = steps(states) if gone else step
+        split = jumps.split_tracks(states, step, kept=named)
+        findings = [*gone, *split.findings]
+    if split.alias:
+        states = sorted_states(states)
+        step = steps(states)
+    if "yaw_rad" in states.numbers:
+        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+    return states, step, split, findings
+
+
+def _tables(
+    identity: Identity,
+    recording: Recording,
+    options: IngestOptions,
+    *,
+    states: States,
+    actors: actor_rows.Actors,
+    egos: list[str],
+) -> dict[str, pa.Table]:
+    """Return the tables of a trace but for `quality`."""
     is_ego = _is_ego(states, egos)
-    drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
     given = dict(options.conditions)  # what the user gives counts more than what the log says
     content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
@@ -130,21 +162,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table(name, drive, rows) for name, rows in content.items()}
-    tables["quality"] = _quality(drive, findings)
-    return Trace(
-        drive,
-        path,
-        tables,
-        recording.embedded_map,
-        recording.map_offset,
-        recording.notes,
-        recording.frame_times,
-        recording.geo_reference,
-        recording.geo_offset,
-        nobody_ns,
-        in_log_order=recorded is not None and bool(restarts),
-    )
+    return {name: owned_table(name, identity.drive_id, rows) for name, rows in content.items()}
 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:

@@ -81,7 +81,9 @@ def _log(drives: Sequence[Row]) -> InputNote:
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
     parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
     absent = [(drive["drive_id"], words) for drive in drives for words in ego_absences(drive)]
-    parts += [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _NAMED)] if absent else []
+    parts += (
+        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _NAMED)] if absent else []
+    )
     parts += assumed
     if not parts:
         parts = [_whole(drives)] if drives else ["none"]

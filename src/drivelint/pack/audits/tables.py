@@ -23,8 +23,8 @@ from drivelint.audit.worker import TABLES, said_of_rows
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.formats import expand_traces
-from drivelint.formats.search import why_not_here
 from drivelint.formats.files import identify
+from drivelint.formats.search import why_not_here
 from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
 from drivelint.pack.inputs import located
