@@ -212,7 +212,7 @@ def near_miss(folder: Path, is_gone: Callable[[int], bool]) -> Path:
     """Return the near miss of the fixtures without its ego in some frames."""
     from mcap.reader import make_reader
 
-    truths = []
+    truths: list[Any] = []
     with (ROOT / "fixtures" / "scenes" / "near-miss.mcap").open("rb") as file:
         for schema, _, message in make_reader(file).iter_messages(log_time_order=False):
             assert schema is not None

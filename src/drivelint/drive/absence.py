@@ -222,7 +222,8 @@ def chosen_findings(recording: Recording, asked: str | None) -> list[QualityFind
         return []
     if asks_for_all(asked, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
-        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in own or [None]]
+        names: list[str | None] = [*own] if own else [None]
+        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in names]
     t_ns, (first, last) = _placed_times(states, asked), _span(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
     message = f"the ego {asked} is chosen with --ego: it is judged for the time of its track, {there}"
