@@ -1,4 +1,7 @@
-"""What could not be seen must not pass: the case study's logs with things taken away around t0 = 8.3 s, and what is said of them."""
+"""What could not be seen must not pass: the case study's logs with things taken away around t0 = 8.3 s, and what is said of them.
+
+What vanishes from a log as it is recorded, in every format, from a folder and from what a log counts, stands in tests/absence.
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 from drivelint.formats.osi.metadata import ego_independent_quality
-from tests.convert.test_convert import messages
+from tests.convert.stock_reader import messages
 from tests.formats.logs import LONG, mapping, table
 from tests.formats.osi import osi_log
 
@@ -20,10 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from drivelint.drive.trace import Trace
 
 Target: TypeAlias = Literal["mcap", "parquet"]
-Rows: TypeAlias = dict[str, "np.ndarray[Any, np.dtype[np.float64]]"]
+Rows: TypeAlias = "dict[str, NDArray[np.floating[Any]]]"
 TO: tuple[Target, ...] = ("mcap", "parquet")
 TABLES = ("actor", "actor_state", "signal_state", "declared_event")
 N, STEP_S = 100, 0.1

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from typing import TYPE_CHECKING, Any, Literal
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from hypothesis import given
 from hypothesis import strategies as st
-from mcap.reader import make_reader
 
 from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
@@ -21,6 +18,7 @@ from drivelint.formats import read_trace
 from drivelint.formats.osi.writer import osi_ids
 from drivelint.formats.protobuf.wire import varint
 from drivelint.result.files import OutputError
+from tests.convert.stock_reader import messages
 from tests.formats.osi import osi_log
 from tests.shared_data import ROOT
 
@@ -48,23 +46,6 @@ def folder(
     for name, rows in {"actor": actors, **tables}.items():
         pq.write_table(pa.Table.from_pylist(rows), path / f"{name}.parquet")
     return str(path)
-
-
-def messages(path: Path) -> list[tuple[str, int, Any]]:
-    """Read an MCAP with the stock reader and Google's parser: topic, log time, message."""
-    found = []
-    with path.open("rb") as file:
-        for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages(log_time_order=False):
-            assert schema is not None
-            if schema.encoding == "jsonschema":
-                found.append((channel.topic, message.log_time, json.loads(message.data)))
-                continue
-            pool = descriptor_pool.DescriptorPool()
-            for each in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
-                pool.Add(each)
-            kind = message_factory.GetMessageClass(pool.FindMessageTypeByName(schema.name))
-            found.append((channel.topic, message.log_time, kind.FromString(message.data)))
-    return found
 
 
 def again(path: Path) -> Trace:

@@ -176,7 +176,7 @@ FAULTS: Final = (
         19,
         "jump of the clock, or a gap",
         ALL,
-        (0,),
+        (3,),
         "nothing is judged across",
         (f"{_CHECKS}::test_a_hole_in_the_log", "tests/test_honesty.py::test_a_hole_is_a_row_of_its_own", HERE),
     ),

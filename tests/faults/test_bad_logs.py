@@ -37,7 +37,7 @@ def test_the_drive_is_sound_in_every_format(names: list[str], tmp_path: Path) ->
     )
     rows = result.drives.arrow().to_pylist()
     told = {found["check_id"] for row in rows for found in row["quality"]}
-    assert told <= {"assumed_size", "no_indicator", "no_brake_light", "velocity_derived", "unprotected"}
+    assert told <= {"assumed_size", "ego_chosen", "no_indicator", "no_brake_light", "velocity_derived", "unprotected"}
     assert (len(rows), result.exit_code) == (len(names), 0)
     assert result.verdicts.arrow()["verdict"].to_pylist() == ["pass", "pass"] * len(names)
 

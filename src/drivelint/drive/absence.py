@@ -26,11 +26,15 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Recording
 
 EGO_CHOSEN: Final = "ego_chosen"
-"""The check, information only, of an ego that the user picked. A converted log carries it, for there the ego's flag looks like a recorder's."""
+"""The check, information only, of an ego that the user picked. A converted log carries it, for its flags look like a recorder's."""
 EGOS_CHOSEN: Final = "egos_chosen"
 """The same of every motor vehicle in turn; its actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
-"""A shorter hole is a clock that trembles, as that of an odometry at 100 Hz does. It is 2.5 periods of 10 Hz, the usual step in this field."""
+"""A shorter hole is a clock that trembles, as that of an odometry at 100 Hz does: 2.5 periods of 10 Hz, the usual step in this field."""
+FRAMES_APART_NS: Final = 1_000_000_000
+"""Frames further apart do not follow one another."""
+LEAST_STEP_NS: Final = 2_000_000
+"""No ego needs steps closer than this, whatever its clock says."""
 ASSUMED_PERIOD_NS: Final = 100_000_000
 """The period of an ego that has no two states."""
 
@@ -92,12 +96,20 @@ def absences(recording: Recording, asked: str | None) -> list[Absence]:
 
 
 def _span(recording: Recording) -> tuple[int, int]:
-    """Return the first and the last time of a log: of its states, and of its frames but for those of a broken clock."""
-    times = [recording.states.t_ns]
-    if recording.frames_ns is not None:
-        times.append(recording.frames_ns[np.abs(recording.frames_ns) < LATEST_NS])
-    known = [t_ns for t_ns in times if len(t_ns)]
-    return min(int(t_ns.min()) for t_ns in known), max(int(t_ns.max()) for t_ns in known)
+    """Return the first and the last time of a log: of its states, and of frames that go on before and after these.
+
+    A frame that no other is near to is none: the first message of a log may hold the road alone, at any time.
+    """
+    t_ns = recording.states.t_ns
+    first, last = int(t_ns.min()), int(t_ns.max())
+    frames = np.zeros(0, np.int64) if recording.frames_ns is None else recording.frames_ns
+    frames = np.unique(frames[(np.abs(frames) < LATEST_NS) & ((frames < first) | (frames > last))])
+    if not len(frames):
+        return first, last
+    edges = np.unique(np.r_[frames, first, last])
+    steps = np.r_[np.iinfo(np.int64).max, np.diff(edges), np.iinfo(np.int64).max]
+    near = edges[(steps[:-1] <= FRAMES_APART_NS) | (steps[1:] <= FRAMES_APART_NS)]
+    return min([first, *near[:1].tolist()]), max([last, *near[-1:].tolist()])
 
 
 def _placed_times(states: States, name: str) -> Times:
@@ -168,9 +180,11 @@ def _times_to_fill(absence: Absence, states: States, own_ns: Times, frames_ns: T
     slot = (times - absence.since_ns[of] + half) // period
     _, one = np.unique(np.stack([of, slot]), axis=1, return_index=True)
     times, of = times[one], of[one]
-    wide = np.flatnonzero((np.diff(times) > MAX_GAP_PERIODS * period) & (np.diff(of) == 0))
+    apart = np.diff(times)
+    wide = np.flatnonzero((apart > MAX_GAP_PERIODS * period) & (apart <= FRAMES_APART_NS) & (np.diff(of) == 0))
     if len(wide) > len(times) / 2:
-        between = [np.arange(times[k] + period, times[k + 1] - half, period) for k in wide]
+        step = max(period, LEAST_STEP_NS)
+        between = [np.arange(times[k] + step, times[k + 1] - step // 2, step) for k in wide]
         times = np.sort(np.concatenate([times, *between]))
     beside = np.searchsorted(own_ns, times - half)
     taken = np.append(own_ns, np.iinfo(np.int64).max)[beside] <= times + half
@@ -208,7 +222,8 @@ def chosen_findings(recording: Recording, asked: str | None) -> list[QualityFind
         return []
     if asks_for_all(asked, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
-        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in own or [None]]
+        names: list[str | None] = [*own] if own else [None]
+        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in names]
     t_ns, (first, last) = _placed_times(states, asked), _span(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
     message = f"the ego {asked} is chosen with --ego: it is judged for the time of its track, {there}"

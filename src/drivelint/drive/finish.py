@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.arrays import Floats, Mask
+    from drivelint.drive.order import Steps
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
 LONGEST_ID = 1000
@@ -69,12 +70,8 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     told = recording.findings if asked is None else absence.without_choices(recording.findings)
     findings = [*told, *picked, *lost, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
-    named = recording.ego_ids if asked is None else [asked]
-    states, split, parted = (states, jumps.NO_SPLIT, []) if assumed else _tracks(states, named)
-    step = steps(states)
-    findings += parted
-    if "yaw_rad" in states.numbers:
-        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+    states, step, split, jumped = _tracks(states, recording.ego_ids if asked is None else [asked], assumed=assumed)
+    findings += jumped
     # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
     findings += complete_velocities(states, step, most_replaced_share=most_replaced)
@@ -99,13 +96,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     states = absence.with_absent_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
     states, moved = align_to_ego(states, egos)
-    findings += moved
-    if recorded is not None:
-        states = recorded.completed()
+    states = states if recorded is None else recorded.completed()
+    tables = _tables(identity, recording, options, states=states, actors=actors, egos=egos)
+    tables["quality"] = _quality(identity.drive_id, [*findings, *moved], recording.format)
+    tables["doubt"] = _doubts(identity.drive_id, findings, recording.format)
     return Trace(
         identity.drive_id,
         path,
-        _tables(identity, recording, options, states=states, actors=actors, egos=egos, findings=findings),
+        tables,
         recording.embedded_map,
         recording.map_offset,
         recording.notes,
@@ -117,12 +115,22 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     )
 
 
-def _tracks(states: States, kept: list[str]) -> tuple[States, jumps.SplitTracks, list[QualityFinding]]:
-    """Return the states (in order) without actors that are removed, and with tracks parted where they jump to another actor's."""
-    step = steps(states)
-    states, removed = jumps.without_removed_actors(states, step, kept=kept)
-    split = jumps.split_tracks(states, steps(states) if removed else step, kept=kept)
-    return sorted_states(states) if split.alias else states, split, [*removed, *split.findings]
+def _tracks(
+    states: States, named: list[str], *, assumed: bool
+) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
+    """Return the states with their tracks parted where they jump, but for the egos that are named, and the steps of these."""
+    step, split, findings = steps(states), jumps.NO_SPLIT, []
+    if not assumed:
+        states, gone = jumps.without_removed_actors(states, step, kept=named)
+        step = steps(states) if gone else step
+        split = jumps.split_tracks(states, step, kept=named)
+        findings = [*gone, *split.findings]
+    if split.alias:
+        states = sorted_states(states)
+        step = steps(states)
+    if "yaw_rad" in states.numbers:
+        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+    return states, step, split, findings
 
 
 def _tables(
@@ -133,11 +141,9 @@ def _tables(
     states: States,
     actors: actor_rows.Actors,
     egos: list[str],
-    findings: list[QualityFinding],
 ) -> dict[str, pa.Table]:
-    """Return the tables of the trace (states in order)."""
+    """Return the tables of a trace but for `quality` and `doubt`."""
     is_ego = _is_ego(states, egos)
-    drive = identity.drive_id
     unknown = np.full(len(states), UNKNOWN_CODE)
     given = dict(options.conditions)  # what the user gives counts more than what the log says
     content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
@@ -164,10 +170,7 @@ def _tables(
             for name, value in sorted({**recording.conditions, **given}.items())
         ],
     }
-    tables = {name: owned_table(name, drive, rows, recording.format) for name, rows in content.items()}
-    tables["quality"] = _quality(drive, findings, recording.format)
-    tables["doubt"] = _doubts(drive, findings, recording.format)
-    return tables
+    return {name: owned_table(name, identity.drive_id, rows, recording.format) for name, rows in content.items()}
 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:

@@ -150,8 +150,8 @@ def _spins(states: States, step: Steps, actors: Actors) -> Mask:
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, at, 1)
     np.add.at(edges, at + k + 1, -1)
-    found: Mask = np.cumsum(edges[:-1]) > 0
-    return found & slow
+    spin[:] = (np.cumsum(edges[:-1]) > 0) & slow
+    return spin
 
 
 def _too_fast(states: States, actors: Actors) -> Mask:

@@ -162,7 +162,7 @@ def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
             ratio = np.bincount(actor[part], led[part], count) / np.bincount(actor[part], went[part], count)
         off &= np.abs(ratio - 1.0) > BIAS_SHARE
         side += np.sign(ratio - 1.0)
-    biased = off & (np.abs(side) == 2.0) & (ways > BIAS_LEAST_M)
+    biased[:] = off & (np.abs(side) == 2.0) & (ways > BIAS_LEAST_M)
     return biased & bool(ways[biased].sum() <= most_replaced_share * ways.sum())
 
 

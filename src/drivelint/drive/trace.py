@@ -96,7 +96,7 @@ class IngestOptions:
     in_sight: bool = False
     """Whoever is not recorded for a while is taken not to be in plain view."""
     as_recorded: bool = False
-    """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts them again."""
+    """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts again."""
     map: Path | None = None
     """The map that is given: a log in degrees needs its projection."""
 

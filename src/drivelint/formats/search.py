@@ -8,11 +8,11 @@ is not here.
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Collection
+    from pathlib import Path
 
 _POINTER: Final = ".dvc"
 """The ending of a small file that DVC keeps in place of a log or a folder, whose name it follows."""
@@ -62,7 +62,7 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
 def why_not_here(path: Path) -> str | None:
     """Return why there may be a log at a path that cannot be looked at, and what to do; None: it can be, or there is nothing."""
     if path.is_symlink() and not path.exists():
-        return f"a dead link, to {os.readlink(path)}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
+        return f"a dead link, to {path.readlink()}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
         return "a pointer of DVC, and what it stands for is not here: fetch that with dvc pull"
     if not path.is_dir():
@@ -78,7 +78,7 @@ def why_not_followed(path: Path) -> str | None:
     """Return why a folder that is no drive was not searched, and what to do; None: it is no link."""
     if not path.is_symlink():
         return None
-    return f"a link to the folder {os.readlink(path)}, which a search does not follow: name that folder, too"
+    return f"a link to the folder {path.readlink()}, which a search does not follow: name that folder, too"
 
 
 def _is_pointer(path: Path) -> bool:

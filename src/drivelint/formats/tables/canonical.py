@@ -201,9 +201,9 @@ def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
 def _nothing_else(table: pa.Table, n: int) -> Mask:
     """Say which rows of a table have a value in none of the columns that tell of an actor."""
     columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_OF_A_STATE, "is_ego"}
-    return np.logical_and.reduce(
-        [np.ones(n, np.bool_), *(table[name].is_null().to_numpy() for name in sorted(columns))]
-    )
+    empty = [table[name].is_null().to_numpy() for name in sorted(columns)]
+    nothing: Mask = np.logical_and.reduce([np.ones(n, np.bool_), *empty])
+    return nothing
 
 
 def _codes(path: Path, column: pa.Array, name: str) -> Codes:
