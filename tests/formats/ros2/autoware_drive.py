@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tests.formats.lanelet2.test_reader import Drawing
+from tests.formats.lanelet2.drawing import Drawing
 from tests.formats.ros2 import autoware_log as autoware
 from tests.formats.ros2 import ros_log as ros
 
@@ -46,23 +46,13 @@ class _Street(Drawing):
 
         return self.lanelet(bound(1), bound(-1), more, speed_limit="50")
 
-    def light(self, stop_line: int, head: int) -> str:
-        """Add a regulatory element that is a traffic light, `count` its id; return it as a member of a lanelet."""
-        member = self.element(refers=[head], ref_line=[stop_line])
-        self.parts[-1] = self.parts[-1].replace('v="traffic_sign"', 'v="traffic_light"')
-        return member
-
-    def text(self) -> str:
-        order = sorted(self.parts, key=lambda part: ["<n", "<w", "<r"].index(part[:2]))
-        return f"<?xml version='1.0'?><osm version='0.6'>{''.join(order)}</osm>"
-
 
 def scene() -> Scene:
     """Draw a road along x with a lane each way, another across it, and a light with a stop line for who drives east."""
     street = _Street(local=True)
     line = street.way([(STOP_LINE, 0.0), (STOP_LINE, -3.5)], "stop_line", "")
     head = street.way([(OUT + 3.0, -3.0), (OUT + 3.0, -4.0)], "traffic_light", "red_yellow_green")
-    light = street.light(line, head)
+    light = street.element("traffic_light", refers=[head], ref_line=[line])
     number = street.count
     for y, ends in ((-1.75, (0.0, IN, OUT, 400.0)), (1.75, (400.0, OUT, IN, 0.0))):
         for k in range(3):
