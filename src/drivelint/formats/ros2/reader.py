@@ -123,17 +123,22 @@ def read(path: Path, options: IngestOptions) -> Recording:
         span_ns = int(t_ns.min()), int(t_ns.max())
         recording.signals, found = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
         recording.findings += found
-    maps: dict[bytes, str] = {}
-    for topic, (table, _) in log.parts(WORLD_INFO):
-        for text in filter(bytes.strip, table.column("opendrive").tolist()):
-            maps.setdefault(text, topic)
     recording.lost = log.lost
     recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
-    recording.embedded_map, trouble = single_map(maps)
+    recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
     recording.notes += [*log.notes, f"positions are in the frame {fixed!r}"]
     return recording
+
+
+def _maps(log: Log) -> dict[bytes, str]:
+    """Return each OpenDRIVE map of a log and the topic on which it was first."""
+    maps: dict[bytes, str] = {}
+    for topic, (table, _) in log.parts(WORLD_INFO):
+        for text in filter(bytes.strip, table.column("opendrive").tolist()):
+            maps.setdefault(text, topic)
+    return maps
 
 
 def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
