@@ -29,8 +29,8 @@ READERS: Final[tuple[Reader, ...]] = (
     film,
     canonical,
     mcap,
-    scenarionet,
     osi_file,
+    scenarionet,
     scenario,
     fcd,
     mapped_table,  # last: it accepts any text without markup
@@ -72,7 +72,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
-        "SUMO's floating car data or a CommonRoad scenario"
+        "SUMO's floating car data, a CommonRoad or a ScenarioNet scenario"
     )
 
 

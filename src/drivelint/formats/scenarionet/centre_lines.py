@@ -34,6 +34,7 @@ _INSET_M: Final = 0.5  # a polygon's ends may be cut aslant: beside a lane's end
 _OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
 _REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
 _LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
+_ASIDE_M: Final = 0.6  # a lane's middle line is nearly in its middle: a bound farther than the other by more lies beyond another strip
 _LANES_APART_M: Final = (2.2, 6.0)  # the middles of two lanes that run beside each other
 _PARALLEL: Final = float(np.cos(np.radians(10.0)))
 
@@ -220,4 +221,6 @@ def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
             if at.any():
                 lane.half[:, side] = np.interp(lane.s, lane.s[at], lane.half[at, side])
         lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
+        if "polygon" not in lane.feature:  # whatever lies between a lane and a far edge, such as parked cars, is no part of it
+            lane.half = np.minimum(lane.half, lane.half[:, ::-1] + _ASIDE_M)
     return {name: share for name, share in unknown.items() if share > 0.0}
