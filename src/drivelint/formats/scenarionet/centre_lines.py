@@ -30,7 +30,7 @@ KINDS: Final = {
 """Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
 _SPACING_M: Final = 4.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
-_INSET_M: Final = 0.5  # a polygon's ends may be cut aslant: beside a lane's ends one looks this far inside
+_INSET_M: Final = 2.0  # an outline's ends may be cut aslant: beside a lane's ends one looks this far inside
 _OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
 _REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
 _LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
@@ -58,9 +58,14 @@ class CentreLine:
     after: tuple[str, ...] = field(default=())
 
     @property
-    def ends(self) -> Floats:
-        """Direction of travel (2, 2) at the begin and at the end."""
-        return np.column_stack([self.normal[[0, -1], 1], -self.normal[[0, -1], 0]])
+    def tangent(self) -> Floats:
+        """Direction of travel (n, 2)."""
+        return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Left and right bound (n, 2)."""
+        return self.line + self.normal * self.half[:, :1], self.line - self.normal * self.half[:, 1:]
 
 
 def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
@@ -155,7 +160,8 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
     own = points(lane.feature["polyline"], "polyline")
     own_s = stations(own)
     for side, key in enumerate(("left_boundaries", "right_boundaries")):
-        for span in lane.feature.get(key) or ():
+        spans = lane.feature.get(key)
+        for span in spans if isinstance(spans, (list, tuple)) else ():
             try:
                 first, last = (own_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
                 name = str(span["boundary_feature_id"])
