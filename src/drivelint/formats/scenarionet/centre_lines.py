@@ -1,7 +1,7 @@
 """The lanes of a scenario as centre lines with what lies beside them: how far it is to either side, where the scenario tells it.
 
-A lane's polygon tells both sides; else the lines and edges that the lane refers to, or where no lane refers to any, those that lie
-beside it; else the middle between two lanes that run beside each other.
+A lane's outline tells both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
+those that lie beside it; else the middle between two lanes that run beside each other.
 """
 
 from __future__ import annotations
@@ -105,22 +105,28 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
 
 
 def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
-    """Find how far it is from each lane's middle to its sides, in place."""
+    """Find how far it is from each lane's middle to its sides, in place.
+
+    Where lanes have outlines, those without (which connect others) have no lines of their own either.
+    """
+    if any("polygon" in lane.feature for lane in lanes.values()):
+        for name, lane in lanes.items():
+            if "polygon" in lane.feature:
+                outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+                if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
+                    _of_polygon(lane, shapely.Polygon(outline))
+        return
     lines = {
         name: _line(feature, name)
         for name, feature in scenario.features.items()
         if str(feature.get("type")).startswith(("ROAD_LINE", "ROAD_EDGE", "UNKNOWN")) and "polyline" in feature
     }
-    referring = any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right"))
-    tree = shapely.STRtree(list(lines.values()))
-    for name, lane in lanes.items():
-        if "polygon" in lane.feature:
-            outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
-            if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
-                _of_polygon(lane, shapely.Polygon(outline))
-        elif referring:
+    if any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right")):
+        for lane in lanes.values():
             _of_references(lane, lines)
-        elif len(lines):
+    elif lines:
+        tree = shapely.STRtree(list(lines.values()))
+        for lane in lanes.values():
             _of_lines(lane, tree)
     _of_parallel_lanes([lane for lane in lanes.values() if np.isnan(lane.half).any()], list(lanes.values()))
 
