@@ -19,7 +19,7 @@ from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.formats.files import TRACE_SUFFIXES, is_utf8
+from drivelint.formats.files import TRACE_SUFFIXES, is_log_name, is_utf8
 from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
     found = [one] if one is not None else list_objects(url)
     n = 0
     for each in found:
-        if each.url.lower().endswith(tuple(TRACE_SUFFIXES)):
+        if is_log_name(each.url):
             n += 1
             yield AuditDrive(each.url, options, {}, each.size, each.e_tag)
     if not n:

@@ -6,7 +6,7 @@ import hashlib
 import os
 import re
 from glob import glob
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from drivelint.drive.trace import Identity
@@ -20,8 +20,11 @@ from drivelint.phrases import shown
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi"})
-"""What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too."""
+TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi", ".pkl"})
+"""What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too.
+
+Of pickles, which may hold anything, only those count that are called as ScenarioNet calls its scenarios.
+"""
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
 """Endings that maps have, and no format of logs."""
 _SEARCHED_SUFFIXES = TRACE_SUFFIXES | {".xml"}
@@ -34,6 +37,8 @@ RESULT_FILES = frozenset(
     )
 )  # fmt: skip
 """What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
+SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
+"""What ScenarioNet writes beside its scenarios, and is none."""
 ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
 
@@ -56,6 +61,8 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
             found.setdefault(path.resolve(), path)
     if but is not None and but.suffix.lower() in MAP_SUFFIXES and len(found) > 1:
         found.pop(but.resolve(), None)
+    if not SCENARIO_LISTS.issuperset(path.name for path in found.values()):
+        found = {key: path for key, path in found.items() if path.name not in SCENARIO_LISTS}
     return [found[key] for key in sorted(found, key=str)]
 
 
@@ -94,7 +101,7 @@ def _inside(path: Path) -> list[Path]:
         if file.suffix.lower() in _SEARCHED_SUFFIXES
         and inside.isdisjoint(file.parents)
         and not _is_result(file, path)
-        and (file.suffix.lower() in TRACE_SUFFIXES or _is_xml_log(file))
+        and (is_log_name(file.name) or (file.suffix.lower() == ".xml" and _is_xml_log(file)))
     ]
     missed = [each for each in (*found.links, *found.unreadable) if inside.isdisjoint((each, *each.parents))]
     if not (drives or files or missed):
@@ -102,6 +109,14 @@ def _inside(path: Path) -> list[Path]:
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, SUMO and CommonRoad .xml): check the path"
         )
     return drives + files + missed
+
+
+def is_log_name(name: str) -> bool:
+    """Whether a file or URL is called as logs are: by its suffix, and a pickle as ScenarioNet calls its scenarios."""
+    file = PurePath(name)
+    if file.suffix.lower() == ".pkl":
+        return file.name.startswith("sd_") or file.stem.isdecimal()
+    return file.suffix.lower() in TRACE_SUFFIXES
 
 
 def _is_xml_log(file: Path) -> bool:

@@ -1,7 +1,7 @@
 """The lanes of a scenario as centre lines with what lies beside them: how far it is to either side, where the scenario tells it.
 
-A lane's polygon tells both sides; else the lines and edges that the lane refers to, or where no lane refers to any, those that lie
-beside it; else the middle between two lanes that run beside each other.
+A lane's outline tells both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
+those that lie beside it; else the middle between two lanes that run beside each other.
 """
 
 from __future__ import annotations
@@ -30,10 +30,11 @@ KINDS: Final = {
 """Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
 _SPACING_M: Final = 4.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
-_INSET_M: Final = 0.5  # a polygon's ends may be cut aslant: beside a lane's ends one looks this far inside
+_INSET_M: Final = 2.0  # an outline's ends may be cut aslant: beside a lane's ends one looks this far inside
 _OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
 _REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
 _LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
+_ASIDE_M: Final = 0.6  # a lane's middle line is nearly in its middle: a bound farther than the other by more lies beyond another strip
 _LANES_APART_M: Final = (2.2, 6.0)  # the middles of two lanes that run beside each other
 _PARALLEL: Final = float(np.cos(np.radians(10.0)))
 
@@ -57,9 +58,14 @@ class CentreLine:
     after: tuple[str, ...] = field(default=())
 
     @property
-    def ends(self) -> Floats:
-        """Direction of travel (2, 2) at the begin and at the end."""
-        return np.column_stack([self.normal[[0, -1], 1], -self.normal[[0, -1], 0]])
+    def tangent(self) -> Floats:
+        """Direction of travel (n, 2)."""
+        return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Left and right bound (n, 2)."""
+        return self.line + self.normal * self.half[:, :1], self.line - self.normal * self.half[:, 1:]
 
 
 def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
@@ -85,16 +91,9 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
         raise PickleError("its centre line has fewer than two points")
     own = stations(line)
     whole = shapely.LineString(line[:, :2])
-    corners = np.unique(
-        shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
-    )
+    corners = np.unique(shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M)))))
     pieces = np.maximum(1, np.ceil(np.diff(corners) / _SPACING_M)).astype(int)
-    s = np.concatenate(
-        [
-            *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
-            own[-1:],
-        ]
-    )
+    s = np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)), own[-1:]])
     at = np.column_stack([np.interp(s, own, column) for column in line.T])
     way = np.diff(at[:, :2], axis=0)
     way /= np.hypot(*way.T)[:, None]
@@ -106,22 +105,28 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
 
 
 def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
-    """Find how far it is from each lane's middle to its sides, in place."""
+    """Find how far it is from each lane's middle to its sides, in place.
+
+    Where lanes have outlines, those without (which connect others) have no lines of their own either.
+    """
+    if any("polygon" in lane.feature for lane in lanes.values()):
+        for name, lane in lanes.items():
+            if "polygon" in lane.feature:
+                outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+                if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
+                    _of_polygon(lane, shapely.Polygon(outline))
+        return
     lines = {
         name: _line(feature, name)
         for name, feature in scenario.features.items()
         if str(feature.get("type")).startswith(("ROAD_LINE", "ROAD_EDGE", "UNKNOWN")) and "polyline" in feature
     }
-    referring = any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right"))
-    tree = shapely.STRtree(list(lines.values()))
-    for name, lane in lanes.items():
-        if "polygon" in lane.feature:
-            outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
-            if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
-                _of_polygon(lane, shapely.Polygon(outline))
-        elif referring:
+    if any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right")):
+        for lane in lanes.values():
             _of_references(lane, lines)
-        elif lines:
+    elif lines:
+        tree = shapely.STRtree(list(lines.values()))
+        for lane in lanes.values():
             _of_lines(lane, tree)
     _of_parallel_lanes([lane for lane in lanes.values() if np.isnan(lane.half).any()], list(lanes.values()))
 
@@ -161,7 +166,8 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
     own = points(lane.feature["polyline"], "polyline")
     own_s = stations(own)
     for side, key in enumerate(("left_boundaries", "right_boundaries")):
-        for span in lane.feature.get(key) or ():
+        spans = lane.feature.get(key)
+        for span in spans if isinstance(spans, (list, tuple)) else ():
             try:
                 first, last = (own_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
                 name = str(span["boundary_feature_id"])
@@ -227,4 +233,6 @@ def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
             if at.any():
                 lane.half[:, side] = np.interp(lane.s, lane.s[at], lane.half[at, side])
         lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
+        if "polygon" not in lane.feature:  # whatever lies between a lane and a far edge, such as parked cars, is no part of it
+            lane.half = np.minimum(lane.half, lane.half[:, ::-1] + _ASIDE_M)
     return {name: share for name, share in unknown.items() if share > 0.0}

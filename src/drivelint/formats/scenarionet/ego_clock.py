@@ -22,7 +22,7 @@ _BESIDE: Final = 4
 _TOLERANCE: Final = 0.4
 """A step is longer by a whole number of messages, give or take this share of one."""
 _MOST_LOST: Final = 10
-_BACK_SHARE: Final = 0.6
+_SHORT_SHARE: Final = 0.8
 """A step that leads less far than this share of the usual one, between two that do, is the seam between two sources."""
 _LAST_STEPS: Final = 20
 """The seam lies so near to the end: the stream lacks as many steps as messages were lost in it, and no more."""
@@ -82,7 +82,7 @@ def _seam(place: Floats, usual_m: Floats, moving: Floats) -> int:
     n = len(place)
     step = np.diff(place, axis=0)
     ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
-    short = (step[1:] * ahead).sum(axis=1) < _BACK_SHARE * usual_m[1:]
+    short = (step[1:] * ahead).sum(axis=1) < _SHORT_SHARE * usual_m[1:]
     found = np.flatnonzero(short & moving[1:]) + 2
     found = found[found > n - 1 - _LAST_STEPS]
     return int(found[0]) if len(found) else n

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.formats.scenarionet.centre_lines import CentreLine
-    from drivelint.road.boundary_lanes import BoundedLane
 
 _JOINED_M: Final = 0.3  # the end of a lane and the begin of the next are one point
 _ONWARDS: Final = float(np.cos(np.radians(45.0)))
@@ -56,62 +55,60 @@ def _by_shape(lanes: Mapping[str, CentreLine], after: dict[str, dict[str, None]]
     tree = shapely.STRtree([shapely.Point(lane.line[0]) for lane in ordered])
     ends = [shapely.Point(lane.line[-1]) for lane in ordered]
     for i, j in tree.query(ends, predicate="dwithin", distance=_JOINED_M).T:
-        if i != j and float(ordered[i].ends[1] @ ordered[j].ends[0]) > _ONWARDS:
+        if i != j and float(ordered[i].tangent[-1] @ ordered[j].tangent[0]) > _ONWARDS:
             after[ordered[i].lane_id][ordered[j].lane_id] = None
 
 
-def find_neighbours(lanes: Sequence[BoundedLane]) -> None:
-    """Give each lane the one that lies beside it, in place: it has ground just beyond most of the bound, and runs along it.
+class Neighbours(NamedTuple):
+    """The lanes beside a lane, None where there is none, and whether they run the other way."""
+
+    left_id: str | None = None
+    left_against: bool | None = None
+    right_id: str | None = None
+    right_against: bool | None = None
+
+
+def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
+    """Return the neighbours of each lane with known bounds: they have ground just beyond most of a bound, and run along it.
 
     Lanes that fork or join share ground, and are none.
     """
-    before: dict[str, set[str]] = defaultdict(set)
-    for lane in lanes:
-        for other in lane.successors:
-            before[other].add(lane.lanelet_id)
-    tree = shapely.STRtree([lane.line.polygon for lane in lanes])
-    for lane in lanes:
-        for side in ("left", "right"):
-            votes = _beside(lane, lanes, tree, side)
-            for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
-                other = lanes[i]
-                share = (
-                    set(lane.successors) & set(other.successors) or before[lane.lanelet_id] & before[other.lanelet_id]
-                )
-                if len(votes[i]) >= _MOST and not share:
-                    setattr(lane, f"{side}_id", other.lanelet_id)
-                    setattr(lane, f"{side}_against", sum(votes[i]) < 0)
-                    break
-    _drop_one_sided({lane.lanelet_id: lane for lane in lanes})
+    ordered = [lane for lane in lanes.values() if np.isfinite(lane.half).all()]
+    tree = shapely.STRtree([shapely.Polygon(np.vstack([*lane.bounds[:1], lane.bounds[1][::-1]])).buffer(0.0) for lane in ordered])
+    found = {
+        lane.lane_id: Neighbours(*_beside(lane, ordered, tree, "left"), *_beside(lane, ordered, tree, "right"))
+        for lane in ordered
+    }
+    return {name: _mutual(name, found) for name in found}
 
 
-def _beside(lane: BoundedLane, lanes: Sequence[BoundedLane], tree: shapely.STRtree, side: str) -> dict[int, list[int]]:
-    """Return lane -> for each place beside a bound on which it lies, 1 if it runs the same way there, -1 if the other way."""
-    line = lane.line
-    at = _SHARES * line.length
-    sign = 1.0 if side == "left" else -1.0
-    bound = line.left if side == "left" else line.right
-    x, y, tx, ty, z = (np.interp(at, line.s, values) for values in (*bound.T, *line.tangent.T, lane.z))
-    places = np.column_stack([x - sign * _OUTSIDE_M * ty, y + sign * _OUTSIDE_M * tx])
+def _beside(lane: CentreLine, lanes: Sequence[CentreLine], tree: shapely.STRtree, side: str) -> tuple[str | None, bool | None]:
+    """Return the lane on most of the places just beyond a bound, and whether it runs the other way."""
+    sign, bound = (1.0, lane.bounds[0]) if side == "left" else (-1.0, lane.bounds[1])
+    at = _SHARES * lane.s[-1]
+    x, y, nx, ny, z = (np.interp(at, lane.s, values) for values in (*bound.T, *lane.normal.T, lane.z))
+    places = np.column_stack([x, y]) + sign * _OUTSIDE_M * np.column_stack([nx, ny])
     votes: dict[int, list[int]] = defaultdict(list)
     for k, i in tree.query(shapely.points(places), predicate="within").T:
         other = lanes[i]
-        s = other.line.station(places[k])
-        along = float(np.interp(s, other.line.s, other.line.tangent @ np.array([tx[k], ty[k]])))
-        level = abs(float(np.interp(s, other.line.s, other.z)) - z[k])
-        if other is not lane and abs(along) > _ALONG and not level >= _LEVEL_M:
+        near = int(np.argmin(np.hypot(*(other.line - places[k]).T)))
+        along = float(other.normal[near] @ (nx[k], ny[k]))
+        if other is not lane and abs(along) > _ALONG and not abs(other.z[near] - z[k]) >= _LEVEL_M:
             votes[int(i)].append(1 if along > 0 else -1)
-    return votes
+    for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
+        other = lanes[i]
+        joined = not {*lane.after}.isdisjoint(other.after) or not {*lane.before}.isdisjoint(other.before)
+        if len(votes[i]) >= _MOST and not joined:
+            return other.lane_id, sum(votes[i]) < 0
+    return None, None
 
 
-def _drop_one_sided(lanes: Mapping[str, BoundedLane]) -> None:
-    """Keep those that name each other, in place: a short lane beside a long one has it as a neighbour, and is none of its own."""
-    for lane in lanes.values():
-        for side, opposite in (("left", "right"), ("right", "left")):
-            other = lanes.get(getattr(lane, f"{side}_id") or "")
-            if other is None:
-                continue
-            theirs = side if getattr(lane, f"{side}_against") else opposite
-            if getattr(other, f"{theirs}_id") not in {None, lane.lanelet_id}:
-                setattr(lane, f"{side}_id", None)
-                setattr(lane, f"{side}_against", None)
+def _mutual(name: str, found: Mapping[str, Neighbours]) -> Neighbours:
+    """Return the neighbours of a lane that have it or nobody on that side: a short lane is beside a long one, but not its neighbour."""
+    mine = found[name]
+    for side, opposite in (("left", "right"), ("right", "left")):
+        other = found.get(getattr(mine, f"{side}_id") or "")
+        theirs = side if getattr(mine, f"{side}_against") else opposite
+        if other is not None and getattr(other, f"{theirs}_id") not in {None, name}:
+            mine = mine._replace(**{f"{side}_id": None, f"{side}_against": None})
+    return mine

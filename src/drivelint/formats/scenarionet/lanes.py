@@ -61,7 +61,6 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     for lane in lanes:
         centre = centres[lane.lanelet_id]
         lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
-    find_neighbours(lanes)
     mark_junctions(lanes, least_share=_OVERLAP_SHARE, least_angle_rad=_CROSSING_RAD)
     said = scenario.dataset.side_driven_on(scenario.place)
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
@@ -76,7 +75,7 @@ def _stations_on(centre: CentreLine, places: Floats) -> Floats:
 
 def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
     """Return the lanes with their bounds; report in `quality` those of which nothing tells the width."""
-    found = []
+    found, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
         if np.isnan(lane.half).any():
             message = f"lane {name} is left out: neither it nor what it joins has bounds, and so it has no width"
@@ -85,8 +84,7 @@ def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: Map
         found.append(
             BoundedLane(
                 name,
-                lane.line + lane.normal * lane.half[:, :1],
-                lane.line - lane.normal * lane.half[:, 1:],
+                *lane.bounds,
                 lane.kind,
                 lane.kind == "driving",
                 road_type="motorway" if lane.feature.get("type") == "LANE_FREEWAY" else None,
@@ -94,6 +92,7 @@ def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: Map
                 limit_source="lane",
                 marks=_marks(lane, scenario) if scenario.dataset.markings else (),
                 limits=_limits(lane) if scenario.dataset.speed_limits else (),
+                **beside[name]._asdict(),
             )
         )
     return found

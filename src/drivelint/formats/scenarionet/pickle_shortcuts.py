@@ -14,8 +14,6 @@ import numpy as np
 from drivelint.formats.scenarionet.pickled_numpy import NumberType, array_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from drivelint.arrays import Floats
 
 
@@ -77,15 +75,15 @@ _ARRAY: Final = re.compile(
     re.DOTALL,
 )  # fmt: skip
 _ARRAY_END: Final = b"\x94t\x94b"  # behind the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
-ARRAY_COUNT: Final = 6
-"""So many values of an array the file gives a number: the third (`ARRAY_NUMBER` from 0) is the array; to the others it never refers."""
-ARRAY_NUMBER: Final = 2
+_ARRAY_NUMBERS: Final = 6
+"""So many of its parts the file gives a number: the third is the array, the fifth its bytes. It does not refer to the others."""
 
 
-def array_at(content: bytes, at: int, memo: Mapping[int, Any]) -> tuple[np.ndarray[Any, Any], int] | None:
-    """Return the array of which the file has at this place all but the function that makes it, and where it ends; None: it is none.
+def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple[np.ndarray[Any, Any], int, int] | None:
+    """Return the array of which the file has at this place all but the function that makes it; None: it is none.
 
-    Errors: as `array_of`.
+    Also returned: where it ends, and the number that the file will give next. `memo`: what the file refers to by number, to which the
+    array is added; `count`: the number that it would give now. Errors: as `array_of`.
     """
     match = _ARRAY.match(content, at)
     if match is None:
@@ -93,13 +91,13 @@ def array_at(content: bytes, at: int, memo: Mapping[int, Any]) -> tuple[np.ndarr
     _, shape, kind, order, size = match.groups()
     begin = match.end()
     end = begin + int.from_bytes(size[1:], "little")
-    if content[end : end + len(_ARRAY_END)] != _ARRAY_END:
-        return None
     number_type = memo.get(int.from_bytes(kind[1:], "little"))
-    if type(number_type) is not NumberType:
+    if content[end : end + len(_ARRAY_END)] != _ARRAY_END or type(number_type) is not NumberType:
         return None
-    state = (1, _integers(shape), number_type, order == b"\x88", content[begin:end])
-    return array_of(state), end + len(_ARRAY_END)
+    raw = content[begin:end]
+    array = array_of((1, _integers(shape), number_type, order == b"\x88", raw))
+    memo[count + 2], memo[count + 4] = array, raw
+    return array, end + len(_ARRAY_END), count + _ARRAY_NUMBERS
 
 
 def _integers(code: bytes) -> tuple[int, ...]:

@@ -29,13 +29,12 @@ _LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in LIGHT
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a pickle by its first byte and its protocol."""
-    return len(probe.head) > 2 and probe.head[0] == 0x80 and probe.head[1] in _PROTOCOLS and _is_dict(probe.head)
-
-
-def _is_dict(head: bytes) -> bool:
-    """Say whether a pickle begins with a dict, behind the frame that protocols 4 and 5 have."""
-    return head[2:3] == b"}" or (head[2:3] == b"\x95" and head[11:12] == b"}")
+    """Accept a pickle by its first byte and its protocol, and if it is not called one, by the dict that it begins with."""
+    head = probe.head
+    if len(head) < 3 or head[0] != 0x80 or head[1] not in _PROTOCOLS:
+        return False
+    behind_frame = head[11:12] if head[2] == 0x95 else head[2:3]
+    return behind_frame == b"}" or probe.path.suffix.lower() == ".pkl"
 
 
 def read(probe: Probe) -> Recording:
@@ -50,11 +49,7 @@ def read(probe: Probe) -> Recording:
 def _recording(scenario: Scenario, content: bytes) -> Recording:
     dataset, t_s = scenario.dataset, times_s(scenario.metadata)
     tracks = read_tracks(scenario, t_s, len(content))
-    findings = [
-        *sources.turn_boxes(tracks, dataset),
-        *sources.drop_differences(tracks),
-        *sources.drop_false_stops(tracks),
-    ]
+    findings = [*sources.turn_boxes(tracks, dataset), *sources.drop_differences(tracks), *sources.drop_false_stops(tracks)]
     even = sources.interpolated(tracks, dataset)
     if even.any():
         findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
@@ -103,9 +98,7 @@ def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[Qua
     steps = f"{lost} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
     parts = [steps] if lost else []
     if np.isfinite(shift_s):
-        parts.append(
-            f"its last positions, which are of the annotated frames, tell that it begins {shift_s:.2f} s after these"
-        )
+        parts.append(f"its last positions, which are of the annotated frames, tell that it begins {round(shift_s, 2) + 0.0:.2f} s after these")
     message = (
         f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
         "which are known to about 0.1 s against the others'"
@@ -125,12 +118,7 @@ def _states(tracks: Tracks) -> States:
     odd = ~np.isfinite(place[:, :2]).all(axis=1) | ~np.isfinite(heading) | np.isinf(velocity).any(axis=1)
     numbers = {name: np.where(np.isinf(values), np.nan, values) for name, values in numbers.items()}
     return States(
-        tracks.ids,
-        actor.astype(np.int32),
-        _nanoseconds(tracks.t_s)[step],
-        numbers,
-        {"actor_class": tracks.kinds[actor]},
-        odd,
+        tracks.ids, actor.astype(np.int32), _nanoseconds(tracks.t_s)[step], numbers, {"actor_class": tracks.kinds[actor]}, odd
     )
 
 

@@ -20,12 +20,13 @@ if TYPE_CHECKING:
     from drivelint.formats.scenarionet.tracks import Tracks
 
 _LONG_KINDS: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_VEHICLES, "trailer", "bicycle"))
-_MOVING_MPS: Final = 0.5
+_MOVING_MPS: Final = 1.0
+_DISTINCT_MPS: Final = 0.05
 _SAME_MPS: Final = 0.02
 _SAME_SHARE: Final = 0.01
 """A velocity is a difference of the positions if it is this near to it: clocks that were rounded to a step change it by less than 0.1 %."""
 _MOST: Final = 0.9
-_LEAST_SAMPLES: Final = 20
+_LEAST_SAMPLES: Final = 10
 _EVEN_M: Final = 1e-4
 _WIDER: Final = 1.2
 """A box that is this much wider than long is no estimate of a square one."""
@@ -54,17 +55,19 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
 
 
 def _difference(tracks: Tracks, group: Mask) -> str | None:
-    """Return early or late where the velocities of these actors are differences of the positions; None: they are not."""
+    """Return early or late where the velocities of these actors are differences of the positions; None: they are not.
+
+    Only where somebody speeds up, brakes or turns do the steps before and after differ from each other and from the velocity between.
+    """
     steps = tracks.steps_m[group] / np.diff(tracks.t_s)[:, None]
-    speed = np.hypot(*np.moveaxis(steps, 2, 0))
-    moving = np.nan_to_num(speed) > _MOVING_MPS
-    if moving.sum() < _LEAST_SAMPLES:
+    before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[group][:, 1:-1]
+    tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _DISTINCT_MPS
+    if tells.sum() < _LEAST_SAMPLES:
         return None
-    velocity = tracks.velocity[group]
-    limit = _SAME_MPS + _SAME_SHARE * speed
-    for when, side in (("early", velocity[:, :-1]), ("late", velocity[:, 1:])):
-        same = np.hypot(*np.moveaxis(side - steps, 2, 0)) < limit
-        if same[moving].mean() > _MOST:
+    for when, step in (("early", after), ("late", before)):
+        off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
+        same = off < _SAME_MPS + _SAME_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
+        if same[tells].mean() > _MOST:
             return when
     return None
 
@@ -75,7 +78,7 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
     ends[:, :-1] &= ~tracks.present[:, 1:]
     speed = np.zeros(ends.shape)
     speed[:, 1:] = np.nan_to_num(np.hypot(*np.moveaxis(tracks.steps_m, 2, 0)) / np.diff(tracks.t_s))
-    false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > 2 * _MOVING_MPS)
+    false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > _MOVING_MPS)
     if not false.any():
         return []
     tracks.velocity[false] = np.nan
@@ -120,17 +123,18 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     )
     between[~tracks.present[rows]] = np.nan
     tracks.velocity[rows] = between
-    moved = _spread_m(tracks)[rows] > _MOVED_M
+    moved = [tracks.ids[i] for i in np.flatnonzero(rows & (_spread_m(tracks) > _MOVED_M))]
+    if not moved:
+        return []
     period_s = float(np.median(np.diff(t_s)))
+    text = (
+        f"the positions of {{}} are known every {period_s:g} s and interpolated between: velocities are means over {2 * period_s:g} s, "
+        "accelerations are not known"
+    )
+    # the check velocity_filtered, one for each actor, is what tells that an acceleration is not known
     return [
-        QualityFinding(
-            "velocity_filtered",
-            "warning",
-            f"the positions of {name} are known every {period_s:g} s and interpolated between: its velocity is a mean over "
-            f"{2 * period_s:g} s, its acceleration is not known",
-            actor_id=name,
-        )
-        for name in (tracks.ids[i] for i in np.flatnonzero(rows)[moved])
+        QualityFinding.of_actors("interpolated", "warning", text.format(listed(moved)), moved),
+        *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moved),
     ]
 
 

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 
-from drivelint.formats.scenarionet.pickle_shortcuts import ARRAY_COUNT, ARRAY_NUMBER, Points, array_at, points_at
+from drivelint.formats.scenarionet.pickle_shortcuts import Points, array_at, points_at
 from drivelint.formats.scenarionet.pickled_numpy import Array, Name, NumberType, PickleError, array_of, made, name_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+_ARRAY: Final = Name("array")
 _KEYS: Final = frozenset({str, int, float, bool, type(None)})
 _DAMAGED: Final = (ValueError, TypeError, AttributeError, OverflowError, MemoryError, LookupError)
 _REMEDY: Final = "copy or write it again"
@@ -75,10 +76,8 @@ class _Machine:
                 # the operations that most of a scenario is made of stand here, for speed, and the one that follows most values
                 if code == 0x68 and (value := memo.get(content[at])) is not None:  # BINGET
                     at += 1
-                    if type(value) is Name and value.meaning == "array" and (found := array_at(content, at, memo)):
-                        value, at = found
-                        memo[self.count + ARRAY_NUMBER] = value
-                        self.count += ARRAY_COUNT
+                    if type(value) is Name and value == _ARRAY and (found := array_at(content, at, memo, self.count)):
+                        value, at, self.count = found
                     push(value)
                 elif code == 0x6A and (value := memo.get(number(content, at)[0])) is not None:  # LONG_BINGET
                     at += 4
