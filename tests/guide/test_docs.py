@@ -144,12 +144,19 @@ def test_the_guide_of_traces_has_the_keys_of_a_declared_event() -> None:
 
 def leaves(tree: dict[str, Any], path: str = "") -> set[str]:
     """Return the paths of the fields that are read of a message, joined by dots."""
-    return set().union(*(leaves(below, f"{path}{name}.") if below else {f"{path}{name}"} for name, below in tree.items()))
+    return set().union(
+        *(leaves(below, f"{path}{name}.") if below else {f"{path}{name}"} for name, below in tree.items())
+    )
 
 
 def test_the_guide_of_traces_has_the_messages_of_ros_that_are_read() -> None:
     """Each field of the table is read, and each that is read is one of the table or below one."""
-    table = (guide.FOLDER / "traces.md").read_text(encoding="utf-8").partition("<!-- ros2 messages -->\n")[2].partition("\n\n")[0]
+    table = (
+        (guide.FOLDER / "traces.md")
+        .read_text(encoding="utf-8")
+        .partition("<!-- ros2 messages -->\n")[2]
+        .partition("\n\n")[0]
+    )
     rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in table.splitlines()[2:]]
     assert [name.strip("`| ") for name, *_ in rows] == list(MESSAGES)
     for name, topic, role, fields in rows:
@@ -159,10 +166,16 @@ def test_the_guide_of_traces_has_the_messages_of_ros_that_are_read() -> None:
         for part in fields.strip(" |").split("; "):
             head, _, items = part.partition(": ")
             above = re.findall(r"`([\w.]+)`", head) if items else [""]
-            told |= {f"{list_}.{field}".strip(".") for list_ in above for field in re.findall(r"`([\w.]+)`", items or part)}
+            told |= {
+                f"{list_}.{field}".strip(".") for list_ in above for field in re.findall(r"`([\w.]+)`", items or part)
+            }
         read = leaves(message.fields)
-        assert {field for field in told if not any(leaf == field or leaf.startswith(f"{field}.") for leaf in read)} == set()
-        assert {leaf for leaf in read if not any(leaf == field or leaf.startswith(f"{field}.") for field in told)} == set()
+        assert {
+            field for field in told if not any(leaf == field or leaf.startswith(f"{field}.") for leaf in read)
+        } == set()
+        assert {
+            leaf for leaf in read if not any(leaf == field or leaf.startswith(f"{field}.") for field in told)
+        } == set()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
