@@ -121,7 +121,7 @@ def write(path: Path, messages: Iterable[ros.Message], types: dict[str, str] = T
 
 def prediction(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **other: Any) -> dict[str, Any]:
     """Return a PredictedObject, its twist along its own axes; `paths`: how many ways it may go, `poses`: of so many poses each."""
-    path = [ros.pose(x + 5.0 * k, y + 1.0, 0.3) for k in range(other.pop("poses", 3))]
+    path = [ros.pose(x + 0.5 + 5.0 * k, y + 1.0, 0.3) for k in range(other.pop("poses", 3))]
     paths = [{"path": path, "time_step": {"nanosec": 500_000_000}, "confidence": 0.5}] * other.pop("paths", 1)
     tracked = ros.track(number, x, y, yaw, speed, **other)
     kinematics = {
