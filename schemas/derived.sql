@@ -189,7 +189,7 @@ CREATE TABLE registration (
     ego_id VARCHAR NOT NULL,          -- the ego
     n_steps BIGINT NOT NULL,          -- ego steps with a position
     n_on_lane BIGINT NOT NULL,        -- of them, centre on a drivable lane, or on a shoulder, lay-by, border, parking, restricted or cycle lane
-    n_moving BIGINT NOT NULL,         -- of those on a lane, moving faster than 1 m/s, and not overtaking in an opposing lane
+    n_moving BIGINT NOT NULL,         -- of those on a lane, with a heading, moving faster than 1 m/s, and not overtaking in an opposing lane
     n_with_direction BIGINT NOT NULL, -- of the moving ones, heading within 90 degrees of the lane's direction, or on a lane that is driven both ways
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, beside an overtake in the opposing lane where that is enough; NULL: never on a lane
     is_aside BOOLEAN NOT NULL,        -- that median is so great, in steps that tell, that the map may be moved against the log

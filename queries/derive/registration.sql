@@ -26,7 +26,8 @@ step_count AS (
         min(s.actor_class) AS actor_class,
         count(s.x_m) AS n_steps,
         count(e.lanelet_id) AS n_on_lane,
-        count(*) FILTER (e.lanelet_id IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
+        -- A step without a heading does not tell whether the ego drives with the traffic.
+        count(*) FILTER (e.with_traffic IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
         -- A short log may be half an overtake. The steps outside the overtake decide if they last at least 5 s and are at least a third of
