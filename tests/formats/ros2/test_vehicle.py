@@ -6,6 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from drivelint.drive.trace import EgoSize
 from tests.formats.logs import actors, at, quality, read, states
@@ -169,3 +171,25 @@ def test_the_option_counts_where_the_log_says_nothing(tmp_path: Path) -> None:
     trace = seen(tmp_path, axle(), ego_size=EgoSize(4.0, 1.7, 1.2))
     assert size(trace) == (4.0, 1.7, None)
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(1.2 * math.cos(TURN))
+
+
+def test_parameters_that_cannot_be_read_leave_the_drive_whole(tmp_path: Path) -> None:
+    """Their definition in another language is no reason to refuse a log, or to call it lossy."""
+    text = ros.definition("rcl_interfaces/ParameterEvent", autoware.TYPES).encode()
+    path = autoware.write(tmp_path / "log.mcap", [*axle(), *parameters()])
+    with (tmp_path / "idl.mcap").open("wb") as file, path.open("rb") as log:
+        writer = Writer(file)
+        writer.start(profile="ros2")
+        channels: dict[str, int] = {}
+        for schema, channel, message in make_reader(log).iter_messages():
+            assert schema is not None
+            if channel.topic not in channels:
+                encoding = "ros2idl" if schema.data == text else schema.encoding
+                number = writer.register_schema(schema.name, encoding, schema.data)
+                channels[channel.topic] = writer.register_channel(channel.topic, "cdr", number)
+            writer.add_message(channels[channel.topic], message.log_time, message.data, message.publish_time)
+        writer.finish()  # type: ignore[no-untyped-call]
+    assert size(read(path)) == SIZE
+    trace = read(tmp_path / "idl.mcap")
+    assert size(trace) == (None, None, None)
+    assert "unread_topic" not in quality(trace)

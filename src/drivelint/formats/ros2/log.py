@@ -15,7 +15,7 @@ from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
-from drivelint.formats.ros2.messages import DETECTED, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
+from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import listed
@@ -82,6 +82,8 @@ class Log:
             return None
         if kind not in MESSAGES:
             return None
+        if MESSAGES[kind].role == EGO_SIZE and (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
+            return None  # the drive is whole without it: its size is not known then
         if channel.message_encoding != "cdr":
             if kind not in OBJECT_ROWS or not self.asked or channel.topic in self.asked:
                 self.unread.add(channel, kind)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 ROAD_USERS: Final = "road users"
 ODOMETRY_ROLE: Final = "odometry"
 DETECTIONS: Final = "road users without ids"
+EGO_SIZE: Final = "ego's size"
 
 CARLA_OBJECTS: Final = "derived_object_msgs/ObjectArray"
 PREDICTED: Final = "autoware_perception_msgs/PredictedObjects"
@@ -118,7 +119,7 @@ MESSAGES: Final[dict[str, MessageType]] = {
         },
     ),
     PARAMETERS: MessageType(
-        "ego's size",
+        EGO_SIZE,
         "/parameter_events",
         {
             "node": None,
@@ -128,7 +129,7 @@ MESSAGES: Final[dict[str, MessageType]] = {
             },
         },
     ),
-    DIMENSIONS: MessageType("ego's size", "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTHS, "height"))),
+    DIMENSIONS: MessageType(EGO_SIZE, "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTHS, "height"))),
     LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",
