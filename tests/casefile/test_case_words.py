@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -93,7 +93,8 @@ def test_every_column_of_words_is_held_against_its_vocabulary(table: str, name: 
     def said(word: str) -> str | dict[str, str]:
         return {column.field: word, "signal_id": "any text"} if column.field else word
 
-    for value in (said(good), [None, said(good)], {"else": None, "0..1": said(good)}):
+    known: tuple[Any, ...] = (said(good), [None, said(good)], {"else": None, "0..1": said(good)})
+    for value in known:
         refuse_wrong_word(table, name, value, "given")
     for value in (said(wrong), [said(good), said(wrong)], {"else": said(good), "0..1": said(wrong)}):
         with pytest.raises(RuleError, match=rf"given\.{name}: '{wrong}' is no .*did you mean '{good}'\?"):

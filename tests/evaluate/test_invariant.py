@@ -81,16 +81,16 @@ def test_infinity_is_stored_as_null(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("values", "expected", "worst_s"),
     [
-        (["on", "on"], ("pass", "kept"), 0.0),
-        (["on", "off", "off"], ("fail", "violated"), 0.1),
-        (["on", None, "off"], ("fail", "violated"), 0.2),
-        (["on", None, "on", None], ("unknown", "null_value"), 0.1),
+        (["left", "left"], ("pass", "kept"), 0.0),
+        (["left", "off", "off"], ("fail", "violated"), 0.1),
+        (["left", None, "off"], ("fail", "violated"), 0.2),
+        (["left", None, "left", None], ("unknown", "null_value"), 0.1),
     ],
 )
 def test_holds_takes_the_earliest_deciding_step(
     tmp_path: Path, values: list[Any], expected: tuple[str, str], worst_s: float
 ) -> None:
-    sql = "SELECT drive_id, ego_id, t_ns, indicator = 'on' AS holds FROM ego_state"
+    sql = "SELECT drive_id, ego_id, t_ns, indicator = 'left' AS holds FROM ego_state"
     rule = write(tmp_path, INVARIANT | HOLDS | SPEED, {"condition": sql})
     (row,) = verdicts(rule, {"ego_state": {"t_s": [i / 10 for i in range(len(values))], "indicator": values}})
     assert brief([row]) == [expected]
@@ -274,31 +274,31 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
 
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:
     sections = {
-        "applies": "SELECT drive_id, ego_id, t_ns, road_type AS episode FROM ego_state",
+        "applies": "SELECT drive_id, ego_id, t_ns, lanelet_id AS episode FROM ego_state",
         "condition": SPEED_SQL,
     }
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, sections)
-    rows = verdicts(rule, speeds([12, 12, 9, 9, 12, 12], road_type=["pulling_out"] * 3 + ["passing"] * 3))
+    rows = verdicts(rule, speeds([12, 12, 9, 9, 12, 12], lanelet_id=["pulling_out"] * 3 + ["passing"] * 3))
     assert [(r["verdict"], r["n_expected"]) for r in rows] == [("fail", 3), ("fail", 3)]
     assert rows[0]["reason"].startswith("pulling out: 9 m at 0.200 s")
-    (finding,) = findings(rule, speeds([12, 12, 9, 9, 12, 12], road_type=["pulling_out"] * 3 + ["passing"] * 3))
+    (finding,) = findings(rule, speeds([12, 12, 9, 9, 12, 12], lanelet_id=["pulling_out"] * 3 + ["passing"] * 3))
     assert (finding["t_start_ns"], finding["t_end_ns"]) == (200_000_000, 300_000_000)
 
 
 def test_a_failed_episode_names_its_own_findings(tmp_path: Path) -> None:
     """Not those of another label at the same time, and a finding over two labels is of both."""
     sections = {
-        "applies": """SELECT drive_id, ego_id, t_ns, unnest(string_split(road_type, ' ')) AS episode FROM ego_state
-            WHERE road_type IS NOT NULL""",
+        "applies": """SELECT drive_id, ego_id, t_ns, unnest(string_split(lanelet_id, ' ')) AS episode FROM ego_state
+            WHERE lanelet_id IS NOT NULL""",
         "condition": SPEED_SQL,
     }
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED | {"merge_gap_s": "0"}, sections)
-    scene = speeds([12, 9, 12, 9, 12, 9, 12], road_type=["a", "a", "a b", "b", "a b", "a b", "a"])
+    scene = speeds([12, 9, 12, 9, 12, 9, 12], lanelet_id=["a", "a", "a b", "b", "a b", "a b", "a"])
     one, two, both = (found["finding_id"] for found in findings(rule, scene))
     rows = verdicts(rule, scene)
     assert [(row["t_start_ns"] // 10**8, row["t_end_ns"] // 10**8) for row in rows] == [(0, 6), (2, 5)]
     assert [row["finding_ids"] for row in rows] == [[one, both], [two, both]]
-    (kept,) = verdicts(rule, speeds([12, 12], road_type=["a", "a"]))
+    (kept,) = verdicts(rule, speeds([12, 12], lanelet_id=["a", "a"]))
     assert (kept["verdict"], kept["finding_ids"]) == ("pass", [])
 
 
@@ -362,20 +362,22 @@ def test_near_misses_and_requirements(tmp_path: Path) -> None:
 
 def test_sql_that_raises_is_an_error_of_that_rule(tmp_path: Path) -> None:
     rule = write(
-        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL.replace("speed_mps", "indicator::DOUBLE")}
+        tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL.replace("speed_mps", "lanelet_id::DOUBLE")}
     )
-    (row,) = verdicts(rule, speeds([12], indicator="fast"))
+    (row,) = verdicts(rule, speeds([12], lanelet_id="fast"))
     assert (row["verdict"], row["reason_code"]) == ("error", "rule_error")
     assert "pack.rule" in row["reason"]
     assert "fast" in row["reason"]
 
 
 def test_the_authors_reason_is_kept_where_it_decides(tmp_path: Path) -> None:
-    sql = SPEED_SQL.replace(" FROM", ", indicator AS reason, road_type AS reason_code FROM")
+    sql = SPEED_SQL.replace(
+        " FROM", ", lanelet_id AS reason, CASE WHEN lanelet_id <> 'b' THEN upper(lanelet_id) END AS reason_code FROM"
+    )
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
-    (row,) = verdicts(rule, speeds([12, 11, None], indicator=["a", "b", "c"], road_type=["x", None, "z"]))
-    assert (row["verdict"], row["reason_code"], row["reason"]) == ("unknown", "z", "c")
-    (row,) = verdicts(rule, speeds([12, 11], indicator=["a", "b"], road_type=["x", None]))
+    (row,) = verdicts(rule, speeds([12, 11, None], lanelet_id=["a", "b", "c"]))
+    assert (row["verdict"], row["reason_code"], row["reason"]) == ("unknown", "C", "c")
+    (row,) = verdicts(rule, speeds([12, 11], lanelet_id=["a", "b"]))
     assert (row["verdict"], row["reason_code"], row["reason"]) == ("pass", "kept", "b")
 
 

@@ -25,7 +25,7 @@ MARK: Final = re.compile(r"\[(?:(\w+): )?(\w+)((?: \+ \w+)*)\] ?")
 """The mark at the head of a column's comment: the field of a STRUCT, the vocabulary, and the words besides."""
 _MOST_LISTED: Final = 14
 """A comment lists the words of a vocabulary of at most this many; of a longer one it gives the name."""
-_NEAR: Final = 0.5
+_NEAR: Final = 0.55
 """How alike a word that is proposed must be: `cyclist` and `bicycle` are 0.57."""
 _MISSPELLED: Final = 0.85
 """So alike to a word of an open vocabulary is none of its own, but that word misspelled."""
