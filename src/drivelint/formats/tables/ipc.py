@@ -32,7 +32,9 @@ def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional
     chosen = [*required, *(name for name in optional if name in names)] or names
     if twice := [name for name in chosen if names.count(name) > 1]:
         raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
-    return rows.select(chosen).combine_chunks()
+    rows = rows.select(chosen)
+    rows.validate(full=True)  # of a damaged file, offsets may lead outside of its buffers
+    return rows.combine_chunks()
 
 
 def columns(path: Path) -> tuple[list[str], int]:
