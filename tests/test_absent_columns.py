@@ -132,10 +132,10 @@ def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command:
         command("report", out, "--to", kind)
     verdicts, findings = (pq.read_table(out / f"{name}.parquet").to_pylist() for name in ("verdicts", "findings"))
     assert "error" not in {row["verdict"] for row in verdicts}
-    for row in list({row["rule_id"]: row for row in findings}.values())[:2]:
+    for row in findings[:1]:
         command("explain", row["finding_id"], "--in", out)
         command("report", out, "--incident", row["finding_id"])
-    for row in list({row["reason_code"]: row for row in verdicts}.values())[:3]:
+    for row in list({row["reason_code"]: row for row in verdicts}.values())[:2]:
         command("explain", f"{row['rule_id']}@{row['drive_id']}", "--in", out)
     for kind in ("mcap", "parquet"):
         command("convert", *log.options[:3], "--to", kind, "--out", tmp_path / kind)

@@ -19,7 +19,7 @@ from drivelint.drive.trace import EgoSize
 from drivelint.formats.foxglove import scene as foxglove_scene
 from drivelint.formats.registry import READERS
 from drivelint.formats.ros2 import reader as ros2_reader
-from tests.formats.commonroad.test_shapes import state as commonroad_state
+from tests.formats.commonroad.scenario_text import state as commonroad_state
 from tests.formats.foxglove import foxglove_log
 from tests.formats.logs import put, read, states
 from tests.formats.osi import osi_file, osi_log

@@ -15,3 +15,11 @@ def lanelet(name: int, y: float, more: str = "", *, x: float = 0.0, left: str = 
 
 def scenario(*parts: str, benchmark: str = "ZAM_Test-1") -> str:
     return f'<commonRoad commonRoadVersion="2020a" benchmarkID="{benchmark}" timeStepSize="0.1">{"".join(parts)}</commonRoad>'
+
+
+def state(tag: str, step: int, x: float, y: float, yaw: float) -> str:
+    """Return a state of an obstacle that goes with 8 m/s."""
+    return (
+        f"<{tag}><position><point><x>{x!r}</x><y>{y!r}</y></point></position><orientation><exact>{yaw!r}</exact></orientation>"
+        f"<time><exact>{step}</exact></time><velocity><exact>8.0</exact></velocity></{tag}>"
+    )

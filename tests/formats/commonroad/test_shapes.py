@@ -15,6 +15,7 @@ from lxml import etree
 
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
+from tests.formats.commonroad.scenario_text import state
 from tests.formats.logs import actors, at, put, quality, read
 from tests.shared_data import shared
 
@@ -36,13 +37,6 @@ POLYGON = "<polygon>{}</polygon>".format(
 
 def centre(x: float, y: float) -> str:
     return f"<center><x>{x}</x><y>{y}</y></center>"
-
-
-def state(tag: str, step: int, x: float, y: float, yaw: float) -> str:
-    return (
-        f"<{tag}><position><point><x>{x!r}</x><y>{y!r}</y></point></position><orientation><exact>{yaw!r}</exact></orientation>"
-        f"<time><exact>{step}</exact></time><velocity><exact>8.0</exact></velocity></{tag}>"
-    )
 
 
 def turning(shape: str, *, yaw_rate: float = YAW_RATE) -> str:

@@ -16,7 +16,7 @@ from drivelint.report.progress import Silent
 from drivelint.road.map_reader import MapOptions, MapTables
 from drivelint.road.quality import MapQuality
 from drivelint.run import CheckOptions, check
-from tests.formats.lanelet2.test_reader import Drawing
+from tests.formats.lanelet2.drawing import Drawing
 from tests.shared_data import shared
 
 lanelet2: Any = pytest.importorskip("lanelet2", reason="the package lanelet2 is not installed (extra 'lanelet2')")
