@@ -128,7 +128,7 @@ def write_log(
     with_boxes: bool = True,
 ) -> Path:
     """Write the files of a log; every frame's boxes are one row, in order."""
-    said = {"dataset": dataset, "split": f"{dataset}_val", "log_name": folder.name, "location": location}
+    header = {"dataset": dataset, "split": f"{dataset}_val", "log_name": folder.name, "location": location}
     rows: list[tuple[int, Sequence[Box]]] = []
     sync: dict[str, list[int | None]] = {"sync.timestamp_us": [], "ego_state_se3": [], "box_detections_se3": []}
     for k, frame in enumerate(frames):
@@ -145,14 +145,14 @@ def write_log(
     if lights is not None:
         arrow(folder / "traffic_light_detections.arrow", light_columns(lights), {})
     columns = {name: pa.array(values, pa.int64()) for name, values in sync.items()}
-    arrow(folder / "sync.arrow", columns, {**said, "version": version, "map_metadata": None})
+    arrow(folder / "sync.arrow", columns, {**header, "version": version, "map_metadata": None})
     return folder
 
 
 # ---- maps
 
 
-def packed(points: Sequence[Sequence[float]]) -> dict[bytes, Any]:
+def array_of(points: Sequence[Sequence[float]]) -> dict[bytes, Any]:
     """Return an array as py123d packs it."""
     array = np.array(points, np.float64)
     return {b"__ndarray__": True, b"dtype": array.dtype.str, b"shape": list(array.shape), b"data": array.tobytes()}
@@ -168,25 +168,33 @@ class Object(NamedTuple):
 
 
 def lane(
-    number: int, left: Sequence[Sequence[float]], right: Sequence[Sequence[float]], *, kind: int = 2, **said: Any
+    number: int, left: Sequence[Sequence[float]], right: Sequence[Sequence[float]], *, kind: int = 2, **others: Any
 ) -> Object:
-    """Return a lane; `said`: other features."""
+    """Return a lane; `others`: other features."""
     left, right = ([[*p, *([0.0] if len(p) == 2 else [])] for p in bound] for bound in (left, right))
     features: dict[str, Any] = {
-        "lane_type": kind, "lane_group_id": None, "left_boundary": packed(left), "right_boundary": packed(right),
-        "centerline": packed(left), "left_lane_id": None, "right_lane_id": None, "predecessor_ids": [],
-        "successor_ids": [], "speed_limit_mps": None, "outline": packed([*left, *right[::-1]]), **said,
+        "lane_type": kind, "lane_group_id": None, "left_boundary": array_of(left), "right_boundary": array_of(right),
+        "centerline": array_of(left), "left_lane_id": None, "right_lane_id": None, "predecessor_ids": [],
+        "successor_ids": [], "speed_limit_mps": None, "outline": array_of([*left, *right[::-1]]), **others,
     }  # fmt: skip
     return Object(LAYERS["lane"], number, features, shapely.Polygon([*left, *right[::-1]]))
 
 
 def straight(
-    number: int, x0: float, x1: float, y: float, *, width: float = 3.5, z: float = 0.0, back: bool = False, **said: Any
+    number: int,
+    x0: float,
+    x1: float,
+    y: float,
+    *,
+    width: float = 3.5,
+    z: float = 0.0,
+    back: bool = False,
+    **features: Any,
 ) -> Object:
     """Return a lane along x with its middle at y; `back`: it is driven towards x0."""
     xs, up = ((x1, x0), -1.0) if back else ((x0, x1), 1.0)
     left, right = ([[x, y + side * up * width / 2, z] for x in xs] for side in (1, -1))
-    return lane(number, left, right, **said)
+    return lane(number, left, right, **features)
 
 
 def group(number: int, lanes: Sequence[int], intersection: int | None) -> Object:
@@ -205,7 +213,7 @@ def intersection(number: int, groups: Sequence[int], kind: int = 0) -> Object:
 def crosswalk(number: int, x0: float, y0: float, x1: float, y1: float, *, z: float = 0.0) -> Object:
     """Return a crosswalk."""
     ring = [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)]
-    return Object(LAYERS["crosswalk"], number, {"outline": packed(ring)}, shapely.Polygon(ring))
+    return Object(LAYERS["crosswalk"], number, {"outline": array_of(ring)}, shapely.Polygon(ring))
 
 
 def road_line(number: int, kind: int, points: Sequence[Sequence[float]]) -> Object:
@@ -229,8 +237,8 @@ def write_map(
         "features": pa.array([msgspec.msgpack.encode(o.features) for o in objects], pa.binary()),
         "wkb": pa.array([shapely.to_wkb(o.shape) for o in objects], pa.binary()),
     }
-    said = {"dataset": dataset, "split": None, "log_name": None, "location": location}
-    return arrow(path, columns, {**said, "map_has_z": has_z, "map_is_per_log": False, "version": version})
+    header = {"dataset": dataset, "split": None, "log_name": None, "location": location}
+    return arrow(path, columns, {**header, "map_has_z": has_z, "map_is_per_log": False, "version": version})
 
 
 def times(n: int, period_us: int = 100_000, start_us: int = 1_000_000) -> list[int]:
@@ -238,6 +246,6 @@ def times(n: int, period_us: int = 100_000, start_us: int = 1_000_000) -> list[i
     return [start_us + k * period_us for k in range(n)]
 
 
-def driven(n: int, speed: float = 10.0, **said: Any) -> list[Ego]:
+def driven(n: int, speed: float = 10.0, **fields: Any) -> list[Ego]:
     """Return an ego that drives along x."""
-    return [Ego(t, speed * k * 0.1, 0.0, **said) for k, t in enumerate(times(n))]
+    return [Ego(t, speed * k * 0.1, 0.0, **fields) for k, t in enumerate(times(n))]

@@ -15,19 +15,19 @@ from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.d123.files import (
     LAYERS,
     Object,
+    array_of,
     arrow,
     crosswalk,
     group,
     intersection,
     lane,
-    packed,
     straight,
     write_map,
 )
 
 
-def load(tmp_path: Path, objects: list[Object], *, options: dict[str, Any] | None = None, **said: Any) -> MapTables:
-    return load_map(read_source(write_map(tmp_path / "map.arrow", objects, **said)), **(options or {}))
+def load(tmp_path: Path, objects: list[Object], *, options: dict[str, Any] | None = None, **header: Any) -> MapTables:
+    return load_map(read_source(write_map(tmp_path / "map.arrow", objects, **header)), **(options or {}))
 
 
 def lanelets(environment: MapTables) -> dict[str, dict[str, Any]]:
@@ -202,8 +202,8 @@ def test_a_lane_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
         good._replace(number=3, features={**features, "left_boundary": {b"dtype": "O", b"shape": [1, 3], b"data": b""}}),
         good._replace(number=4, features={**features, "left_boundary": {**features["left_boundary"], b"shape": [7, 3]}}),
         good._replace(number=5, features={"lane_type": 2}),
-        good._replace(number=7, features={**features, "left_boundary": packed([(0, 2, 0), (float("nan"), 2, 0)])}),
-        good._replace(number=8, features={**features, "left_boundary": packed([(0, 2, 0), (1e9, 2, 0)])}),
+        good._replace(number=7, features={**features, "left_boundary": array_of([(0, 2, 0), (float("nan"), 2, 0)])}),
+        good._replace(number=8, features={**features, "left_boundary": array_of([(0, 2, 0), (1e9, 2, 0)])}),
         good._replace(number=6, features={**features, "right_boundary": left, "left_boundary": right}),
     ]  # fmt: skip
     environment = load(tmp_path, [good, *broken, straight(1, 0, 60, 9.0)])

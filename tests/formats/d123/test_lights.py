@@ -38,21 +38,21 @@ def write(folder: Path, lights: Lights, **options: Any) -> Path:
     return write_log(folder, frames, driven(6), lights=lights, **options)
 
 
-def shown(folder: Path) -> dict[tuple[str, int], str | None]:
+def light_colours(folder: Path) -> dict[tuple[str, int], str | None]:
     rows = read(folder).tables["signal_state"].to_pylist()
     return {(row["signal_id"], row["t_ns"] // 1_000_000): row["state"] for row in rows}
 
 
 def test_states_by_lane(tmp_path: Path) -> None:
     lights = [(1_000_000, [(7, GREEN), (8, RED)]), (1_100_000, []), (1_200_000, [(7, YELLOW), (8, UNKNOWN), (9, OFF)])]
-    assert shown(write(tmp_path / "log", lights)) == {
+    assert light_colours(write(tmp_path / "log", lights)) == {
         ("7", 1000): "green", ("8", 1000): "red", ("7", 1200): "amber", ("8", 1200): None, ("9", 1200): "off",
     }  # fmt: skip
 
 
 def test_a_state_that_is_not_known(tmp_path: Path) -> None:
     folder = write(tmp_path / "log", [(1_000_000, [(7, 9), (8, RED)])])
-    assert shown(folder) == {("7", 1000): None, ("8", 1000): "red"}
+    assert light_colours(folder) == {("7", 1000): None, ("8", 1000): "red"}
     assert "does not have (9): 1" in quality(read(folder))["unknown_light_state"]["message"]
 
 
@@ -62,7 +62,7 @@ def test_lanes_and_states_that_differ_in_number(tmp_path: Path) -> None:
     column = "traffic_light_detections.status"
     columns[column] = pa.array([[RED], [RED], [], None, [RED], [RED]], columns[column].type)
     arrow(folder / "traffic_light_detections.arrow", columns, {})
-    assert {t for _, t in shown(folder)} == {1000, 1100, 1400, 1500}
+    assert {t for _, t in light_colours(folder)} == {1000, 1100, 1400, 1500}
     found = quality(read(folder))
     assert found["malformed_row"]["n"] == 2
     assert found["lost_time"]["t_first_ns"] < 1_200_000_000
@@ -75,7 +75,7 @@ def test_a_light_that_never_changes_may_flash_where_that_is_written_alike(
 ) -> None:
     lights = [(t, [(7, RED), (8, RED if k < 3 else GREEN), (9, OFF)]) for k, t in enumerate(times(6))]
     folder = write(tmp_path / "log", lights, dataset=dataset)
-    found = shown(folder)
+    found = light_colours(folder)
     assert {found["7", t] for t in range(1000, 1600, 100)} == {state}
     assert (found["8", 1000], found["8", 1500], found["9", 1000]) == ("red", "green", "off")
     assert ("flashing_or_steady" in quality(read(folder))) == (state is None)

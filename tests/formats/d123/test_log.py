@@ -213,8 +213,8 @@ def test_a_frame_that_points_to_no_row_is_lost(tmp_path: Path) -> None:
         "sync.timestamp_us": pa.array(times(12)), "ego_state_se3": pa.array([*range(11), 12]),
         "box_detections_se3": pa.array([*range(10), 99, 11]),
     }  # fmt: skip
-    said = {"dataset": "test-set", "location": None, "version": "0.7.0"}
-    arrow(folder / "sync.arrow", columns, said)
+    header = {"dataset": "test-set", "location": None, "version": "0.7.0"}
+    arrow(folder / "sync.arrow", columns, header)
     trace = read(folder)
     assert len(states(trace, "ego")) == 10
     assert quality(trace)["malformed_row"]["n"] == 2
@@ -233,9 +233,9 @@ def test_numbers_that_are_none_are_not_known(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("ahead", "x_m"), [(None, 0.0), (1.3, 1.3)])
 def test_an_ego_whose_middle_is_on_its_axle_has_no_box(tmp_path: Path, ahead: float | None, x_m: float) -> None:
-    said = {**EGO_METADATA, "center_to_imu_se3": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]}
+    header = {**EGO_METADATA, "center_to_imu_se3": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]}
     size = None if ahead is None else EgoSize(4.0, 1.9, ahead)
-    trace = read(plain(tmp_path / "log", ego_metadata=said), ego_size=size)
+    trace = read(plain(tmp_path / "log", ego_metadata=header), ego_size=size)
     assert states(trace, "ego")[0]["x_m"] == x_m
     assert actors(trace)["ego"]["length_m"] == (None if ahead is None else 4.0)
     assert "--ego-size LENGTH,WIDTH,AHEAD" in quality(trace)["reference_point"]["message"]

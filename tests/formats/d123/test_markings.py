@@ -14,8 +14,8 @@ DASH_SOLID, DASHED, DOUBLE_SOLID, DOUBLE_DASH_YELLOW, SOLID, SOLID_DASH, UNKNOWN
 Marks = list[tuple[float, float, str | None]]
 
 
-def marks(tmp_path: Path, objects: list[Object], **said: Any) -> dict[tuple[str, str], Marks]:
-    rows = load(tmp_path, objects, **said).tables["lane_boundary"].to_pylist()
+def marks(tmp_path: Path, objects: list[Object], **header: Any) -> dict[tuple[str, str], Marks]:
+    rows = load(tmp_path, objects, **header).tables["lane_boundary"].to_pylist()
     found: dict[tuple[str, str], Marks] = {}
     for row in rows:
         span = (round(row["s_start_m"], 6), round(row["s_end_m"], 6), row["marking"])

@@ -84,15 +84,15 @@ def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
     return columns, log_info(path, metadata(path, rows.schema))
 
 
-def log_info(path: Path | str, said: Mapping[str, Any]) -> LogInfo:
+def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
     """Return data set, place and version of a log or map. Errors: `TraceError` for a version that is not read."""
-    version, location = str(said.get("version", "unknown")), said.get("location")
+    version, location = str(entries.get("version", "unknown")), entries.get("location")
     if not facts.is_read(version):
         raise TraceError(
             f"{path}: version {version} of py123d wrote it, and {facts.VERSIONS[0]} to {facts.VERSIONS[-1]} are read: convert it "
             "again with one of these"
         )
-    return LogInfo(str(said.get("dataset", "")), None if location is None else str(location), version)
+    return LogInfo(str(entries.get("dataset", "")), None if location is None else str(location), version)
 
 
 def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:

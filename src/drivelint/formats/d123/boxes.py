@@ -132,19 +132,19 @@ def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFi
     counts = np.bincount(states.actor, minlength=len(states.ids))
     alone = zero & (counts[states.actor] == 1)
     _forget_velocities(states, alone)
-    told = ~np.isnan(v).any(axis=0) & ~alone
-    if not told.any():
+    has_velocity = ~np.isnan(v).any(axis=0) & ~alone
+    if not has_velocity.any():
         return []
-    if zero[told].all():
+    if zero[has_velocity].all():
         if not _moves(states):
             return []  # whoever is recorded stands: zero is what it says
         why = "velocity (0, 0, 0) of all {n} boxes, though they move, stands for none"
-    elif _way_between_boxes(states, frame, told):
+    elif _way_between_boxes(states, frame, has_velocity):
         why = "velocities of {n} boxes are the way between the boxes before and after, filled in by the converter: they are not read"
     else:
         return []
-    findings = states.findings(told, "velocity_not_recorded", "info", why)
-    _forget_velocities(states, told)
+    findings = states.findings(has_velocity, "velocity_not_recorded", "info", why)
+    _forget_velocities(states, has_velocity)
     return findings
 
 
@@ -165,12 +165,12 @@ def _moves(states: States, least_m: float = 0.5) -> bool:
     return False
 
 
-def _way_between_boxes(states: States, frame: Indices, told: Mask) -> bool:
+def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bool:
     """Say whether the velocities are those of the way from the box one frame before to the one after, nearly everywhere."""
     order = np.lexsort((frame, states.actor))
     actor, at = states.actor[order], frame[order]
     in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)
-    middle = np.flatnonzero(in_row & told[order[1:-1]]) + 1
+    middle = np.flatnonzero(in_row & has_velocity[order[1:-1]]) + 1
     if len(middle) < _LEAST_COMPARED:
         return False
     before, here, after = order[middle - 1], order[middle], order[middle + 1]

@@ -61,11 +61,11 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
 
     `forward_m`: the user's word for how far its centre is ahead, used where the metadata contradict themselves.
     """
-    said = ego.metadata
+    entries = ego.metadata
     centre, axle = (_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
-    sizes = np.array([_length(said.get(key)) for key in ("length", "width", "height")])
+    sizes = np.array([_length(entries.get(key)) for key in ("length", "width", "height")])
     findings = []
-    wheel_base = _length(said.get("wheel_base"))
+    wheel_base = _length(entries.get("wheel_base"))
     if not math.isnan(wheel_base) and np.hypot(*(centre[:2] - axle[:2])) < 0.1 * wheel_base:
         # a box's middle lies between the axles: one of the two is not what it says
         sizes[:] = np.nan
@@ -76,7 +76,7 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
         )
         findings.append(QualityFinding("reference_point", "warning", message, actor_id=name))
     elif not about.ego_size_recorded and not np.isnan(sizes[:2]).any():
-        model = said.get("vehicle_name") or "its model"
+        model = entries.get("vehicle_name") or "its model"
         message = f"the ego's size is the one that 123D has for {model}, not recorded"
         findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=name))
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
@@ -108,23 +108,23 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
     """
     nothing = np.full((len(motion), 3), np.nan)
     velocity, turning = motion[:, :3], motion[:, 6:9]
-    told = np.asarray(np.isfinite(velocity).all(axis=1), np.bool_)
-    if not told.any():
+    has_velocity = np.asarray(np.isfinite(velocity).all(axis=1), np.bool_)
+    if not has_velocity.any():
         return nothing
     outward = rotated(imu.turn, velocity)
-    if _way_between_poses(ego, imu, outward, told):
+    if _way_between_poses(ego, imu, outward, has_velocity):
         return nothing
-    still = told & (velocity == 0.0).all(axis=1)
-    if still[told].all():
-        return np.where(told[:, None], np.zeros_like(velocity), np.nan)
+    still = has_velocity & (velocity == 0.0).all(axis=1)
+    if still[has_velocity].all():
+        return np.where(has_velocity[:, None], np.zeros_like(velocity), np.nan)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
-    if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[told] != 0.0).any() and box.place[:2].any():
+    if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[has_velocity] != 0.0).any() and box.place[:2].any():
         return nothing
     swing = rotated(imu.turn, np.cross(turning, box.place))
-    return np.where(told[:, None], outward + swing, np.nan)
+    return np.where(has_velocity[:, None], outward + swing, np.nan)
 
 
-def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, told: Mask) -> bool:
+def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
     """Say whether the velocities are those of the way from the pose before to the one after, nearly everywhere."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
     if len(t_us) - 2 < _LEAST_COMPARED:
@@ -133,7 +133,7 @@ def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, told: Mask) 
         way = (imu.place[2:] - imu.place[:-2]) / ((t_us[2:] - t_us[:-2]) * 1e-6)[:, None]
     off = np.linalg.norm(way - velocity[1:-1], axis=1)
     length = np.linalg.norm(way, axis=1)
-    moving = told[1:-1] & (length > _SAME_MPS) & np.isfinite(length)
+    moving = has_velocity[1:-1] & (length > _SAME_MPS) & np.isfinite(length)
     return bool(moving.any() and (off[moving] <= _SAME_MPS * (1.0 + length[moving])).mean() >= _LEAST_SHARE)
 
 

@@ -47,7 +47,7 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.sides.get(location or "", self.sides.get("*"))
 
 
-DATASETS: Final = {name: msgspec.convert(said, Dataset) for name, said in _FACTS["datasets"].items()}
+DATASETS: Final = {name: msgspec.convert(facts, Dataset) for name, facts in _FACTS["datasets"].items()}
 UNKNOWN_DATASET: Final = Dataset()
 VERSIONS: Final[tuple[str, ...]] = tuple(_FACTS["versions"]["read"])
 LAYERS: Final[dict[str, int]] = _FACTS["layers"]

@@ -59,15 +59,17 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         raise MapError(
             f"map {source.name} has no lane for vehicles that can be built: {first}: give another with --map"
         )
-    if layers.said.get("map_has_z"):
+    if layers.header.get("map_has_z"):
         _set_heights(built, lanes, request.offset)
     if not intersections:
         mark_junctions(built)
     by_place = about.side_driven_on(layers.info.location)
     side = choose_side([("option", request.side), ("attribute", by_place), ("lanes", side_driven_on(built))], quality)
-    lit = {name for name, number in junctions.items() if intersections[number].intersection_type == facts.SIGNALLED}
+    signalled = {
+        name for name, number in junctions.items() if intersections[number].intersection_type == facts.SIGNALLED
+    }
     furniture = {
-        "traffic_signal": light_rows(built, lit | layers.light_lanes),
+        "traffic_signal": light_rows(built, signalled | layers.light_lanes),
         "crossing": crossing_rows(layers, built, request.offset, quality),
     }
     report_unread(layers, about, quality)
@@ -165,12 +167,12 @@ def _runs_against(lane: Lane, other: Lane) -> bool:
 
 def _pieces(lane: Lane) -> tuple[Floats, Floats]:
     """Return the middles (n, 2) and directions (n, 2) of the pieces of both bounds of a lane."""
-    lines = [bound[_some(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
+    lines = [bound[_sample(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
     middles = np.vstack([(line[1:] + line[:-1]) / 2.0 for line in lines])
     return middles, np.vstack([np.diff(line, axis=0) for line in lines])
 
 
-def _some(n: int) -> Indices:
+def _sample(n: int) -> Indices:
     """Return the numbers of at most some of n points, the first and the last with them."""
     return np.unique(np.linspace(0, n - 1, min(n, _MOST_POINTS)).astype(np.intp))
 

@@ -82,9 +82,9 @@ def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
 
 def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Codes, list[QualityFinding]]:
     """Forget the colour of lights that never change it: one that flashes is written as one that is on."""
-    lit = codes >= 0
+    is_lit = codes >= 0
     shown = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
-    shown[light[lit], codes[lit]] = True
+    shown[light[is_lit], codes[is_lit]] = True
     doubtful = (
         (shown.sum(axis=1) == 1) & ~shown[:, SIGNAL_STATES.index("green")] & ~shown[:, SIGNAL_STATES.index("off")]
     )

@@ -24,11 +24,13 @@ if TYPE_CHECKING:
 OWN_MAP: Final = "map.arrow"
 
 
-def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | None, list[QualityFinding], list[str]]:
+def find_map(
+    folder: Path, info: LogInfo, light_lanes: Sequence[int]
+) -> tuple[bytes | None, list[QualityFinding], list[str]]:
     """Return the log's map, its lanes with lights noted in it, with findings and notes; None: there is none that can be used.
 
     py123d has a data root: `logs/<split>/<log>` and, for places that many logs share, `maps/<data set>/<data set>_<location>.arrow`.
-    `lit`: the lanes for which the log has states of lights.
+    `light_lanes`: the lanes for which the log has states of lights.
     """
     shared = shared_map(folder, info)
     path = next((path for path in (folder / OWN_MAP, shared) if path is not None and path.is_file()), None)
@@ -43,9 +45,9 @@ def find_map(folder: Path, info: LogInfo, lit: Sequence[int]) -> tuple[bytes | N
     if not layers.count("LANE"):
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {path.name} has no lanes")], []
     notes = [] if path.name == OWN_MAP else [f"the map of the place is {path.name} under {path.parent.parent}"]
-    if set(lit) <= _signalled_lanes(layers):
+    if set(light_lanes) <= _signalled_lanes(layers):
         return source.content, [], notes
-    return _with_light_lanes(layers, lit), [], notes
+    return _with_light_lanes(layers, light_lanes), [], notes
 
 
 def shared_map(folder: Path, info: LogInfo) -> Path | None:
@@ -61,7 +63,9 @@ def _signalled_lanes(layers: Layers) -> set[int]:
     """Return the lanes that the map says to have lights: see `lanes.py`."""
     quality = MapQuality()  # the map's reader reports what cannot be read
     intersections = layers.features("INTERSECTION", Intersection, quality)
-    signalled = {name for name, said in intersections.items() if said.intersection_type == facts.SIGNALLED}
+    signalled = {
+        name for name, intersection in intersections.items() if intersection.intersection_type == facts.SIGNALLED
+    }
     return {
         lane
         for group in layers.features("LANE_GROUP", LaneGroup, quality).values()
@@ -70,10 +74,10 @@ def _signalled_lanes(layers: Layers) -> set[int]:
     }
 
 
-def _with_light_lanes(layers: Layers, lit: Sequence[int]) -> bytes:
+def _with_light_lanes(layers: Layers, light_lanes: Sequence[int]) -> bytes:
     """Return the map as a file of its own, which says for which lanes there are lights."""
-    said = {METADATA_KEY: layers.packed_said, LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(lit))}
-    rows = layers.rows.replace_schema_metadata(said)
+    header = {METADATA_KEY: layers.packed_header, LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(light_lanes))}
+    rows = layers.rows.replace_schema_metadata(header)
     sink = pa.BufferOutputStream()
     with pa.ipc.new_file(sink, rows.schema) as writer:
         writer.write_table(rows)

@@ -34,7 +34,7 @@ def road_lines(layers: Layers, quality: MapQuality) -> list[RoadLine]:
     ]
 
 
-def light_rows(lanes: Sequence[BoundedLane], lit: set[int]) -> Rows:
+def light_rows(lanes: Sequence[BoundedLane], light_lanes: set[int]) -> Rows:
     """Return a row of `traffic_signal` for each lane that has a light of its own: it stands where the lane begins.
 
     In Waymo's data the stopping points of lights are the first points of their lanes. The light's id is the lane's, as in the log.
@@ -45,7 +45,7 @@ def light_rows(lanes: Sequence[BoundedLane], lit: set[int]) -> Rows:
             turns=["left", "right", "straight", "u_turn"],
         )
         for lane in lanes
-        if int(lane.lanelet_id) in lit
+        if int(lane.lanelet_id) in light_lanes
     ]  # fmt: skip
     return sorted(rows, key=lambda row: str(row["signal_id"]))
 
@@ -60,7 +60,7 @@ def crossing_rows(
     heights = {
         str(name): float(ring[:, 2].mean())
         for name, ring in outlines.items()
-        if ring.shape[1] == 3 and layers.said.get("map_has_z")
+        if ring.shape[1] == 3 and layers.header.get("map_has_z")
     }
     return [row for row in rows if _on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))]
 

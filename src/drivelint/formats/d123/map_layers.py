@@ -66,8 +66,8 @@ class Layers:
         """Take a table with the columns `COLUMNS`. Errors: `TraceError` where it is none of 123D's, or of a version that is not read."""
         if missing := [column for column in COLUMNS if column not in rows.schema.names]:
             raise TraceError(f"{name}: no column {', '.join(missing)}: it is no map of 123D")
-        self.said = metadata(name, rows.schema)
-        self.info = log_info(name, self.said)
+        self.header = metadata(name, rows.schema)
+        self.info = log_info(name, self.header)
         try:
             self.rows = rows.select(list(COLUMNS)).cast(pa.schema(list(COLUMNS.items()))).combine_chunks()
         except pa.ArrowException as error:
@@ -77,7 +77,7 @@ class Layers:
         if self.rows["object_id"].null_count or self.rows["map_layer"].null_count:
             raise TraceError(f"{name}: an object has no number or no layer: convert it again")
         self._layer = np.asarray(self.rows["map_layer"].to_numpy(), np.int64)
-        self.packed_said = rows.schema.metadata[METADATA_KEY]
+        self.packed_header = rows.schema.metadata[METADATA_KEY]
         self.light_lanes = _light_lanes(name, rows.schema)
 
     @classmethod

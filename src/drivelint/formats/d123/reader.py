@@ -88,13 +88,13 @@ def read(probe: Probe) -> Recording:
     t_ns = time.nanoseconds(frames.ego_us)
     own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
     recording.states, recording.ego_ids = _joined(own, others), [name]
-    lit: tuple[int, ...] = ()
+    light_lanes: tuple[int, ...] = ()
     if lights is not None:
         shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
-        recording.signals, lit = shown.rows, shown.lanes
+        recording.signals, light_lanes = shown.rows, shown.lanes
         recording.findings += shown.findings
         recording.lost += shown.lost
-    recording.embedded_map, findings, notes = find_map(folder, info, lit)
+    recording.embedded_map, findings, notes = find_map(folder, info, light_lanes)
     recording.findings += findings
     recording.notes += notes
     return recording
