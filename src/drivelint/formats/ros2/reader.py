@@ -30,6 +30,7 @@ from drivelint.formats.ros2.recorded_poses import (
     message_times,
     states_in_fixed_frame,
 )
+from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import listed
 
@@ -133,6 +134,13 @@ class _Log:
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
 
+    def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
+        """Yield when a topic of road users is silent that also sends where nobody is."""
+        steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
+        for topic in sorted(steady.intersection(objects)):
+            sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))
+            yield from silences(topic, sent_ns, own_ns)
+
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch of the messages of a kind, by topic."""
         for topic, parts in sorted(self.topics.get(kind, {}).items()):
@@ -209,7 +217,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     for topic, (table, _) in log.parts(ros_ego.WORLD_INFO):
         for text in filter(bytes.strip, table.column("opendrive").tolist()):
             maps.setdefault(text, topic)
-    recording.lost = log.lost
+    recording.lost = [*log.lost, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(maps)
     recording.findings += trouble
