@@ -255,3 +255,22 @@ def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
         ros_log.write(tmp_path / "b.mcap", sorted(trembling, key=lambda m: m[2])), ego_size="4.5,1.8"
     )
     assert absence(drive) == absence(checked(path, ego_size="4.5,1.8")[1])
+
+
+@pytest.mark.parametrize(
+    "missing", [FROM, UNTIL, BETWEEN], ids=["from a frame on", "until a frame", "between two frames"]
+)
+def test_a_topic_of_road_users_falls_silent(tmp_path: Path, missing: range) -> None:
+    """Nobody there is a message without objects; without a message nobody knows."""
+    frames = drives.drive()
+    messages = [ros_log.odometry(t_s, cars[0].x, 0.0, 0.0, cars[0].vx) for t_s, cars in frames]
+    others = [ros_log.things(t_s, ros_log.thing(1, cars[1].x, 0.0, 0.0, 6.0), topic="/objects") for t_s, cars in frames]
+    empty = [ros_log.things(t_s, topic="/objects") for t_s, _ in frames]
+    heard = [each for k, each in enumerate(others) if k not in missing]
+    for beside, code in ((others, 1), (heard, 3), ([empty[k] if k in missing else others[k] for k in range(N)], 0)):
+        path = ros_log.write(tmp_path / "log.mcap", sorted([*messages, *beside], key=lambda message: message[2]))
+        found, drive, rows = checked(path, ego_size="4.5,1.8")
+        lost = [each["message"] for each in drive["quality"] if each["check_id"] == "lost_time"]
+        assert (found, bool(lost)) == (code, code == 3)
+        assert not lost or "/objects is silent while the odometry goes on" in lost[0]
+        assert code != 3 or not any(row["verdict"] == "pass" and row["object_id"] is None for row in rows)

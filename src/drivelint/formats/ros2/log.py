@@ -17,6 +17,7 @@ from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
+from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import listed
 
@@ -116,6 +117,13 @@ class Log:
         parts = [part for topic in topics for part in self._times.get(topic, ())]
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
+
+    def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
+        """Yield when a topic of road users is silent that also sends where nobody is."""
+        steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
+        for topic in sorted(steady.intersection(objects)):
+            sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))
+            yield from silences(topic, sent_ns, own_ns)
 
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch of the messages of a kind, by topic."""

@@ -123,7 +123,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         span_ns = int(t_ns.min()), int(t_ns.max())
         recording.signals, found = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
         recording.findings += found
-    recording.lost = log.lost
+    recording.lost = [*log.lost, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
