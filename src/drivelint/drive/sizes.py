@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.checks import LONGER_THAN_WIDE_CLASSES
 from drivelint.drive.order import track_starts, wrapped
 from drivelint.drive.trace import Doubt, QualityFinding
 from drivelint.phrases import listed
@@ -16,6 +15,8 @@ if TYPE_CHECKING:
     from drivelint.drive.actors import Actors
     from drivelint.drive.trace import States
 
+LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
+"""Whose boxes are longer than wide. The box of a rider may be that of his body alone."""
 WIDER_SHARE: Final = 1.1
 """A detector's box of a small car may be a little wider than long; one by more than a tenth is turned or wrong."""
 DIRECTION_LEAST_MPS: Final = 2.0
@@ -41,7 +42,7 @@ MOST_M: Final = (60.0, 8.0)
 def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     """Turn or drop the sizes of boxes that are wider than long, in place; doubt those that nobody has. `states` in order."""
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
-    long_kind = np.array([kind in LONGER_THAN_WIDE_CLASSES for kind in actors.classes], np.bool_)
+    long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     wide = long_kind & (width > WIDER_SHARE * length)
     along = np.isin(actors.ids, _moving_along(states)) if wide.any() else wide
     turned, lost = wide & along, wide & ~along

@@ -21,9 +21,9 @@ LOG = "perception/d123/av2-sensor_val/adcf7d18-0510-35b0-a2fa-b4cea13a6d76"
 SOURCE = "perception/av2/adcf7d18"
 EGO = (1.339, 0.0, 0.438)  # from the pose of the log to the middle of the box, as 123D has it
 WORDS = {
-    "REGULAR_VEHICLE": "car", "PEDESTRIAN": "pedestrian", "BUS": "bus", "BOX_TRUCK": "truck", "TRUCK": "truck", "BICYCLE": "bicycle",
+    "REGULAR_VEHICLE": "car", "PEDESTRIAN": "pedestrian", "BUS": "bus", "BOX_TRUCK": "truck", "TRUCK": "truck", "BICYCLE": "object",
     "BOLLARD": "object", "CONSTRUCTION_CONE": "object", "STOP_SIGN": "object", "SIGN": "object", "LARGE_VEHICLE": "vehicle",
-    "CONSTRUCTION_BARREL": "object", "STROLLER": "object", "WHEELED_DEVICE": None, "BICYCLIST": "bicycle", "MOTORCYCLE": "motorcycle",
+    "CONSTRUCTION_BARREL": "object", "STROLLER": "object", "WHEELED_DEVICE": "object", "BICYCLIST": "bicycle", "MOTORCYCLE": "motorcycle",
     "VEHICULAR_TRAILER": "trailer", "ARTICULATED_BUS": "bus", "SCHOOL_BUS": "bus", "WHEELCHAIR": "object",
 }  # fmt: skip
 

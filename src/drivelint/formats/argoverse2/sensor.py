@@ -24,9 +24,9 @@ from drivelint.errors import TraceError
 from drivelint.formats.argoverse2 import cells, vehicle
 from drivelint.formats.argoverse2.categories import EGO_CATEGORY, RIDDEN, RIDERS, SENSOR_CLASSES, class_codes
 from drivelint.formats.argoverse2.cities import frame_by_file_name
-from drivelint.formats.argoverse2.riders import join_riders
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.folders import folder_kind
+from drivelint.formats.riders import join_riders
 from drivelint.formats.tables import ipc
 from drivelint.phrases import listed
 

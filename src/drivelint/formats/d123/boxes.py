@@ -12,6 +12,7 @@ from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, S
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, lengths, modality, vectors
+from drivelint.formats.riders import join_riders
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -75,6 +76,10 @@ def box_states(
     numbers["yaw_rad"] = Poses(box[:, :3], turn).yaw
     numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
     numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
+    riders, ridden = (
+        np.isin(integers(flat["label"]), numbers_of) for numbers_of in facts.rider_labels(_enumeration(boxes))
+    )
+    inside, on_something = join_riders(t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers)
     states = States(
         [str(token) for token in tracks.dictionary.to_pylist()],
         integers(tracks.indices).astype(np.int32),
@@ -83,12 +88,21 @@ def box_states(
         {"actor_class": labels},
         np.asarray(odd, np.bool_),
     )
+    if on_something:
+        who = listed([states.ids[i] for i in on_something])
+        notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
     if not about.box_velocities_global:
         _forget_velocities(states, np.ones(len(states), np.bool_))
         notes.append("velocities of boxes are not read: this data set's are along the boxes' own axes in 123D")
     else:
         findings += _without_untold_velocities(states, frame)
-    return states, findings, notes
+    return (states.take(~inside) if inside.any() else states), findings, notes
+
+
+def _enumeration(boxes: Modality) -> str:
+    """Return the enumeration of the package that the labels are numbers of; '': none that is known."""
+    module, _, name = str(boxes.metadata.get("box_detection_label_class", "")).rpartition(".")
+    return name if not module or module.startswith("py123d.") else ""
 
 
 def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
@@ -101,9 +115,8 @@ def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
 def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
     """Return the class of each box, -1: not known; findings; and which boxes are the ego's own."""
     qualified = str(boxes.metadata.get("box_detection_label_class", ""))
-    module, _, enumeration = qualified.rpartition(".")
-    of_package = not module or module.startswith("py123d.")
-    codes, none_own = facts.label_classes(enumeration) if of_package else None, np.zeros(len(numbers), np.bool_)
+    enumeration = _enumeration(boxes)
+    codes, none_own = facts.label_classes(enumeration), np.zeros(len(numbers), np.bool_)
     if codes is None:
         message = f"what {len(numbers)} boxes are is not known: their labels are numbers of {qualified or 'an enumeration without a name'}"
         finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []

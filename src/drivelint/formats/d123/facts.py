@@ -76,6 +76,13 @@ def dataset(name: str) -> Dataset:
     return DATASETS.get(name, UNKNOWN_DATASET)
 
 
+def rider_labels(enumeration: str) -> tuple[list[int], list[int]]:
+    """Return the numbers of the labels of riders and of what they ride, where these have boxes of their own."""
+    both = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
+    riders, ridden = ([LABELS[enumeration][name][0] for name in both[role]] for role in ("riders", "ridden"))
+    return riders, ridden
+
+
 def label_classes(enumeration: str) -> Codes | None:
     """Return number of the label -> code of `ACTOR_CLASSES`, -1: may be anything, -2: no label; None: no such enumeration."""
     labels = LABELS.get(enumeration)

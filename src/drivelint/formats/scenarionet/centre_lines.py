@@ -91,9 +91,16 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
         raise PickleError("its centre line has fewer than two points")
     own = stations(line)
     whole = shapely.LineString(line[:, :2])
-    corners = np.unique(shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M)))))
+    corners = np.unique(
+        shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
+    )
     pieces = np.maximum(1, np.ceil(np.diff(corners) / _SPACING_M)).astype(int)
-    s = np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)), own[-1:]])
+    s = np.concatenate(
+        [
+            *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
+            own[-1:],
+        ]
+    )
     at = np.column_stack([np.interp(s, own, column) for column in line.T])
     way = np.diff(at[:, :2], axis=0)
     way /= np.hypot(*way.T)[:, None]
@@ -233,6 +240,8 @@ def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
             if at.any():
                 lane.half[:, side] = np.interp(lane.s, lane.s[at], lane.half[at, side])
         lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
-        if "polygon" not in lane.feature:  # whatever lies between a lane and a far edge, such as parked cars, is no part of it
+        if (
+            "polygon" not in lane.feature
+        ):  # whatever lies between a lane and a far edge, such as parked cars, is no part of it
             lane.half = np.minimum(lane.half, lane.half[:, ::-1] + _ASIDE_M)
     return {name: share for name, share in unknown.items() if share > 0.0}

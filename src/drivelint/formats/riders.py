@@ -1,4 +1,4 @@
-"""Riders and what they ride, which Argoverse annotates with a box each: together they are one road user.
+"""Riders and what they ride, which a data set may annotate with a box each: together they are one road user.
 
 Two boxes in one place would be two bodies that touch all the time, and two vehicles to be passed. The rider gets the box around both;
 what is ridden has no state of its own while somebody is on it.
