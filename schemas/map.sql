@@ -6,7 +6,7 @@ CREATE TABLE environment (
     environment_id VARCHAR NOT NULL,  -- <map stem>-<first 8 hex of sha256><offset, if any><@lht or @rht, with ? if only by default, with ~ if the lanes run the other way than its rule says>
     name VARCHAR NOT NULL,            -- file name of the map, or the log it was embedded in
     sha256 VARCHAR NOT NULL,          -- hash of the map's bytes
-    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi
+    format VARCHAR NOT NULL,          -- opendrive, lanelet2, commonroad, sumo, osi, scenarionet
     offset_x_m DOUBLE NOT NULL,       -- added to the map's coordinates
     offset_y_m DOUBLE NOT NULL,       -- added to the map's coordinates
     handedness VARCHAR NOT NULL,      -- lht or rht: the side of the road that is driven on

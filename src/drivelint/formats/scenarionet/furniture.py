@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import numbers, points
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
 from drivelint.road.tables import crossing_row
 
@@ -114,7 +114,9 @@ def _crossings(
         area = shapely.Polygon(outline + offset).buffer(0.0)
         crossed = tree.query(area, predicate="intersects")
         if not len(crossed):
-            quality.add("object_without_lane", "info", None, f"crossing {name} lies across no lane that vehicles drive on")
+            quality.add(
+                "object_without_lane", "info", None, f"crossing {name} lies across no lane that vehicles drive on"
+            )
         for i in crossed:
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))

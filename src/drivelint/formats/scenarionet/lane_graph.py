@@ -74,7 +74,9 @@ def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
     Lanes that fork or join share ground, and are none.
     """
     ordered = [lane for lane in lanes.values() if np.isfinite(lane.half).all()]
-    tree = shapely.STRtree([shapely.Polygon(np.vstack([*lane.bounds[:1], lane.bounds[1][::-1]])).buffer(0.0) for lane in ordered])
+    tree = shapely.STRtree(
+        [shapely.Polygon(np.vstack([*lane.bounds[:1], lane.bounds[1][::-1]])).buffer(0.0) for lane in ordered]
+    )
     found = {
         lane.lane_id: Neighbours(*_beside(lane, ordered, tree, "left"), *_beside(lane, ordered, tree, "right"))
         for lane in ordered
@@ -82,7 +84,9 @@ def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
     return {name: _mutual(name, found) for name in found}
 
 
-def _beside(lane: CentreLine, lanes: Sequence[CentreLine], tree: shapely.STRtree, side: str) -> tuple[str | None, bool | None]:
+def _beside(
+    lane: CentreLine, lanes: Sequence[CentreLine], tree: shapely.STRtree, side: str
+) -> tuple[str | None, bool | None]:
     """Return the lane on most of the places just beyond a bound, and whether it runs the other way."""
     sign, bound = (1.0, lane.bounds[0]) if side == "left" else (-1.0, lane.bounds[1])
     at = _SHARES * lane.s[-1]

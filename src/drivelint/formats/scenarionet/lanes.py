@@ -16,8 +16,8 @@ from drivelint.formats.scenarionet.centre_lines import (
 )
 from drivelint.formats.scenarionet.furniture import furniture
 from drivelint.formats.scenarionet.lane_graph import find_neighbours, link
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import numbers, read_scenario
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.road.boundary_lanes import BoundedLane, Mark, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.overlap import mark_junctions
@@ -107,7 +107,9 @@ def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
         begin, end = (float(lane.s[at][k] / lane.s[-1]) for k in (0, -1))
         if end > begin:
             word = str(scenario.features.get(name, {}).get("type"))
-            marking = next((marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None)
+            marking = next(
+                (marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None
+            )
             marks.append(Mark(("left", "right")[side], begin, end, marking))
     known = {mark.side for mark in marks}
     marks += [Mark(side, 0.0, 1.0, None) for side in ("left", "right") if side not in known]
@@ -137,7 +139,7 @@ def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, flo
         whole = sum(float(lane.s[-1]) for lane in centres.values())
         part = sum(share * float(centres[name].s[-1]) for name, share in of.items())
         message = (
-            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: it is taken "
-            "to be as wide as the lanes that it joins, or as on its other side"
+            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: "
+            "it is taken to be as wide as the lanes that it joins, or as on its other side"
         )
         quality.add("assumed_width", "info", None, message, len(of))

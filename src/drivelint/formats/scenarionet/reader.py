@@ -12,9 +12,9 @@ from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError
 from drivelint.formats.scenarionet import sources
 from drivelint.formats.scenarionet.ego_clock import timed_track
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
 from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -49,7 +49,11 @@ def read(probe: Probe) -> Recording:
 def _recording(scenario: Scenario, content: bytes) -> Recording:
     dataset, t_s = scenario.dataset, times_s(scenario.metadata)
     tracks = read_tracks(scenario, t_s, len(content))
-    findings = [*sources.turn_boxes(tracks, dataset), *sources.drop_differences(tracks), *sources.drop_false_stops(tracks)]
+    findings = [
+        *sources.turn_boxes(tracks, dataset),
+        *sources.drop_differences(tracks),
+        *sources.drop_false_stops(tracks),
+    ]
     even = sources.interpolated(tracks, dataset)
     if even.any():
         findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
@@ -98,7 +102,9 @@ def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[Qua
     steps = f"{lost} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
     parts = [steps] if lost else []
     if np.isfinite(shift_s):
-        parts.append(f"its last positions, which are of the annotated frames, tell that it begins {round(shift_s, 2) + 0.0:.2f} s after these")
+        parts.append(
+            f"its last positions, which are of the annotated frames, tell that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
+        )
     message = (
         f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
         "which are known to about 0.1 s against the others'"
@@ -118,7 +124,12 @@ def _states(tracks: Tracks) -> States:
     odd = ~np.isfinite(place[:, :2]).all(axis=1) | ~np.isfinite(heading) | np.isinf(velocity).any(axis=1)
     numbers = {name: np.where(np.isinf(values), np.nan, values) for name, values in numbers.items()}
     return States(
-        tracks.ids, actor.astype(np.int32), _nanoseconds(tracks.t_s)[step], numbers, {"actor_class": tracks.kinds[actor]}, odd
+        tracks.ids,
+        actor.astype(np.int32),
+        _nanoseconds(tracks.t_s)[step],
+        numbers,
+        {"actor_class": tracks.kinds[actor]},
+        odd,
     )
 
 

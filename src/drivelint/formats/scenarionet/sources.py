@@ -94,7 +94,8 @@ def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
         return np.zeros(len(tracks.ids), np.bool_)
     off = np.abs(np.diff(tracks.steps_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
     between = np.arange(1, len(tracks.t_s) - 1) % every != 0
-    return ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+    even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+    return even
 
 
 def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:
@@ -118,7 +119,9 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     before = np.minimum(step // every, len(key) - 1)
     after = np.minimum(before + 1, len(key) - 1)
     share = ((step % every) / every)[:, None]
-    between = np.where(share > 0.0, velocity[:, before] * (1.0 - share) + velocity[:, after] * share, velocity[:, before])
+    between = np.where(
+        share > 0.0, velocity[:, before] * (1.0 - share) + velocity[:, after] * share, velocity[:, before]
+    )
     between[~tracks.present[rows]] = np.nan
     tracks.velocity[rows] = between
     moved = [tracks.ids[i] for i in np.flatnonzero(rows & (_spread_m(tracks) > _MOVED_M))]
@@ -162,7 +165,9 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
             why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]
         told.setdefault(why, []).append(tracks.ids[i])
-    return [QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids) for why, ids in told.items()]
+    return [
+        QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids) for why, ids in told.items()
+    ]
 
 
 def _moves_ahead(tracks: Tracks, i: int) -> bool:
