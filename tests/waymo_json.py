@@ -76,7 +76,11 @@ def _track(name: str, each: dict[str, Any], *, degrees: bool) -> dict[str, Any]:
         "valid": valid,
         **{size: np.full(len(valid), float(each.get(size, np.nan))) for size in ("length", "width", "height")},
     }
-    return {"type": _TYPES.get(each["type"], "OTHER"), "state": state, "metadata": {"object_id": name, "type": each["type"]}}
+    return {
+        "type": _TYPES.get(each["type"], "OTHER"),
+        "state": state,
+        "metadata": {"object_id": name, "type": each["type"]},
+    }
 
 
 def _feature(road: dict[str, Any]) -> dict[str, Any]:
@@ -97,7 +101,13 @@ def _lights(states: dict[str, Any], features: dict[str, Any], steps: int) -> dic
         words: list[str | None] = [None] * steps
         for step, word in zip(light["time_index"], light["state"], strict=True):
             words[step] = f"LANE_STATE_{word.upper()}"
-        lights[lane] = {"type": "TRAFFIC_LIGHT", "lane": lane, "stop_point": stop, "state": {"object_state": words}, "metadata": {}}
+        lights[lane] = {
+            "type": "TRAFFIC_LIGHT",
+            "lane": lane,
+            "stop_point": stop,
+            "state": {"object_state": words},
+            "metadata": {},
+        }
     return lights
 
 
@@ -116,7 +126,7 @@ def main() -> None:
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     for file in arguments.files:
-        print(write(file, arguments.out))  # noqa: T201
+        print(write(file, arguments.out))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,9 @@ import numpy as np
 STEP_S = 0.1
 
 
-def track(place: Any, heading: Any = 0.0, *, kind: str = "VEHICLE", own: str | None = None, **state: Any) -> dict[str, Any]:
+def track(
+    place: Any, heading: Any = 0.0, *, kind: str = "VEHICLE", own: str | None = None, **state: Any
+) -> dict[str, Any]:
     """Return a track at places (T, 2): it has velocities by central differences, sizes of a car, and is valid all the time."""
     place = np.asarray(place, np.float64)
     n = len(place)
@@ -53,7 +55,13 @@ def boundary(name: str, last: int, first: int = 0, kind: str = "UNKNOWN") -> dic
 def light(states: list[str | None], lane_id: Any, stop_point: Any) -> dict[str, Any]:
     """Return a traffic light."""
     place = np.asarray(stop_point, np.float32)
-    return {"type": "TRAFFIC_LIGHT", "state": {"object_state": states}, "lane": lane_id, "stop_point": place, "metadata": {}}
+    return {
+        "type": "TRAFFIC_LIGHT",
+        "state": {"object_state": states},
+        "lane": lane_id,
+        "stop_point": place,
+        "metadata": {},
+    }
 
 
 def scenario(

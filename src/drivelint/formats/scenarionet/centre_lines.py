@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import points
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.road.boundary_lanes import FARTHEST_M, stations
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def _of_references(lane: CentreLine, lines: Mapping[str, shapely.LineString]) ->
     for side, at, name in boundary_spans(lane):
         line = lines.get(name)
         if line is not None:
-            _nearer(lane, side, at, line, _REACH_M, 0.0)
+            _nearer(lane, side, at, line, least_m=0.0)
 
 
 def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
@@ -188,12 +188,12 @@ def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
     for side in (0, 1):
         rays = _rays(lane, side, _REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
-            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], _REACH_M, _LEAST_M)
+            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_M)
 
 
-def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, reach_m: float, least_m: float) -> None:
+def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:
     """Take the distance to a line where it is the nearest so far, for the points `at` which it may lie."""
-    crossed = shapely.intersection(_rays(lane, side, reach_m, lane.line), line)
+    crossed = shapely.intersection(_rays(lane, side, _REACH_M, lane.line), line)
     far = np.asarray(shapely.distance(shapely.points(lane.line), crossed), np.float64)
     lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
 

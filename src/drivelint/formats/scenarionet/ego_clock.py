@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from drivelint.arrays import Floats
+    from drivelint.arrays import Floats, Mask
 
 _LEAST_MPS: Final = 2.0
 """Below it, a lost message moves the ego by less than 4 cm, and noise of 2 cm hides it."""
@@ -77,7 +77,7 @@ def _usual(speed: Floats) -> Floats:
     return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1), axis=1), np.float64)
 
 
-def _seam(place: Floats, usual_m: Floats, moving: Floats) -> int:
+def _seam(place: Floats, usual_m: Floats, moving: Mask) -> int:
     """Return the first step (1 ... T - 1) that is not of the stream; T: all are."""
     n = len(place)
     step = np.diff(place, axis=0)

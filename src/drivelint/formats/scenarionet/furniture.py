@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import numbers, points
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
 from drivelint.road.tables import crossing_row
 

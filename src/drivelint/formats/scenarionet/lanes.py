@@ -16,8 +16,8 @@ from drivelint.formats.scenarionet.centre_lines import (
 )
 from drivelint.formats.scenarionet.furniture import furniture
 from drivelint.formats.scenarionet.lane_graph import find_neighbours, link
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import numbers, read_scenario
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.road.boundary_lanes import BoundedLane, Mark, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.overlapping_lanes import mark_junctions
@@ -139,7 +139,7 @@ def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, flo
         whole = sum(float(lane.s[-1]) for lane in centres.values())
         part = sum(share * float(centres[name].s[-1]) for name, share in of.items())
         message = (
-            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: it is taken "
-            "to be as wide as the lanes that it joins, or as on its other side"
+            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: "
+            "it is taken to be as wide as the lanes that it joins, or as on its other side"
         )
         quality.add("assumed_width", "info", None, message, len(of))

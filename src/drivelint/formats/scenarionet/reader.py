@@ -12,9 +12,9 @@ from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError
 from drivelint.formats.scenarionet import sources
 from drivelint.formats.scenarionet.ego_clock import timed_track
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
 from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
-from drivelint.formats.scenarionet.unpickle import PickleError
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:

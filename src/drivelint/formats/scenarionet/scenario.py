@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.formats.scenarionet.unpickle import PickleError, load
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
+from drivelint.formats.scenarionet.unpickle import load
 from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def numbers(value: Any, where: str) -> Floats:
         plain = [each for each in value if isinstance(each, (int, float))]
         value = np.array(plain, np.float64) if len(plain) == len(value) else points(value, where)
     if isinstance(value, (int, float)):
-        return np.float64(value).reshape(())
+        return np.array(value, np.float64)
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
         return value.astype(np.float64)
     raise PickleError(f"{where} is no array of numbers: write the scenario again")

@@ -94,7 +94,8 @@ def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
         return np.zeros(len(tracks.ids), np.bool_)
     off = np.abs(np.diff(tracks.steps_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
     between = np.arange(1, len(tracks.t_s) - 1) % every != 0
-    return ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+    even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+    return even
 
 
 def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import CLASSES, numbers
-from drivelint.formats.scenarionet.unpickle import PickleError
 
 if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask
@@ -55,7 +55,10 @@ def read_tracks(scenario: Scenario, t_s: Floats, size_of_file: int) -> Tracks:
         ids.index(ego) if ego in scenario.tracks else None,
         t_s,
         np.zeros((n, steps), np.bool_),
-        *(np.full(shape, np.nan) for shape in ((n, steps, 3), (n, steps), (n, steps, 2), (n, steps, 3))),
+        place=np.full((n, steps, 3), np.nan),
+        heading=np.full((n, steps), np.nan),
+        velocity=np.full((n, steps, 2), np.nan),
+        size=np.full((n, steps, 3), np.nan),
         kinds=np.array([_kind(track) for track in scenario.tracks.values()], np.int8),
     )
     for i, (name, track) in enumerate(scenario.tracks.items()):
