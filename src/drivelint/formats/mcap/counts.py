@@ -64,10 +64,11 @@ class MessageCounts:
         agrees = not counted or sum(counted.values()) == index.message_count
         if is_damaged and not agrees:
             return None
+        names = {number: f"topic {channel.topic!r}" for number, channel in channels.items()}
         told = [
-            f"{n} messages of topic {channels[number].topic!r}, the file has {self.of_channels[number]}"
+            f"{n} messages of {names.get(number, f'channel {number}')}, the file has {self.of_channels[number]}"
             for number, n in sorted(counted.items())
-            if number in channels and number not in self.unused and n != self.of_channels[number]
+            if number not in self.unused and n != self.of_channels[number]
         ]
         if not told and not (counted and agrees) and index.message_count != total:
             told = [f"{index.message_count} messages, the file has {total}"]
