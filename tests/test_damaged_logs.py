@@ -198,4 +198,4 @@ def fill(con: duckdb.DuckDBPyConnection) -> None:
     }
     for name, content in rows.items():
         empty = dict.fromkeys(store.arrow_schemas()[name].names)
-        store.insert(con, name, store.owned_table(name, "d", [empty | row for row in content]))
+        store.insert(con, name, store.owned_table(name, "d", [empty | row for row in content], "test"))

@@ -67,7 +67,7 @@ def test_what_says_the_limit_or_that_there_is_none() -> None:
         way.environment,
         tables={
             **way.environment.tables,
-            "speed_limit": owned_table("speed_limit", way.environment.environment_id, limits),
+            "speed_limit": owned_table("speed_limit", way.environment.environment_id, limits, "test"),
         },
     )
     t = times(7.0)

@@ -50,7 +50,8 @@ def checks(trace: Trace) -> set[str]:
 
 
 def actor(trace: Trace, name: str) -> dict[str, Any]:
-    (row,) = (row for row in trace.tables["actor"].to_pylist() if row["actor_id"] == name)
+    rows: list[dict[str, Any]] = trace.tables["actor"].to_pylist()
+    (row,) = (row for row in rows if row["actor_id"] == name)
     return row
 
 

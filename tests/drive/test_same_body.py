@@ -12,7 +12,7 @@ from tests.drive.test_implausible import doubts, drive, track
 if TYPE_CHECKING:
     from pathlib import Path
 
-TRUCK = {"actor_class": "truck", "length_m": 12.0, "width_m": 2.5}
+TRUCK: dict[str, Any] = {"actor_class": "truck", "length_m": 12.0, "width_m": 2.5}
 
 
 def moved(columns: dict[str, Any], x: float = 0.0, y: float = 0.0, rows: slice = slice(None)) -> dict[str, Any]:

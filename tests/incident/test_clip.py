@@ -142,8 +142,8 @@ def test_what_holds_at_the_start_stays() -> None:
         "state": ["green", "red", "green", "red"],
     }
     events = {"t_ns": [0, 10**8], "actor_id": ["ego"] * 2, "event": ["engaged"] * 2, "value": ["off", "on"]}
-    trace.tables["signal_state"] = owned_table("signal_state", trace.drive_id, signals)
-    trace.tables["declared_event"] = owned_table("declared_event", trace.drive_id, events)
+    trace.tables["signal_state"] = owned_table("signal_state", trace.drive_id, signals, "test")
+    trace.tables["declared_event"] = owned_table("declared_event", trace.drive_id, events, "test")
     log = trace.tables["data_log"]
     at = log.schema.get_field_index("utc_start_ns")
     trace.tables["data_log"] = log.set_column(at, log.schema.field(at), pa.array([10**18], pa.int64()))
