@@ -12,6 +12,9 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
+from drivelint.formats.map_registry import load_map, read_source
+from drivelint.road.map_reader import MapTables
+
 LABELS = "py123d.parser.registry.AV2SensorBoxDetectionLabel"
 CAR = 18
 LAYERS = {"lane": 0, "group": 1, "intersection": 2, "crosswalk": 3, "walkway": 4, "stop_zone": 7, "road_line": 9}
@@ -249,3 +252,8 @@ def times(n: int, period_us: int = 100_000, start_us: int = 1_000_000) -> list[i
 def driven(n: int, speed: float = 10.0, **fields: Any) -> list[Ego]:
     """Return an ego that drives along x."""
     return [Ego(t, speed * k * 0.1, 0.0, **fields) for k, t in enumerate(times(n))]
+
+
+def load(tmp_path: Path, objects: list[Object], *, options: dict[str, Any] | None = None, **header: Any) -> MapTables:
+    """Return the tables of a map of these objects."""
+    return load_map(read_source(write_map(tmp_path / "map.arrow", objects, **header)), **(options or {}))

@@ -21,13 +21,10 @@ from tests.formats.d123.files import (
     group,
     intersection,
     lane,
+    load,
     straight,
     write_map,
 )
-
-
-def load(tmp_path: Path, objects: list[Object], *, options: dict[str, Any] | None = None, **header: Any) -> MapTables:
-    return load_map(read_source(write_map(tmp_path / "map.arrow", objects, **header)), **(options or {}))
 
 
 def lanelets(environment: MapTables) -> dict[str, dict[str, Any]]:

@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.formats.d123.files import Object, road_line, straight
-from tests.formats.d123.test_lanes import load
+from tests.formats.d123.files import Object, load, road_line, straight
 
 DASH_SOLID, DASHED, DOUBLE_SOLID, DOUBLE_DASH_YELLOW, SOLID, SOLID_DASH, UNKNOWN = 3, 4, 6, 8, 11, 12, 1
 Marks = list[tuple[float, float, str | None]]
