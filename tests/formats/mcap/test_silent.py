@@ -38,7 +38,7 @@ def write(path: Path, schema: str, *topics: str, chunks: bool = True, other: boo
             note = writer.register_channel("/note", "json", text)
             for t_ns in (0, 1):
                 writer.add_message(note, t_ns, b"{}", t_ns)
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 

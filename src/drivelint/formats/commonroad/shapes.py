@@ -114,7 +114,7 @@ def box_offsets(shape: ObstacleShape, yaw: Floats) -> Floats:
     if shape.centre_m == (0.0, 0.0):
         return offset
     along_axes = np.tile(np.array(shape.centre_m)[:, None], (1, n))
-    along_obstacle = np.stack(turned(*along_axes, yaw))
+    along_obstacle = np.stack(turned(along_axes[0], along_axes[1], yaw))
     agree = np.hypot(*(along_obstacle - along_axes)) <= READINGS_AGREE_M
     if shape.ahead_m != 0.0:
         agree[:] = False  # said twice: whether the one includes the other is not known
