@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pyarrow.parquet as pq
@@ -16,8 +17,9 @@ from tests.formats.opendrive.xodr import geometry, lane, road, section, xodr
 from tests.shared_data import ROOT, shared
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
+
+Command = Callable[..., str]
 
 COLUMNS = {
     "size": ("length", "width"),
@@ -63,7 +65,7 @@ class Log(NamedTuple):
         return str(self.table), "--mapping", str(self.mapping), "--map", str(self.road), "--handedness", "rht"
 
 
-def written(tmp_path: Path, absent: str, who: str) -> Log:
+def write_log(tmp_path: Path, absent: str, who: str) -> Log:
     """Write a log of 4 s in which some columns are empty: for all, for the ego or for all others."""
     lines = [",".join(state(0, "ego"))]
     for k in range(40):
@@ -90,9 +92,6 @@ def written(tmp_path: Path, absent: str, who: str) -> Log:
     return Log(table, mapping, drawn)
 
 
-Command = Callable[..., str] if TYPE_CHECKING else Any
-
-
 @pytest.fixture
 def command(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Command:
     """Return a function that runs a command in this process, wants it to do its work, and returns what it prints."""
@@ -112,8 +111,8 @@ def command(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("who", ["all", "ego", "others"])
 @pytest.mark.parametrize("absent", COLUMNS)
-def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command: Command) -> None:
-    log, out = written(tmp_path, absent, who), tmp_path / "out"
+def test_every_output_is_write_log(absent: str, who: str, tmp_path: Path, command: Command) -> None:
+    log, out = write_log(tmp_path, absent, who), tmp_path / "out"
     command(
         "check",
         *log.options,
@@ -151,7 +150,7 @@ def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command:
 @pytest.mark.parametrize("absent", COLUMNS)
 @pytest.mark.parametrize("name", ["audit", "watch"])
 def test_it_is_audited_and_watched(name: str, absent: str, who: str, tmp_path: Path) -> None:
-    log = written(tmp_path, absent, who)
+    log = write_log(tmp_path, absent, who)
     more = ["--out", str(tmp_path / "fleet")] if name == "audit" else ["--replay", "0", "--every", "2"]
     done = subprocess.run(
         [sys.executable, "-m", "drivelint", name, *log.options, *more],

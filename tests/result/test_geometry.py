@@ -6,13 +6,14 @@ import math
 from typing import TYPE_CHECKING
 
 import geopandas
+import pyarrow as pa
 import pytest
 import shapely
 from shapely import affinity
 
 from drivelint.report.outputs import write
 from drivelint.result.files import parquet_bytes
-from drivelint.result.geometry import SHAPES
+from drivelint.result.geometry import SHAPES, with_geometry
 from drivelint.result.load import load_result
 from drivelint.result.schemas import TABLE_OF_FILE, empty_table
 from drivelint.sql import store
@@ -104,3 +105,26 @@ def test_tracks_are_those_of_egos_and_of_the_others_of_findings(result: Result, 
     for drive, rows in tracks[tracks.is_ego].groupby("drive_id"):
         assert rows.geom.length.sum() == pytest.approx(1000 * km[drive], rel=0.01)
     assert all(math.isfinite(x) for xs in tracks["x_m"] for x in xs)
+
+
+def blank(kind: pa.DataType, *, lists: int) -> object:
+    """Return a value of a type that says nothing: unknown numbers, in lists of this length."""
+    if pa.types.is_list(kind):
+        return [blank(kind.value_type, lists=lists) for _ in range(lists)]
+    if pa.types.is_struct(kind):
+        return {field.name: blank(field.type, lists=lists) for field in kind}
+    return None
+
+
+@pytest.mark.parametrize("lists", [0, 1, 4])
+@pytest.mark.parametrize("table", SHAPES)
+def test_rows_without_a_known_coordinate_stay_and_have_no_geometry(table: str, lists: int) -> None:
+    """Of nothing known at all, shapely makes no geometries rather than one for each row that has none."""
+    schema = empty_table(table).schema
+    row = {field.name: blank(field.type, lists=lists) for field in schema}
+    rows = pa.table({field.name: pa.array([row[field.name]] * 3, field.type) for field in schema})
+    made = with_geometry(rows, table)
+    assert made.num_rows == 3
+    known = [shapely.from_wkb(wkb) for wkb in made["geom"].to_pylist() if wkb is not None]
+    assert all(each.is_empty for each in known)
+    assert made.drop_columns("geom").to_pylist() == rows.to_pylist()

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     Geometries = NDArray[np.object_]
 
 COLUMN: Final = "geom"
+_RING_POINTS: Final = 4  # the last is the first again
 
 
 class Shape(NamedTuple):
@@ -69,13 +70,14 @@ def _lanes(rows: pa.Table) -> Geometries:
     """Return the area between the bounds: along the left one, and back along the right one to where it began."""
     left, left_offsets = _coordinates(rows, "left_")
     right, right_offsets = _coordinates(rows, "right_")
-    row = np.concatenate([_row_of(left_offsets), _row_of(right_offsets), np.arange(rows.num_rows)])
-    begin = left[left_offsets[:-1]]
+    begins = np.flatnonzero(np.diff(left_offsets))
+    begin = left[left_offsets[begins]]
+    row = np.concatenate([_row_of(left_offsets), _row_of(right_offsets), begins])
     place = np.concatenate(
         [np.arange(len(left)), -np.arange(len(right)) + len(left) + len(right), np.full(len(begin), np.inf)]
     )
     order = np.lexsort((place, row))
-    offsets = left_offsets + right_offsets + np.arange(rows.num_rows + 1)
+    offsets = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=rows.num_rows))])
     return _polygons(np.concatenate([left, right, begin])[order], offsets)
 
 
@@ -138,8 +140,15 @@ def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDAr
 
 
 def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries:
-    rings = (offsets, np.arange(len(offsets)))
-    return np.asarray(shapely.from_ragged_array(shapely.GeometryType.POLYGON, xy, rings))
+    """Return a polygon for each ring that is known as a whole, else None."""
+    n_points, row = np.diff(offsets), _row_of(offsets)
+    n_unknown = np.bincount(row[~np.isfinite(xy).all(axis=1)], minlength=len(n_points))
+    whole = (n_points >= _RING_POINTS) & (n_unknown == 0)
+    polygons = np.full(len(n_points), None, object)
+    if whole.any():
+        rings = np.concatenate([[0], np.cumsum(n_points[whole])]), np.arange(whole.sum() + 1)
+        polygons[whole] = shapely.from_ragged_array(shapely.GeometryType.POLYGON, xy[whole[row]], rings)
+    return polygons
 
 
 def _row_of(offsets: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -69,7 +69,7 @@ def test_limits_of_the_lanelets_of_a_public_report() -> None:
     }  # fmt: skip
 
 
-def drawn(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTables]:
+def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTables]:
     """Return lane type, drivable and bidirectional of a lanelet with these tags, which lies beside a road; None: it is no lane."""
     drawing = Drawing()
     left, middle, right = (drawing.way([(0.0, y), (50.0, y)]) for y in (3.5, 0.0, -3.5))
@@ -109,11 +109,11 @@ def drawn(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTables]:
 )
 def test_who_may_use_a_lanelet_with_these_tags(tags: dict[str, str], expected: tuple[str, bool, bool] | None) -> None:
     """The library's answers, seen with lanelet2 1.2.3; of `one_way`, the tag for all counts first there."""
-    assert drawn(**tags)[0] == expected
+    assert lane_with_tags(**tags)[0] == expected
 
 
 def test_a_crosswalk_that_is_a_lane_is_no_crossing() -> None:
-    found, environment = drawn(subtype="crosswalk", participant__vehicle="yes")
+    found, environment = lane_with_tags(subtype="crosswalk", participant__vehicle="yes")
     assert found == ("driving", True, False)
     assert environment.tables["crossing"].num_rows == 0
 
@@ -127,7 +127,7 @@ def test_a_crosswalk_that_is_a_lane_is_no_crossing() -> None:
 )  # fmt: skip
 def test_limits_that_can_be_read(text: str, kmh: float) -> None:
     assert 3.6 * speed_mps(text) == pytest.approx(kmh)
-    row = drawn(speed_limit=text)[1].tables["speed_limit"].to_pylist()[0]
+    row = lane_with_tags(speed_limit=text)[1].tables["speed_limit"].to_pylist()[0]
     assert (3.6 * row["limit_mps"], row["source"]) == (pytest.approx(kmh), "sign")
 
 
@@ -153,14 +153,14 @@ def test_limits_that_can_be_read(text: str, kmh: float) -> None:
 )
 def test_a_limit_that_cannot_be_read_is_unknown_and_never_zero(text: str) -> None:
     assert math.isnan(speed_mps(text))
-    environment = drawn(speed_limit=text)[1]
+    environment = lane_with_tags(speed_limit=text)[1]
     rows = environment.tables["speed_limit"].to_pylist()
     assert [(row["limit_mps"], row["source"]) for row in rows] == [(None, "unread")]
     assert "invalid_speed" in environment.tables["map_quality"]["check_id"].to_pylist()
 
 
 def test_the_tag_for_vehicles_goes_before_that_for_all() -> None:
-    rows = drawn(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables["speed_limit"]
+    rows = lane_with_tags(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables["speed_limit"]
     assert [round(3.6 * row["limit_mps"], 6) for row in rows.to_pylist()] == [30.0]
 
 
@@ -188,7 +188,7 @@ def test_a_sign_whose_code_the_library_does_not_know(
 
 def test_a_lanelet_that_is_driven_both_ways_does_not_vote_against_the_map() -> None:
     """Driven against its drawn direction, the map fits; the same drive on a lanelet of one direction is against it."""
-    assert len(one_way_lanes(drawn(one_way="no")[1]).lines) == 1
+    assert len(one_way_lanes(lane_with_tags(one_way="no")[1]).lines) == 1
 
 
 @pytest.mark.parametrize(("y", "ok"), [(41.75, True), (1.75, False)])

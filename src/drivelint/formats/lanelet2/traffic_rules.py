@@ -63,8 +63,8 @@ class TrafficRules:
         if of_subtype is None:
             return None
         may_pass = [lane_type for word, lane_type in _OTHERS.items() if self._of[word].canPass(lanelet)]
-        told = any(key.startswith("participant:") for key in lanelet.attributes.keys())  # noqa: SIM118 - the library's map
-        if of_subtype in {"driving", "bus", "exit"} or (told and may_pass):
+        has_participants = any(key.startswith("participant:") for key in lanelet.attributes.keys())  # noqa: SIM118 - the library's map
+        if of_subtype in {"driving", "bus", "exit"} or (has_participants and may_pass):
             return Access(may_pass[0] if may_pass else "restricted", False, False)
         return Access(of_subtype, False, False)
 
