@@ -51,7 +51,7 @@ CREATE TABLE rule (
     unit VARCHAR,                     -- of observed, required and margin
     observes VARCHAR,                 -- what observed is, as a noun phrase; NULL: nothing is measured, or the title says it
     near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
-    tags VARCHAR[] NOT NULL,          -- what reports know it by: contact, danger_space
+    tags VARCHAR[] NOT NULL,          -- [rule_tag] what reports know it by
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
     profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none
     params STRUCT("name" VARCHAR, "value" VARCHAR, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used, their values as text

@@ -57,6 +57,7 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
         ({}, {}, "[applies]\nroad_type = ['TownLocal']", "did you mean 'townLocal'"),
         ({}, {}, "[applies]\nnation = ['uk']", "'uk' is no country code: use 'gb'"),
         ({}, {}, "[applies]\nnation = ['gb-eng', 'gb-nir']", "'gb-nir' is no nation"),
+        ({"tags": '["contcat"]'}, {}, "", r":\d+: tags: 'contcat' is no rule tag; did you mean 'contact'\?"),
         ({"law": '["uk"]'}, {}, "", "law: 'uk' is no country code: use 'gb'"),
         ({"requires": '["map", "indikator"]'}, {}, "", "requires: 'indikator' is no signal; did you mean 'indicator'"),
         (
@@ -127,7 +128,12 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
             "",
             "reads reference or reference_step returns ref_id",
         ),
-        ({}, {"condition": SPEED.replace("ego_state", "'/etc/passwd'")}, "", "there is no table '/etc/passwd'"),
+        (
+            {},
+            {"condition": SPEED.replace("ego_state", "'/etc/passwd'")},
+            "",
+            "there is no table '/etc/passwd' for rules; ",
+        ),
         (
             {},
             {"condition": SPEED.replace("ego_state", "read_csv('x.csv')")},
@@ -140,7 +146,12 @@ def test_a_rule_is_its_file(tmp_path: Path) -> None:
             "",
             r"table function query\(\) is not allowed",
         ),
-        ({}, {"condition": SPEED.replace("ego_state", "ego_stat")}, "", "there is no table 'ego_stat'"),
+        (
+            {},
+            {"condition": SPEED.replace("ego_state", "ego_stat")},
+            "",
+            r"there is no table 'ego_stat' for rules; did you mean 'ego_state'\?",
+        ),
         ({}, {"condition": SPEED.replace("1 AS", "random() AS")}, "", r"function random\(\) is not allowed in a rule"),
         ({}, {"condition": f"WITH pair AS (SELECT 1) {SPEED}"}, "", "rename the CTE 'pair'"),
         ({}, {"condition": f"WITH _grid AS (SELECT 1) {SPEED}"}, "", "rename the CTE '_grid'"),

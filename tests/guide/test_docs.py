@@ -18,10 +18,12 @@ from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
 from drivelint.formats.ros2.messages import MESSAGES
+from drivelint.guide import dictionary
 from drivelint.reasons.signals import REMEDIES, SIGNALS
 from drivelint.result.geometry import SHAPES
 from drivelint.result.schemas import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
+from drivelint.sql.words import vocabularies
 from tests.guide.blocks import PAGES
 from tests.shared_data import ROOT
 
@@ -95,9 +97,21 @@ def test_docs_prints_one_table(docs: Docs) -> None:
     assert "\n\n" not in out.strip()
 
 
+def test_docs_prints_one_vocabulary_and_the_dictionary_all(docs: Docs) -> None:
+    code, out, err = docs("dictionary", "lane_type")
+    assert (code, err) == (0, "")
+    assert out.startswith("[lane_type]\n  driving, entry, exit,")
+    assert out in docs("dictionary")[1]
+    page = dictionary.page()
+    for name, known in vocabularies().items():
+        assert f"\n[{name}]\n  {', '.join(known.words)}" in docs("dictionary")[1]
+        assert f"\n| `{name}` | {dictionary.escaped(', '.join(known.words))}" in page
+
+
 def test_an_unknown_table_is_told_with_the_nearest(docs: Docs) -> None:
     for words, said in (
         (("dictionary", "vehicle_ahed"), "did you mean 'vehicle_ahead'?"),
+        (("dictionary", "lane_tipe"), "did you mean 'lane_type'?"),
         (("dictionary", "xyz"), "drivelint docs dictionary prints all"),
         (("maps", "lead"), "drivelint docs dictionary lead"),
         (("dictionry",), "did you mean 'dictionary'?"),

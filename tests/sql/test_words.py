@@ -32,7 +32,7 @@ TEXTS = {
     # codes with arguments, told in sentences
     *("reason", "unplaced_reason", "ov_reason", "reason_code", "cause_code", "cause_args", "assumes"),
     # of results only: no rule reads them
-    *("status", "subtype", "derivation", "legal", "sense", "tags", "requires", "profiles", "conditions", "lanelets", "finding_ids"),
+    *("status", "subtype", "derivation", "legal", "sense", "requires", "profiles", "conditions", "lanelets", "finding_ids"),
     *("occasions", "quality", "not_judged", "recorded", "exposure", "params", "actors", "stretches", "profile"),
 }  # fmt: skip
 """Columns of texts, or with texts in them, that hold no words of a vocabulary."""
@@ -61,7 +61,7 @@ def test_every_column_of_texts_names_its_vocabulary_or_has_none() -> None:
     assert bare == []
     # what rules read has words, or texts that nobody lists
     unlisted = {column for table, column, marked in columns if not marked and table not in outputs}
-    assert unlisted.isdisjoint({"status", "tags", "profile", "legal", "sense"})
+    assert unlisted.isdisjoint({"status", "profile", "legal", "sense"})
 
 
 def test_every_vocabulary_is_that_of_a_column_or_of_a_condition() -> None:

@@ -15,6 +15,7 @@ import duckdb
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
+from drivelint.phrases import hint
 from drivelint.sql.syntax import column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
@@ -179,7 +180,9 @@ class _Found:
         if whole in ctes:
             return
         if whole not in allowed.tables():
-            self._refuse(part, f"there is no table {whole!r} for rules; they read the tables of schemas/*.sql only")
+            near = hint(whole, allowed.tables())
+            known = near if near.startswith("did") else "they read the tables of schemas/*.sql only"
+            self._refuse(part, f"there is no table {whole!r} for rules; {known}")
         self.tables.setdefault(name, self._text.at(part["query_location"]))
 
     def _cte(self, entry: Node) -> None:

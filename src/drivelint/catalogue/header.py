@@ -16,6 +16,7 @@ from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -225,6 +226,8 @@ def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
             yield f"params.{name}", f"parameter {name!r}: use lower-case letters, digits and _, a letter first"
     for key, words in (("requires", h.requires), ("pass_requires", h.pass_requires)):
         yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.problem(word)))
+    known = vocabularies()["rule_tag"]
+    yield from (("tags", f"tags: {wrong}") for word in h.tags if (wrong := known.problem(word)))
     yield from (("law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word)))
     for name, words in h.applies.restricting.items():
         problems = (conditions.value_problem(name, word) for word in words)

@@ -92,7 +92,7 @@ class WrongWord(NamedTuple):
         """What is wrong, with the nearest good word."""
         names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
         what = f"is no {names}" if names else "is never what it is compared with"
-        return f"{self.word!r} {what}; {nearest(self.word, self.against.known)}"
+        return f"{self.word!r} {what}; {nearest(self.word.strip('%'), self.against.known)}"
 
 
 def of_column(column: WordColumn) -> Type:
