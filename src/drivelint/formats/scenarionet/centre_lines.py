@@ -29,6 +29,7 @@ KINDS: Final = {
 }  # fmt: skip
 """Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
 _SPACING_M: Final = 4.0
+_LONGEST_M: Final = 10_000.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
 _INSET_M: Final = 2.0  # an outline's ends may be cut aslant: beside a lane's ends one looks this far inside
 _OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
@@ -90,6 +91,8 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     if len(line) < 2:
         raise PickleError("its centre line has fewer than two points")
     own = stations(line)
+    if own[-1] > _LONGEST_M:
+        raise PickleError(f"its centre line is {own[-1] / 1000.0:.0f} km long")
     whole = shapely.LineString(line[:, :2])
     corners = np.unique(
         shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
@@ -102,6 +105,12 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
         ]
     )
     at = np.column_stack([np.interp(s, own, column) for column in line.T])
+    apart = np.r_[
+        True, np.hypot(*np.diff(at[:, :2], axis=0).T) > 1e-3
+    ]  # of far coordinates the digits may not tell two points
+    s, at = s[apart], at[apart]
+    if len(s) < 2:
+        raise PickleError("its centre line has fewer than two points")
     way = np.diff(at[:, :2], axis=0)
     way /= np.hypot(*way.T)[:, None]
     tangent = np.vstack([way[:1], way[:-1] + way[1:], way[-1:]])
@@ -178,7 +187,7 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
             try:
                 first, last = (own_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
                 name = str(span["boundary_feature_id"])
-            except (KeyError, ValueError, TypeError, IndexError):
+            except (KeyError, ValueError, TypeError, IndexError, OverflowError):
                 continue
             yield side, (lane.s >= first - 0.3) & (lane.s <= last + 0.3), name
 

@@ -60,7 +60,7 @@ def _stop_signs(
 ) -> Rows:
     rows, lost = [], []
     for name, feature in scenario.features.items():
-        if feature.get("type") != "STOP_SIGN":
+        if str(feature.get("type")) != "STOP_SIGN":
             continue
         place = _place(feature.get("position"), offset)
         held = feature.get("lane")
@@ -102,7 +102,7 @@ def _crossings(
     tree = shapely.STRtree(lines)
     rows: Rows = []
     for name, feature in scenario.features.items():
-        if feature.get("type") != "CROSSWALK":
+        if str(feature.get("type")) != "CROSSWALK":
             continue
         try:
             outline = points(feature.get("polygon"), f"map_features[{name[:100]!r}]['polygon']")[:, :2]

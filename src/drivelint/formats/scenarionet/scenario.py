@@ -95,13 +95,16 @@ def times_s(metadata: Mapping[str, Any]) -> Floats:
 
 def numbers(value: Any, where: str) -> Floats:
     """Return numbers, one or an array of them, as an array. Errors: `PickleError` naming `where` they stand."""
-    if isinstance(value, (list, tuple)):
-        plain = [each for each in value if isinstance(each, (int, float))]
-        value = np.array(plain, np.float64) if len(plain) == len(value) else points(value, where)
-    if isinstance(value, (int, float)):
-        return np.array(value, np.float64)
-    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
-        return value.astype(np.float64)
+    try:
+        if isinstance(value, (int, float)):
+            return np.array(value, np.float64)
+        if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+            return value.astype(np.float64)
+        if isinstance(value, (list, tuple)):
+            plain = all(isinstance(each, (int, float)) for each in value)
+            return np.array(value, np.float64) if plain else points(value, where)
+    except OverflowError:
+        pass  # an integer beyond any float
     raise PickleError(f"{where} is no array of numbers: write the scenario again")
 
 
@@ -115,6 +118,6 @@ def points(value: Any, where: str) -> Floats:
     if len(widths) == 1 and (k := widths.pop()) in {1, 2, 3}:
         try:
             return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * k).reshape(-1, k)
-        except (TypeError, ValueError):
-            pass  # a text, or a list of lists
+        except (TypeError, ValueError, OverflowError):
+            pass  # a text, a list of lists, or an integer beyond any float
     raise PickleError(f"{where} is no list of points: write the scenario again")

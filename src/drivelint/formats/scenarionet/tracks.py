@@ -91,7 +91,7 @@ def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
     least = {"position": 2, "velocity": 2}.get(name, 1)
     if least == 1 and values.size == 1:
         return np.broadcast_to(values.reshape(1, 1), (steps, 1))
-    if values.ndim > 2 or len(values) != steps or values.size < steps * least:
+    if values.ndim not in {1, 2} or len(values) != steps or values.size < steps * least:
         shape = f"of the shape {values.shape}"
         raise PickleError(f"{where}[{name!r}] is {shape}, and the scenario has {steps} steps: write it again")
     return values.reshape(steps, -1)
