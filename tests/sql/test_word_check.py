@@ -149,7 +149,7 @@ def test_what_may_be_so_is_not_refused(sql: str) -> None:
         "SELECT list_transform([1, 2], lambda x, i: x = i), list_transform(turns, x -> x || 'a') FROM traffic_signal",
         "SELECT list_transform(turns, f) FROM (SELECT turns, 1 AS f FROM traffic_signal)",
         "SELECT TRY_CAST(actor_class AS INTEGER), actor_class COLLATE NOCASE = 'x', INTERVAL 1 DAY FROM pair",
-        "SELECT count(), unnest([]), unnest(NULL), list(), lag(), nullif('a') FROM pair",
+        "SELECT count(), unnest([]), unnest(NULL), list(), lag() FROM pair",
         "SELECT x = ALL(SELECT actor_class FROM pair), (1, 'a') IN ((1, 'b')) FROM pair",
         "VALUES ('a', 1), ('b', NULL)",
         "(SELECT 'a' AS s) EXCEPT (SELECT 'b') INTERSECT SELECT 'c' UNION ALL SELECT 'd'",
