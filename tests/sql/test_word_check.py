@@ -136,6 +136,45 @@ def test_what_may_be_so_is_not_refused(sql: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "sql",
+    [
+        "SELECT actor_class, count(*) FROM pair GROUP BY GROUPING SETS ((actor_class), ())",
+        "FROM range(3) t(i) SELECT i = 1",
+        "SELECT * FROM (DESCRIBE pair)",
+        "SELECT COLUMNS(c -> c LIKE 'x%') FROM pair",
+        "SELECT * EXCLUDE (p.x_m) FROM pair p",
+        "SELECT * RENAME (x_m AS y) FROM pair",
+        "SELECT s.*, s.a.b FROM (SELECT {'a': {'b': actor_class}} AS s FROM pair)",
+        "SELECT row(1, 'a'), MAP {'a': 'b'}, {'a': 1}.a, [1, 2][1:2], 'a'[1]",
+        "SELECT list_transform([1, 2], lambda x, i: x = i), list_transform(turns, x -> x || 'a') FROM traffic_signal",
+        "SELECT list_transform(turns, f) FROM (SELECT turns, 1 AS f FROM traffic_signal)",
+        "SELECT TRY_CAST(actor_class AS INTEGER), actor_class COLLATE NOCASE = 'x', INTERVAL 1 DAY FROM pair",
+        "SELECT count(), unnest([]), unnest(NULL), list(), lag() FROM pair",
+        "SELECT x = ALL(SELECT actor_class FROM pair), (1, 'a') IN ((1, 'b')) FROM pair",
+        "VALUES ('a', 1), ('b', NULL)",
+        "(SELECT 'a' AS s) EXCEPT (SELECT 'b') INTERSECT SELECT 'c' UNION ALL SELECT 'd'",
+        "WITH RECURSIVE r AS (SELECT 'a' AS s UNION SELECT s || 'a' FROM r WHERE length(s) < 9) FROM r",
+        "SELECT why('a'), why('a', {'b': 'c'}), why(), is_class(actor_class) FROM pair",
+        "SELECT 1 FROM a NATURAL JOIN b POSITIONAL JOIN c ASOF JOIN pair p ON p.t_ns >= a.t_ns",
+        "SELECT * FROM pair, LATERAL (SELECT unnest([actor_class]) AS k) WHERE k = 'car'",
+        "SELECT DISTINCT ON (actor_class) * FROM pair ORDER BY ALL LIMIT 3 OFFSET 1",
+        "SELECT actor_class.x.y, pair.actor_class, main.pair.actor_class, pair FROM pair",
+    ],
+)
+def test_any_select_can_be_looked_at(sql: str) -> None:
+    assert wrong(sql) == []
+
+
+def test_a_union_of_many_parts_and_a_long_condition_can_be_looked_at() -> None:
+    parts = " UNION ALL ".join(["SELECT actor_class AS k FROM pair"] * 60)
+    assert wrong(f"SELECT k = 'cyclist' FROM ({parts})") == wrong("SELECT actor_class = 'cyclist' FROM pair")
+    many = " OR ".join(["actor_class = 'car'"] * 900)
+    assert wrong(f"SELECT 1 FROM pair WHERE {many} OR actor_class = 'cyclist'") == wrong(
+        "SELECT actor_class = 'cyclist' FROM pair"
+    )
+
+
+@pytest.mark.parametrize(
     ("sql", "message"),
     [
         ("SELECT part = 'befor' FROM (SELECT CASE WHEN k = 0 THEN 'before' ELSE 'after' END AS part FROM step)",

@@ -16,7 +16,7 @@ from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
-from drivelint.sql.syntax import column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
+from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
 __all__ = ["ENGINE_TABLES", "Query", "check_query"]
 
@@ -227,7 +227,7 @@ def _plain(kind: object) -> str:
 def _columns(node: Node) -> tuple[str, ...] | None:
     """Names of the columns of a SELECT (of the first branch of a UNION); None where they cannot be read off."""
     while node["type"] == "SET_OPERATION_NODE":
-        node = node["left"] if "left" in node else node["children"][0]
+        node = branches(node)[0]
     if node["type"] != "SELECT_NODE":
         return None
     names = tuple("" if item["class"] == "STAR" else column_name(item) for item in node["select_list"])

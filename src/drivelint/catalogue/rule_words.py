@@ -21,7 +21,11 @@ def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place:
     `place`: section and byte of its SQL, or `params.NAME.default` and 0 -> file:line.
     Errors: `RuleError` for the first wrong word, with the nearest good one.
     """
-    for name, checked in _checked(sections).items():
+    try:
+        found = _checked(sections)
+    except RecursionError as error:
+        raise RuleError(f"{place('condition', 0)}: too deeply nested to be checked: split it into CTEs") from error
+    for name, checked in found.items():
         for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0):
             raise RuleError(f"{place(name, wrong.offset or 0)}: {wrong.message}")
     for name, param in params.items():

@@ -138,6 +138,11 @@ def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
     return node["having"] is not None or any(name in _aggregates() or name.endswith("_agg") for name in calls)
 
 
+def branches(node: Node) -> list[Node]:
+    """Return the queries of a UNION, or of another set operation."""
+    return [node["left"], node["right"]] if "left" in node else list(node["children"])
+
+
 def column_name(item: Node) -> str:
     """Return the name of a column of a SELECT, in lower case; '' where it has none."""
     return _folded(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))

@@ -8,7 +8,7 @@ out may be anything.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial, reduce
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.sql import store, syntax, word_types
@@ -128,8 +128,8 @@ class _Walker:
             case "SELECT_NODE":
                 return self._select(node, known, outer)
             case "SET_OPERATION_NODE":
-                left, right = self.query(node["left"], known, outer), self.query(node["right"], known, outer)
-                return united(left, right, by_name="BY_NAME" in node["setop_type"])
+                first, *others = (self.query(part, known, outer) for part in syntax.branches(node))
+                return reduce(partial(united, by_name="BY_NAME" in node["setop_type"]), others, first)
             case "RECURSIVE_CTE_NODE":
                 return self._recursive(node, known, outer)
         return UNKNOWN
