@@ -160,7 +160,9 @@ def test_a_limit_that_cannot_be_read_is_unknown_and_never_zero(text: str) -> Non
 
 
 def test_the_tag_for_vehicles_goes_before_that_for_all() -> None:
-    rows = lane_with_tags(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables["speed_limit"]
+    rows = lane_with_tags(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables[
+        "speed_limit"
+    ]
     assert [round(3.6 * row["limit_mps"], 6) for row in rows.to_pylist()] == [30.0]
 
 
