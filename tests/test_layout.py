@@ -65,6 +65,6 @@ def test_nothing_else_stands_at_the_top() -> None:
     if told.returncode:
         pytest.skip("this is no git checkout")
     entries = {name.partition("/")[0] for name in told.stdout.splitlines()}
-    folders = {"src", "schemas", "queries", "tests", "fixtures"}
+    folders = {"src", "schemas", "queries", "tests", "fixtures", "findings"}
     files = {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"}
     assert {name for name in entries if not name.startswith(".")} == folders | files
