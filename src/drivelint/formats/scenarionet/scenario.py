@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from drivelint.formats.scenarionet.pickle_shortcuts import Points
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.unpickle import load
 from drivelint.resources import toml_beside
@@ -103,6 +104,8 @@ def numbers(value: Any, where: str) -> Floats:
         if isinstance(value, (list, tuple)):
             plain = all(isinstance(each, (int, float)) for each in value)
             return np.array(value, np.float64) if plain else points(value, where)
+        if isinstance(value, Points):
+            return value.array
     except OverflowError:
         pass  # an integer beyond any float
     raise PickleError(f"{where} is no array of numbers: write the scenario again")
@@ -110,10 +113,15 @@ def numbers(value: Any, where: str) -> Floats:
 
 def points(value: Any, where: str) -> Floats:
     """Return points (n, k), given as an array or as a list of them. Errors: `PickleError` naming `where` they stand."""
+    if isinstance(value, Points):
+        return value.array
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf" and value.ndim == 2:
         return value.astype(np.float64)
     rows = value if isinstance(value, (list, tuple)) else ()
-    rows = [row.tolist() if isinstance(row, np.ndarray) else row for row in rows]
+    rows = [
+        row.tolist() if isinstance(row, np.ndarray) else row.as_list() if isinstance(row, Points) else row
+        for row in rows
+    ]
     widths = {len(row) if isinstance(row, (list, tuple)) else 0 for row in rows}
     if len(widths) == 1 and (k := widths.pop()) in {1, 2, 3}:
         try:
