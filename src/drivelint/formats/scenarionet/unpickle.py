@@ -255,7 +255,7 @@ class _Machine:
         return at
 
     def _extend(self, values: Any) -> None:
-        target = self.stack[-1]
+        target: Any = self.stack[-1]
         if type(target) is Points:  # a list of more points than a pickle writes at once
             rows = target.as_list()
             self.memo[target.first - 1] = self.stack[-1] = target = rows
