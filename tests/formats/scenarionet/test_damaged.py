@@ -35,10 +35,12 @@ def whole() -> dict[str, Any]:
             speed_limit_mph=30.0,
         ),
         "2": lane(
-            east + (100.0, 0.0, 0.0), entry_lanes=[1], polygon=[[99.0, -2.0], [201.0, -2.0], [201.0, 2.0], [99.0, 2.0]]
+            east + np.array([100.0, 0.0, 0.0]),
+            entry_lanes=[1],
+            polygon=[[99.0, -2.0], [201.0, -2.0], [201.0, 2.0], [99.0, 2.0]],
         ),
-        "l": line(east + (0.0, 1.8, 0.0)),
-        "r": line(east - (0.0, 1.8, 0.0), "ROAD_EDGE_BOUNDARY"),
+        "l": line(east + np.array([0.0, 1.8, 0.0])),
+        "r": line(east - np.array([0.0, 1.8, 0.0]), "ROAD_EDGE_BOUNDARY"),
         "s": {"type": "STOP_SIGN", "lane": [1], "position": np.array([90.0, -4.0, 1.0])},
         "c": {
             "type": "CROSSWALK",
@@ -82,7 +84,7 @@ def test_anything_in_any_place(path: tuple[Any, ...], dataset: str, tmp_path: Pa
     for junk in chance.sample(JUNK, 6):
         changed = put(tmp_path, with_junk(content, path, junk))
         for reader, error in (
-            (lambda file: read(file), TraceError),
+            (read, TraceError),
             (lambda file: load_map(MapSource("a.pkl", file.read_bytes())), MapError),
         ):
             try:

@@ -12,7 +12,7 @@ from drivelint.drive.trace import Trace
 from drivelint.errors import TraceError
 from drivelint.formats import expand_traces
 from tests.formats.logs import actors, log, read, states
-from tests.formats.scenarionet.scenario_file import STEP_S, light, put, scenario, straight, track
+from tests.formats.scenarionet.scenario_file import STEP_S, light, line, put, scenario, straight, track
 
 
 def checks(trace: Trace, check: str) -> list[dict[str, Any]]:
@@ -410,10 +410,26 @@ def test_a_file_that_is_no_pickle(tmp_path: Path) -> None:
         read(path)
 
 
-def test_more_tracks_than_the_file_can_hold(tmp_path: Path) -> None:
-    shared = track(straight(4000, 1.0))
-    with pytest.raises(TraceError, match="its 100 tracks of 4000 steps are more than the file can hold"):
-        read(put(tmp_path, scenario({str(i): shared for i in range(100)})))
+def test_more_than_the_file_can_hold(tmp_path: Path) -> None:
+    """A file may name the same track, light or line again and again."""
+    shared, same_light, same_line = (
+        track(straight(4000, 1.0)),
+        light(["LANE_STATE_GO"] * 4000, 1, (0, 0, 0)),
+        line([[0.0, 0.0]] * 4000),
+    )
+    for content, what in (
+        (scenario({str(i): shared for i in range(100)}), "400000 steps of tracks"),
+        (scenario({"ego": shared}, lights={str(i): same_light for i in range(100)}), "400000 states of lights"),
+        (scenario({"ego": shared}, features={str(i): same_line for i in range(100)}), "800000 points of map features"),
+    ):
+        with pytest.raises(TraceError, match=f"its {what} are more than the file can hold"):
+            read(put(tmp_path, content))
+
+
+@pytest.mark.parametrize("dataset", ["classes", "lights", "dataset", "sides", 5, None])
+def test_a_data_set_of_any_name(dataset: Any, tmp_path: Path) -> None:
+    trace = read(put(tmp_path, scenario({"ego": track(straight(21, 5.0))}, dataset=dataset)))
+    assert log(trace)["sensor_range_m"] == 50.0
 
 
 # ---- data sets of which ScenarioNet makes more than they have

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drivelint.formats.scenarionet.pickle_shortcuts import Points
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.unpickle import load
 from tests.formats.scenarionet.scenario_file import lane, scenario, straight, track
@@ -54,8 +55,8 @@ def same(told: Any, read: Any) -> bool:
         return type(read) is dict and told.keys() == read.keys() and all(same(told[key], read[key]) for key in told)
     if isinstance(told, (set, frozenset)):
         return type(read) is list and set(read) == told
-    if isinstance(told, list) and isinstance(read, np.ndarray):
-        return np.array_equal(np.array(told), read)
+    if isinstance(told, list) and isinstance(read, Points):
+        return told == read.as_list() and np.array_equal(np.array(told), read.array)
     if isinstance(told, (list, tuple)):
         return type(told) is type(read) and len(told) == len(read) and all(map(same, told, read))
     return bool(told == read) and (isinstance(told, np.generic) or type(told) is type(read))

@@ -7,7 +7,8 @@ is read operation by operation.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -17,24 +18,36 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 
-class Points(NamedTuple):
-    """A list of points that was read at once: they are tuples or lists of two or three numbers.
+@dataclass(frozen=True, slots=True)
+class Points:
+    """A list of `n` points in the file, of two or three numbers each, which is decoded when it is asked for.
 
-    `first`: the number under which the file may refer to the first of them.
+    `at`: where the first begins; `point`: how its numbers stand in it. `first`: the number under which the file may refer to it.
     """
 
-    points: Floats
+    content: bytes
+    at: int
+    n: int
+    point: np.dtype[Any]
     are_tuples: bool
     first: int
 
+    @property
+    def array(self) -> Floats:
+        """The points (n, k)."""
+        rows = np.frombuffer(self.content, self.point, self.n, self.at)
+        return np.column_stack([rows[name] for name in self.point.names or ()])
+
     def as_list(self) -> list[Any]:
         """Return the points as they stand in the file."""
-        return [tuple(row) if self.are_tuples else row for row in self.points.tolist()]
+        return [tuple(row) if self.are_tuples else row for row in self.array.tolist()]
 
     def row(self, number: int) -> Any:
         """Return the point to which the file refers by this number."""
-        found = self.points[number - self.first].tolist()
-        return tuple(found) if self.are_tuples else found
+        row = np.frombuffer(self.content, self.point, 1, self.at + (number - self.first) * self.point.itemsize)[
+            0
+        ].tolist()
+        return tuple(row) if self.are_tuples else list(row)
 
 
 def _point(first: int, size: int, k: int) -> np.dtype[Any]:
@@ -60,9 +73,7 @@ def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
     for pattern, point, are_tuples in _LISTS:
         if match := pattern.match(content, at):
             n = (match.end() - at - _BEGIN - 1) // point.itemsize
-            rows = np.frombuffer(content, point, n, at + _BEGIN)
-            points = np.column_stack([rows[name] for name in point.names or ()])
-            return Points(points, are_tuples, count + 1), match.end()
+            return Points(content, at + _BEGIN, n, point, are_tuples, count + 1), match.end()
     return None
 
 

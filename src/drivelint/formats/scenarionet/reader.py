@@ -48,7 +48,7 @@ def read(probe: Probe) -> Recording:
 
 def _recording(scenario: Scenario, content: bytes) -> Recording:
     dataset, t_s = scenario.dataset, times_s(scenario.metadata)
-    tracks = read_tracks(scenario, t_s, len(content))
+    tracks = read_tracks(scenario, t_s)
     findings = [
         *sources.turn_boxes(tracks, dataset),
         *sources.drop_differences(tracks),
@@ -139,6 +139,7 @@ def _nanoseconds(t_s: Floats) -> Times:
 
 def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
+    scenario.refuse_more(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
     seen: set[Any] = set()
     for name, light in scenario.lights.items():

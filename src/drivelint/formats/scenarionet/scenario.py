@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from drivelint.formats.scenarionet.pickle_shortcuts import Points
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.unpickle import load
 from drivelint.resources import toml_beside
@@ -49,8 +50,9 @@ class Dataset(NamedTuple):
 
 
 class Scenario(NamedTuple):
-    """The parts of a scenario; each track, light and feature is a dict."""
+    """The parts of a scenario, and the bytes of its file; each track, light and feature is a dict."""
 
+    size: int
     dataset: Dataset
     metadata: dict[str, Any]
     tracks: dict[str, dict[str, Any]]
@@ -62,14 +64,32 @@ class Scenario(NamedTuple):
         """The name of the place, such as singapore-onenorth; empty: not known."""
         return str(self.metadata.get("map", ""))
 
+    def refuse_more(self, n: int, what: str) -> None:
+        """Refuse so many values: a file that names one of them again and again would grow beyond any bound. Errors: `PickleError`."""
+        if n > self.size:
+            raise PickleError(f"its {n} {what} are more than the file can hold: write the scenario again")
+
 
 def read_scenario(content: bytes) -> Scenario:
     """Return the scenario that a pickle holds. Errors: `PickleError` where it is damaged, or holds something else."""
     found = load(content)
     parts = {name: _part(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")}
-    facts = _FACTS.get(str(parts["metadata"].get("dataset", "")).lower(), {})
+    facts = _FACTS["dataset"].get(str(parts["metadata"].get("dataset", "")).lower(), {})
     named = [_each_a_dict(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
-    return Scenario(Dataset(**facts), parts["metadata"], *named)
+    scenario = Scenario(len(content), Dataset(**facts), parts["metadata"], *named)
+    scenario.refuse_more(sum(map(_n_points, scenario.features.values())), "points of map features")
+    return scenario
+
+
+def _n_points(feature: Mapping[str, Any]) -> int:
+    """Return how many points a feature has."""
+    n = 0
+    for value in (feature.get("polyline"), feature.get("polygon")):
+        if isinstance(value, (list, tuple)):
+            n += len(value)
+        elif isinstance(value, (Points, np.ndarray)):
+            n += value.n if isinstance(value, Points) else value.size
+    return n
 
 
 def _part(found: Any, name: str) -> dict[str, Any]:
@@ -103,6 +123,8 @@ def numbers(value: Any, where: str) -> Floats:
         if isinstance(value, (list, tuple)):
             plain = all(isinstance(each, (int, float)) for each in value)
             return np.array(value, np.float64) if plain else points(value, where)
+        if isinstance(value, Points):
+            return value.array
     except OverflowError:
         pass  # an integer beyond any float
     raise PickleError(f"{where} is no array of numbers: write the scenario again")
@@ -110,10 +132,12 @@ def numbers(value: Any, where: str) -> Floats:
 
 def points(value: Any, where: str) -> Floats:
     """Return points (n, k), given as an array or as a list of them. Errors: `PickleError` naming `where` they stand."""
+    if isinstance(value, Points):
+        return value.array
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf" and value.ndim == 2:
         return value.astype(np.float64)
     rows = value if isinstance(value, (list, tuple)) else ()
-    rows = [row.tolist() if isinstance(row, np.ndarray) else row for row in rows]
+    rows = [row.tolist() if isinstance(row, np.ndarray) and row.size <= 3 else row for row in rows]
     widths = {len(row) if isinstance(row, (list, tuple)) else 0 for row in rows}
     if len(widths) == 1 and (k := widths.pop()) in {1, 2, 3}:
         try:

@@ -44,11 +44,10 @@ class Tracks:
         return steps
 
 
-def read_tracks(scenario: Scenario, t_s: Floats, size_of_file: int) -> Tracks:
+def read_tracks(scenario: Scenario, t_s: Floats) -> Tracks:
     """Return the tracks of a scenario. Errors: `PickleError` for a track whose arrays are not as long as the scenario."""
     ids, n, steps = list(scenario.tracks), len(scenario.tracks), len(t_s)
-    if n * steps > size_of_file:
-        raise PickleError(f"its {n} tracks of {steps} steps are more than the file can hold: write the scenario again")
+    scenario.refuse_more(n * steps, "steps of tracks")
     ego = str(scenario.metadata.get("sdc_id"))
     tracks = Tracks(
         ids,

@@ -12,8 +12,6 @@ from bisect import bisect_right
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-import numpy as np
-
 from drivelint.formats.scenarionet.pickle_shortcuts import Points, array_at, points_at
 from drivelint.formats.scenarionet.pickled_numpy import Array, Name, NumberType, PickleError, array_of, made, name_of
 
@@ -35,7 +33,7 @@ class _EndError(Exception):
 def load(content: bytes) -> Any:
     """Return what a pickle holds: dicts, lists (also for sets), tuples, texts, numbers, None and numpy arrays, which are read-only.
 
-    A list of points may be an array (n, k). Errors: `PickleError` with the byte and what is wrong there.
+    A list of points may be `Points`. Errors: `PickleError` with the byte and what is wrong there.
     """
     machine = _Machine(content)
     try:
@@ -193,7 +191,7 @@ class _Machine:
     def _point_of(self, number: int) -> Any:
         """Return a point of a list that was read at once."""
         k = bisect_right(self.points, number, key=lambda each: each.first) - 1
-        if k < 0 or number >= self.points[k].first + len(self.points[k].points):
+        if k < 0 or number >= self.points[k].first + self.points[k].n:
             raise IndexError
         return self.points[k].row(number)
 
@@ -234,9 +232,9 @@ class _Machine:
             return at
         points, end = found
         self.points.append(points)
-        self.stack.append(points.points)
-        self.memo[self.count] = points.points
-        self.count += 1 + len(points.points)
+        self.stack.append(points)
+        self.memo[self.count] = points
+        self.count += 1 + points.n
         return end
 
     def new_set(self, at: int) -> int:
@@ -257,19 +255,13 @@ class _Machine:
         return at
 
     def _extend(self, values: Any) -> None:
-        target = self.stack[-1]
-        if type(target) is np.ndarray:  # a list of more points than a pickle writes at once
-            target = self.stack[-1] = self._as_list(target)
+        target: Any = self.stack[-1]
+        if type(target) is Points:  # a list of more points than a pickle writes at once
+            rows = target.as_list()
+            self.memo[target.first - 1] = self.stack[-1] = target = rows
         if type(target) is not list:
             raise TypeError("values for what is no list")
         target.extend(values)
-
-    def _as_list(self, value: Any) -> list[Any]:
-        """Return the last points that were read at once as a list, also where the file refers to them."""
-        if not self.points or self.points[-1].points is not value:
-            raise TypeError("values for what is an array")
-        self.memo[self.points[-1].first - 1] = rows = self.points[-1].as_list()
-        return rows
 
     def new_tuple(self, at: int) -> int:
         self.stack.append(())
