@@ -98,6 +98,7 @@ def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTable
         ({"subtype": "bicycle_lane", "participant__pedestrian": "yes"}, ("sidewalk", False, False)),
         ({"subtype": "shared_walkway"}, ("sidewalk", False, False)),
         ({"subtype": "road_shoulder"}, ("shoulder", False, False)),
+        ({"subtype": "road_shoulder", "participant__vehicle": "yes"}, ("shoulder", False, False)),
         ({"subtype": "crosswalk"}, None),
         ({"subtype": "parking"}, None),
         ({"one_way": "no"}, ("driving", True, True)),
@@ -108,7 +109,7 @@ def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTable
     ],
 )
 def test_who_may_use_a_lanelet_with_these_tags(tags: dict[str, str], expected: tuple[str, bool, bool] | None) -> None:
-    """The library's answers, seen with lanelet2 1.2.3; of `one_way`, the tag for all counts first there."""
+    """The library's answers, seen with lanelet2 1.2.3, but for Autoware's road shoulders; of `one_way`, the tag for all counts first."""
     assert lane_with_tags(**tags)[0] == expected
 
 
@@ -160,7 +161,9 @@ def test_a_limit_that_cannot_be_read_is_unknown_and_never_zero(text: str) -> Non
 
 
 def test_the_tag_for_vehicles_goes_before_that_for_all() -> None:
-    rows = lane_with_tags(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables["speed_limit"]
+    rows = lane_with_tags(speed_limit="50", speed_limit__vehicle="30", speed_limit__bicycle="10")[1].tables[
+        "speed_limit"
+    ]
     assert [round(3.6 * row["limit_mps"], 6) for row in rows.to_pylist()] == [30.0]
 
 
