@@ -98,6 +98,7 @@ def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTable
         ({"subtype": "bicycle_lane", "participant__pedestrian": "yes"}, ("sidewalk", False, False)),
         ({"subtype": "shared_walkway"}, ("sidewalk", False, False)),
         ({"subtype": "road_shoulder"}, ("shoulder", False, False)),
+        ({"subtype": "road_shoulder", "participant__vehicle": "yes"}, ("shoulder", False, False)),
         ({"subtype": "crosswalk"}, None),
         ({"subtype": "parking"}, None),
         ({"one_way": "no"}, ("driving", True, True)),
@@ -108,7 +109,7 @@ def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTable
     ],
 )
 def test_who_may_use_a_lanelet_with_these_tags(tags: dict[str, str], expected: tuple[str, bool, bool] | None) -> None:
-    """The library's answers, seen with lanelet2 1.2.3; of `one_way`, the tag for all counts first there."""
+    """The library's answers, seen with lanelet2 1.2.3, but for Autoware's road shoulders; of `one_way`, the tag for all counts first."""
     assert lane_with_tags(**tags)[0] == expected
 
 

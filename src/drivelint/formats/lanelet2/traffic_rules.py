@@ -20,7 +20,9 @@ _SUBTYPES: Final[Mapping[str, str]] = {
     "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
     "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
 }  # fmt: skip
-"""Subtypes as our lane types, where nothing else is said; those that the library does not know are Autoware's."""
+"""Subtypes as our lane types, where nothing else is said."""
+_ROADSIDE: Final = frozenset({"road_shoulder", "pedestrian_lane"})
+"""Autoware's subtypes of lanes to stop on beside the road, which the library does not know: no tag makes them lanes of the road."""
 _DRIVERS: Final = {
     "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:motorcycle": "driving", "vehicle:bus": "bus",
     "vehicle:taxi": "taxi",
@@ -55,7 +57,10 @@ class TrafficRules:
 
     def access(self, lanelet: Any) -> Access | None:
         """Return who may use a lanelet; None for one that is no lane of a road, such as a crosswalk."""
-        of_subtype = _SUBTYPES.get(attribute(lanelet, "subtype"))
+        subtype = attribute(lanelet, "subtype")
+        of_subtype = _SUBTYPES.get(subtype)
+        if subtype in _ROADSIDE:
+            return Access(_SUBTYPES[subtype], False, False)
         for word, lane_type in _DRIVERS.items():
             if self._of[word].canPass(lanelet):
                 both_ways = not self._of[word].isOneWay(lanelet)
