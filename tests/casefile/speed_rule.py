@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from drivelint.casefile import commands as workshop
 from drivelint.catalogue import Rule
+from drivelint.errors import ExitCode
 from tests.evaluate.packs import INVARIANT, MEASURED, write
 
 LIMIT = '[params.limit]\ndefault = 13\nunit = "m/s"\nwhy = "a test"'
@@ -25,6 +27,20 @@ CASES = """
   given: {ego_state: {t_s: 0..1 by 0.1}}
   expect: unknown
 """
+
+
+class Said(list[str]):
+    """What a command printed."""
+
+    def __call__(self, line: str) -> None:
+        self.append(line)
+
+
+def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
+    """Return the exit code of `rules test` over a folder, and what it prints."""
+    said = Said()
+    code = workshop.case_test(folder, only, said)
+    return code, "\n".join(said)
 
 
 def with_cases(rule: Rule, cases: str) -> Rule:

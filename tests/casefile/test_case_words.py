@@ -10,8 +10,7 @@ from drivelint.casefile import Case, judge, read_cases
 from drivelint.casefile.scene import complete_scene, refuse_wrong_word
 from drivelint.errors import RuleError
 from drivelint.sql import store
-from tests.casefile.speed_rule import measured, with_cases
-from tests.casefile.test_workshop import said_of
+from tests.casefile.speed_rule import measured, said_of, with_cases
 from tests.evaluate.packs import HOLDS, INVARIANT, write
 
 if TYPE_CHECKING:

@@ -10,23 +10,10 @@ from drivelint.casefile import commands as workshop
 from drivelint.casefile import mutation
 from drivelint.catalogue import Rule, read_rule
 from drivelint.errors import ExitCode, RuleError, UsageError
-from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
+from tests.casefile.speed_rule import CASES, SPEED, Said, measured, said_of, with_cases
 from tests.evaluate.packs import INVARIANT, MEASURED, text
 
 KINDS = ("invariant", "execution", "precondition", "postcondition")
-
-
-class Said(list[str]):
-    """What a command printed."""
-
-    def __call__(self, line: str) -> None:
-        self.append(line)
-
-
-def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
-    said = Said()
-    code = workshop.case_test(folder, only, said)
-    return code, "\n".join(said)
 
 
 @pytest.mark.sample(1)

@@ -263,7 +263,7 @@ def test_a_map_that_osi_cannot_hold(tmp_path: Path) -> None:
         ("drivelint.trace", {"map_offset_m": "[1.0]"}, "record drivelint.trace cannot be read"),
         ("drivelint.trace", {"map_offset_m": "1,2"}, "record drivelint.trace cannot be read"),
         ("drivelint.actors", {"1": '{"actor_id": "0"}'}, "gives two actors one name"),
-        ("drivelint.actors", {"1": '{"actor_id": "x", "actor_class": "lorry"}'}, "class 'lorry'"),
+        ("drivelint.actors", {"1": '{"actor_id": "x", "actor_class": "lorry"}'}, "'lorry' is no actor class"),
         ("drivelint.actors", {"1": "{}"}, "drivelint.actors, actor 1 cannot be read"),
     ],
 )

@@ -161,7 +161,7 @@ def test_reversing_is_no_wrong_heading(tmp_path: Path) -> None:
 def test_length_below_width(tmp_path: Path) -> None:
     words = '\n[class]\ncolumn = "kind"\nvalues = { c = "car", p = "pedestrian" }\n'
     lines = [line + (",kind" if line[0] == "t" else ",c" if ",a," in line else ",p") for line in cars()]
-    text = LONG.replace("length = 4.5", "length = 1.0")
+    text = LONG.replace("length = 4.5", "length = 1.7")
     row = quality(load(tmp_path, lines, text + words))["length_below_width"]
     assert (row["n"], row["actor_id"]) == (1, "a")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.drive.test_implausible import doubts, drive, track
+from tests.drive.tracks import doubts, drive, track
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -30,6 +30,7 @@ class TraceTables(TableSet):
     declared_event: Table
     drive_condition: Table
     quality: Table
+    doubt: Table
     lanes: Table
 
     def __init__(self, trace: Trace, lanes: pa.Table | None = None) -> None:

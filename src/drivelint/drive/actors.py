@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import track_starts
-from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.order import track_starts, wrapped
+from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, Doubt, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -16,9 +16,31 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from drivelint.arrays import Floats
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import States
 
+LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
+"""Whose boxes are longer than wide. The box of a rider may be that of his body alone."""
+WIDER_SHARE: Final = 1.1
+"""A detector's box of a small car may be a little wider than long; one by more than a tenth is turned or wrong."""
+DIRECTION_LEAST_MPS: Final = 2.0
+"""From this speed on the velocity of a box tells which way it moves."""
+LEAST_MOVING_SAMPLES: Final = 5
+ALONG_RAD: Final = np.deg2rad(30.0)
+"""A box moves along its heading if most of its moving samples are no further off."""
+LEAST_M: Final = {
+    "car": (1.5, 0.8),
+    "van": (2.0, 1.0),
+    "truck": (2.5, 1.2),
+    "bus": (4.0, 1.5),
+    "motorcycle": (1.0, 0.2),
+    "bicycle": (0.5, 0.1),
+    "vehicle": (0.8, 0.3),
+}
+"""Class -> the least length and width (m) of a vehicle of it: a microcar's, less a detector's error of decimetres. One that is too large
+for its class, such as a lorry that is recorded as a car, is still as large as it is."""
+MOST_M: Final = (60.0, 8.0)
+"""No road user is longer or wider."""
 LARGEST_SIZE_SPREAD_M = 0.05
 """Sizes that spread by more than this over a track were estimated, not known."""
 
@@ -83,3 +105,64 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
         )
         sizes[name] = np.where(np.isfinite(raw) & (raw > 0.0), raw, np.nan)
     return Actors(ids, classes, sizes)
+
+
+def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
+    """Turn or drop the sizes of boxes that are wider than long, in place; doubt those that nobody has. `states` in order."""
+    length, width = actors.sizes["length_m"], actors.sizes["width_m"]
+    long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
+    wide = long_kind & (width > WIDER_SHARE * length)
+    along = np.isin(actors.ids, _moving_along(states)) if wide.any() else wide
+    turned, lost = wide & along, wide & ~along
+    actors.sizes["length_m"] = np.where(turned, width, np.where(lost, np.nan, length))
+    actors.sizes["width_m"] = np.where(turned, length, np.where(lost, np.nan, width))
+    findings = []
+    for check, rows, text in (
+        ("size_turned", turned, "wider than long, and moving along the short side: {}: length and width are exchanged"),
+        (
+            "size_unknown",
+            lost,
+            "wider than long, and nothing tells which side is the front: {}: length and width are unknown",
+        ),
+    ):
+        if ids := _names(actors, rows):
+            findings.append(QualityFinding.of_actors(check, "warning", text.format(listed(ids)), ids))
+    return findings + _implausible(states, actors)
+
+
+def _moving_along(states: States) -> list[str]:
+    """Return the actors that move along their heading, forwards or backwards."""
+    vx, vy = states.velocity
+    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > DIRECTION_LEAST_MPS)
+    off = np.abs(wrapped(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
+    n, n_along = (
+        np.bincount(states.actor[rows], minlength=len(states.ids)) for rows in (moving, moving & (off < ALONG_RAD))
+    )
+    return [states.ids[i] for i in np.flatnonzero((n >= LEAST_MOVING_SAMPLES) & (2 * n_along > n))]
+
+
+def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
+    bad = np.zeros(len(actors.ids), np.bool_)
+    least = np.array([LEAST_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
+    known = np.array([kind in LEAST_M for kind in actors.classes], np.bool_)
+    for axis, name in enumerate(("length_m", "width_m")):
+        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_M[axis]))
+    ids = _names(actors, bad)
+    if not ids:
+        return []
+    starts = track_starts(states.actor)
+    ends = np.r_[starts[1:], len(states)] - 1
+    message = (
+        f"no {'vehicle' if len(ids) > 1 else actors.classes[actors.ids.index(ids[0])]} has that size: {listed(ids)}"
+    )
+    doubts = tuple(
+        Doubt(name, "size", int(states.t_ns[first]), int(states.t_ns[last]))
+        for first, last in zip(starts, ends, strict=True)
+        if (name := states.ids[states.actor[first]]) in ids
+    )
+    only = ids[0] if len(ids) == 1 else None
+    return [QualityFinding("size_implausible", "warning", message, len(ids), actor_id=only, doubts=doubts)]
+
+
+def _names(actors: Actors, rows: Mask) -> list[str]:
+    return [actors.ids[i] for i in np.flatnonzero(rows)]

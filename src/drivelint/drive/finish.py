@@ -14,12 +14,10 @@ from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
-from drivelint.drive.implausible import implausible_motion
+from drivelint.drive.implausible import false_entries, implausible_motion, same_bodies
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
-from drivelint.drive.same_body import false_entries, same_bodies
-from drivelint.drive.sizes import resolve_sizes
 from drivelint.drive.trace import (
     ASSUMED_MOTION,
     BRAKE_LIGHTS,
@@ -83,7 +81,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors = actor_rows.from_table(recording.actors, states, split.alias)
     egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, needed=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
-    findings += resolve_sizes(states, actors)
+    findings += actor_rows.resolve_sizes(states, actors)
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked

@@ -232,7 +232,7 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
     return {
-        table: {column: words.readable_comment(comment) for column, _, comment in columns}
+        table: {column: words.readable_comment(_QUANTITIES.sub("", comment).rstrip()) for column, _, comment in columns}
         for table, columns in _columns(file).items()
     }
 

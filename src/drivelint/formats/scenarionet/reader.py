@@ -1,4 +1,7 @@
-"""Scenarios of ScenarioNet: one drive per pickle, of its tracks, the states of its lights and the ego that it names."""
+"""Scenarios of ScenarioNet: one drive per pickle, of its tracks, the states of its lights and the ego that it names.
+
+Positions are box centres, but for the ego of nuScenes, which is at its rear axle and is moved to its box centre.
+"""
 
 from __future__ import annotations
 
