@@ -117,3 +117,28 @@ def test_a_lane_that_cannot_be_built_is_named_and_nobody_leads_to_it(left: list,
         ("missing_link", "1"),
     ]
     assert why in quality.rows[0]["message"]
+
+
+def test_a_lane_of_points_every_few_millimetres_is_a_lane() -> None:
+    x = np.arange(0.0, 10.0001, 0.004)
+    lane = BoundedLane("1", np.column_stack([x, 1.75 + 0.0 * x]), np.column_stack([x, -1.75 + 0.0 * x]))
+    quality = MapQuality()
+    (built,) = build_lanes([lane], (0.0, 0.0), quality)
+    assert (built.line.length, built.line.width) == pytest.approx((10.0, 3.5))
+    assert not quality.rows
+
+
+def test_a_corner_that_is_drawn_by_two_near_points_keeps_both() -> None:
+    left = np.array([[0.0, 1.5], [5.0, 1.5], [5.006, 1.499], [10.0, 0.5]])
+    lane = BoundedLane("1", left, left - [0.0, 3.0])
+    (built,) = build_lanes([lane], (0.0, 0.0), MapQuality())
+    assert shapely.distance(shapely.points(left), shapely.LineString(built.line.left)).max() < 1e-6
+
+
+def test_a_hand_that_goes_back_by_millimetres_does_not_turn_a_lane_round() -> None:
+    x = np.array([0.0, 5.0, 4.996, 10.0])
+    lane = BoundedLane("1", np.column_stack([x, 1.75 + 0.0 * x]), np.column_stack([x, -1.75 + 0.0 * x]))
+    quality = MapQuality()
+    (built,) = build_lanes([lane], (0.0, 0.0), quality)
+    assert np.allclose(built.line.tangent, [1, 0])
+    assert not quality.rows

@@ -19,13 +19,15 @@ from drivelint.road.tables import Rows, crossing_row, map_tables
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.arrays import Floats
+    from drivelint.arrays import Floats, Mask
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
 
 
 _SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
+_SAME_M = 0.0005  # points no further apart are one point
+_JITTER_M = 0.01  # over so short a way, a line that turns back is drawn by an unsteady hand
 _WIDEST_M = 60.0  # wider is a mistake in the bounds
 FARTHEST_M: Final = 1e12  # beyond it a coordinate is a mistake, and GEOS may refuse to count with it
 _LONGEST_M = 100_000.0  # so is longer
@@ -185,9 +187,10 @@ def _line(left: Floats, right: Floats) -> LaneGeometry:
     """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
     _check_bounds(left, right)
     left, right = _paired(left, right)
+    for keep_points in (_distinct, _forwards):
+        keep = keep_points((left + right) / 2)
+        left, right = left[keep], right[keep]
     centre = (left + right) / 2
-    keep = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > 0.01]
-    left, right, centre = left[keep], right[keep], centre[keep]
     if len(centre) < 2:
         raise UnbuildableError("it has no length")
     total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
@@ -211,6 +214,19 @@ def _line(left: Floats, right: Floats) -> LaneGeometry:
     if 2 * half.max() > _WIDEST_M:
         raise UnbuildableError(f"it is {2 * half.max():.0f} m wide")
     return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
+
+
+def _distinct(centre: Floats) -> Mask:
+    """Return which points of a centre line (n, 2) are not the ones before them again."""
+    return np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > _SAME_M]
+
+
+def _forwards(centre: Floats) -> Mask:
+    """Return which points of a centre line (n, 2) are not ends of a short way back."""
+    step = np.diff(centre, axis=0)
+    short = np.hypot(*step.T) <= _JITTER_M
+    back = np.sum(step[:-1] * step[1:], axis=1) < 0.0
+    return np.r_[True, ~(back & (short[:-1] | short[1:])), True][: len(centre)]
 
 
 def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:

@@ -121,9 +121,8 @@ def test_lanes_are_those_of_the_data_set() -> None:
             bound = points(lane[f"{side}_lane_boundary"])
             line = shapely.LineString(bound[:, :2])
             mine = np.array([[table[f"{side}_{axis}_m"][i] for axis in "xy"] for i in here])
-            # points nearer than a centimetre to the one before are left out of a lane
             assert shapely.distance(shapely.points(mine), line).max() < 1e-3
-            assert shapely.distance(shapely.points(bound[:, :2]), shapely.LineString(mine)).max() < 3e-3
+            assert shapely.distance(shapely.points(bound[:, :2]), shapely.LineString(mine)).max() < 1e-3
             other = lane[f"{side}_neighbor_id"]
             assert row[f"{side}_id"] == (str(other) if str(other) in lanes() else None)
         middle = [
