@@ -177,6 +177,12 @@ COMMON_SHARE: Final = 0.8
 """They lie in each other in at least this share of the samples that both have,"""
 LEAST_COMMON: Final = 3
 """and have at least so many in common."""
+FARTHEST_REACH_M: Final = 100.0
+"""No two middles of bodies that lie in each other are further apart."""
+FARTHEST_CELL: Final = 10**10
+"""Cells of places that cannot be are one: their number times that of the times is a whole number of 64 bits."""
+PAIRS_PER_PART: Final = 1_000_000
+"""So many pairs of boxes are held in memory at once."""
 ENTRY_SAMPLES: Final = 3
 """A track that begins somewhere else comes to its place within so many samples."""
 ENTRY_LEAST_MPS: Final = 5.0
@@ -194,18 +200,18 @@ class _Boxes(NamedTuple):
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
     """Return a finding on the tracks that are another one's body; of two, the ego's, else the longer one, is believed."""
-    starts = track_starts(states.actor)
-    ends = np.r_[starts[1:], len(states)]
     rows, pairs = np.zeros(len(states), np.bool_), []
-    for a, b in _begin_upon(states, actors, starts):
-        rows_a, rows_b = _common(states, slice(starts[a], ends[a]), slice(starts[b], ends[b]))
+    for a, b in _begin_upon(states, actors):
+        track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
+        rows_a, rows_b = _common(states, track_a, track_b)
         one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
         deep = _deep(one, other)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
             continue
         if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
             continue
-        order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, int(starts[i] - ends[i]), states.ids[i]))
+        length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
+        order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
         kept, left = (states.ids[i] for i in order)
         rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
         pairs.append(f"{left} is the same body as {kept}")
@@ -232,22 +238,40 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
-def _begin_upon(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[int, int]]:
+def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one has its first sample deep in the other's box."""
-    order = np.argsort(states.t_ns, kind="stable")
-    t_ns = states.t_ns[order]
-    for number, first in enumerate(starts):
-        low, high = np.searchsorted(t_ns, [states.t_ns[first], states.t_ns[first] + 1])
-        others = order[low:high]
+    starts = track_starts(states.actor)
+    number = np.full(len(states), -1)
+    number[starts] = np.arange(len(starts))
+    for first, other in _neighbours(states, actors, starts):
         # of two that begin together each is met once
-        others = others[
-            (states.actor[others] != number)
-            & ((starts[states.actor[others]] != others) | (states.actor[others] > number))
-        ]
-        if len(others):
-            mine = _boxes(states, actors, np.full(len(others), first))
-            for row in others[_deep(mine, _boxes(states, actors, others))]:
-                yield number, int(states.actor[row])
+        once = (states.actor[first] != states.actor[other]) & ((number[other] < 0) | (number[other] > number[first]))
+        first, other = first[once], other[once]  # noqa: PLW2901  the rest is of no use
+        deep = _deep(_boxes(states, actors, first), _boxes(states, actors, other))
+        yield from zip(states.actor[first[deep]].tolist(), states.actor[other[deep]].tolist(), strict=True)
+
+
+def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Yield, in parts, the rows that begin a track beside the rows of the same time whose box may reach so far along x."""
+    half_m = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2.0
+    reach_m = min(max(2.0 * float(np.nanmax(half_m, initial=0.0)), 1.0), FARTHEST_REACH_M)
+    x = states.numbers["x_m"]
+    rows, starts = np.flatnonzero(np.isfinite(x)), starts[np.isfinite(x[starts])]
+    if not len(starts):
+        return
+    cell = np.floor(x[rows] / reach_m).clip(-FARTHEST_CELL, FARTHEST_CELL).astype(np.int64)
+    # one whole number for time and cell, so that no neighbour of a cell is one of another time
+    time = np.unique(states.t_ns[rows], return_inverse=True)[1].astype(np.int64)
+    key = time * int(np.ptp(cell) + 3) + cell - cell.min()
+    at = key[np.searchsorted(rows, starts)]
+    order = np.argsort(key, kind="stable")
+    rows, key = rows[order], key[order]
+    low, high = np.searchsorted(key, at - 1), np.searchsorted(key, at + 1, side="right")
+    part = np.cumsum(high - low) // PAIRS_PER_PART
+    for k in np.unique(part):
+        n, begin = (high - low)[part == k], low[part == k]
+        nth = np.arange(int(n.sum())) - np.repeat(np.cumsum(n) - n, n)
+        yield np.repeat(starts[part == k], n), rows[np.repeat(begin, n) + nth]
 
 
 def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
@@ -259,9 +283,9 @@ def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
 def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
     index = {name: i for i, name in enumerate(actors.ids)}
     who = np.array([index[name] for name in states.ids])[states.actor[rows]]
-    yaw = states.numbers["yaw_rad"][rows]
+    x, y, yaw, vx, vy = (states.numbers[name][rows] for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"))
     half = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
-    return _Boxes(states.place[:, rows], np.stack([np.cos(yaw), np.sin(yaw)]), half, states.velocity[:, rows])
+    return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), half, np.stack([vx, vy]))
 
 
 def _deep(one: _Boxes, other: _Boxes) -> Floats:
