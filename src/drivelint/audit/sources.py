@@ -50,7 +50,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     for source in sources:
         if is_url(source):
             yield from _of_store(source, options)
-        elif _is_manifest(Path(source)):
+        elif _is_manifest(Path(source), with_mapping=options.mapping is not None):
             yield from _of_manifest(Path(source), source, options)
         else:
             logs.append(source)
@@ -67,7 +67,7 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
     if one is not None:
         with TemporaryDirectory(prefix="drivelint-manifest-") as home:
             copy = download(one, Path(home))
-            if _is_manifest(copy):
+            if _is_manifest(copy, with_mapping=options.mapping is not None):
                 yield from _of_manifest(copy, url, options)
                 return
     found = [one] if one is not None else list_objects(url)
@@ -82,8 +82,11 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
         )
 
 
-def _is_manifest(path: Path) -> bool:
-    """Whether a file is a manifest. Errors: `UsageError` for one without a column `log`, and for what is no table of states either."""
+def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
+    """Whether a file is a manifest. Errors: `UsageError` for one without a column `log`, and for what is no table of states either.
+
+    With a mapping, a table without a column `log` is a log, whatever is empty in it.
+    """
     if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
     try:
@@ -104,7 +107,7 @@ def _is_manifest(path: Path) -> bool:
             raise UsageError(
                 f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
             )
-    if not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path):
+    if not with_mapping and (not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path)):
         apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""
         raise UsageError(
             f"{path}: a manifest needs a column log: its columns are {listed([name for name in names if name], 6)}{apart}"

@@ -8,8 +8,11 @@ A stretch stays in a copy where any step of it fails. The errors of a copy are t
 passes loses the stretch. Where the first window has only a part of the stretch and a copy tells neither, the wider one is judged,
 unless so few copies keep the finding that it is only possible anyway.
 
-100 copies are judged, or 32 where all of these keep the finding. Margins do not tell whether fewer suffice: a copy may lose a finding
-because the rule does not apply to it any more, however far the margin is from 0.
+Of a rule that an ego breaks several times, the gravest finding is judged, and those that are as near to the threshold as the errors are
+large. Where one of these is only possible, the others are judged too. Whoever asks for them gets the copies of all findings.
+
+100 copies are judged, 32 where all of these keep the finding, or 20 where their margins are far from 0, too. Fewer are enough where so
+many of them lose it that it is only possible, whatever the others would tell.
 """
 
 from __future__ import annotations
@@ -21,13 +24,14 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.engine.batch import BATCH_STATES, are_large
 from drivelint.engine.copies import copies
 from drivelint.engine.derive import derive
-from drivelint.engine.window import SIZES, Window, span, windows
+from drivelint.engine.window import SIZES, Window, cut, span, windows
 from drivelint.errors import DriveLintError, RuleError
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
@@ -46,13 +50,18 @@ if TYPE_CHECKING:
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
-N_COPIES: Final = (32, 100)
-"""The first copies suffice if all keep the finding. Of a finding that 90 % of all copies would keep, 32 of 32 do in 3.4 % of draws,
-and 95 of 100 or more in 2.4 %; of one that 93 % would, in 10 % and in 25 %."""
+N_COPIES: Final = (20, 32, 100)
+"""The first 32 copies suffice if all keep the finding. Of a finding that 90 % of all copies would keep, 32 of 32 do in 3.4 % of draws,
+and 95 of 100 or more in 2.4 %; of one that 93 % would, in 10 % and in 25 %. 20 are a block of `copies`, which has each error from
+the smallest to the largest."""
+FAR_SPREADS: Final = 5.0
+"""The first 20 suffice if all keep the finding, and the mean of their margins is so many standard deviations from 0."""
 LEAST_SHARE: Final = 0.95
 """A finding that fewer of its copies keep is only possible, as `result.certainty` says."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which all copies are judged at once, as errors of a decimetre may take it away."""
+NOT_FAR: Final = 10.0
+"""Below so many small margins, 20 copies will hardly suffice."""
 HASTY_STATES: Final = 10_000
 """So many copied states cost a quarter of what a pass over none costs, which most runs do not need."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
@@ -71,10 +80,12 @@ class Question:
     n_copies: int = 0
     n_stays: int = 0
     """How many of them keep it."""
+    margins: list[float | None] = field(default_factory=list)
+    """The margins in those that keep it."""
     is_doubtful: bool = False
     """Some copies lost it in the first window, so that all are judged in the next."""
     is_hasty: bool = False
-    """All copies are judged at once, which saves a pass. The last ones count only where one of the first loses the finding."""
+    """All copies are judged at once, which saves a pass. The last ones count only where the first do not suffice."""
     extent: Extent | None = None
     """What its copies of this size are copies of."""
 
@@ -84,21 +95,47 @@ class Question:
         return "overtake" in with_sources(self.rule.reads)
 
     @property
+    def is_near(self) -> bool:
+        """Whether errors of a decimetre may take it away."""
+        return self._is_within(1.0)
+
+    def _is_within(self, share: float) -> bool:
+        margin = self.finding["margin"]
+        return margin is not None and abs(margin) <= share * SMALL_MARGIN.get(self.rule.unit or "", 0.0)
+
+    @property
     def numbers(self) -> range:
         """The copies to judge next."""
-        return range(self.n_copies + 1, (N_COPIES[-1] if self.is_hasty else self._n_needed) + 1)
+        goal = N_COPIES[-1] if self.is_hasty else next((n for n in N_COPIES if n > self.n_copies), N_COPIES[-1])
+        return range(self.n_copies + 1, max(goal, self._n_first) + 1)
+
+    @property
+    def _n_first(self) -> int:
+        """How many copies are judged together at first: those that will hardly suffice save no time."""
+        return N_COPIES[self.finding["margin"] is None or self._is_within(NOT_FAR)]
 
     @property
     def is_settled(self) -> bool:
         """Whether the copies suffice."""
-        return self.n_copies >= self._n_needed
+        few, more, most = N_COPIES
+        if self.n_copies >= most or self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most:
+            return True
+        if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
+            return False
+        return self.n_copies >= (few if self._is_far else more)
 
     @property
-    def _n_needed(self) -> int:
-        """How many copies suffice by what is known now."""
-        margin = self.finding["margin"]
-        is_small = margin is not None and abs(margin) <= SMALL_MARGIN.get(self.rule.unit or "", 0.0)
-        return N_COPIES[is_small or self.is_doubtful or self.n_stays < self.n_copies]
+    def _is_far(self) -> bool:
+        """Whether the margins of the copies are far from 0."""
+        known = [margin for margin in self.margins if margin is not None]
+        if len(known) < max(len(self.margins), N_COPIES[0]):
+            return False
+        return abs(float(np.mean(known))) >= FAR_SPREADS * float(np.std(known))
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the copies show that it is more than possible."""
+        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
         """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors.
@@ -114,6 +151,7 @@ class Question:
         elif self._is_whole or self._is_decided(numbers, {*margins, *passes}, len(margins) - 1):
             self.n_copies = numbers[-1]
             self.n_stays += len(margins) - 1
+            self.margins += [margin for number, margin in margins.items() if number]
         else:
             self.restart(self.size + 1)
             self.is_doubtful = True
@@ -132,7 +170,7 @@ class Question:
 
     def restart(self, size: int) -> None:
         """Forget the copies, and try this size of window; none is left: it stays without an answer."""
-        self.size, self.n_copies, self.n_stays, self.extent = size, 0, 0, None
+        self.size, self.n_copies, self.n_stays, self.margins, self.extent = size, 0, 0, [], None
 
 
 @dataclass(frozen=True)
@@ -158,6 +196,7 @@ class Robustness:
         forget: Callable[[Sequence[str]], None],
         limits: RuleLimits,
         is_stopped: Callable[[], bool],
+        of_all: bool = False,
     ) -> None:
         self._con = con
         self._rules = {rule.id: rule for rule in rules}
@@ -169,6 +208,7 @@ class Robustness:
         self._limits = limits
         self._limits.memory = memory.most_growth
         self._is_stopped = is_stopped
+        self._of_all = of_all
         self._waiting: dict[str, Drive] = {}
 
     def add(self, drives: Sequence[Drive]) -> None:
@@ -195,17 +235,25 @@ class Robustness:
             return
         rows = self._con.execute(statement("robustness/findings"), {"drives": list(by_id)}).to_arrow_table().to_pylist()
         questions = [Question(row, self._rules[row["rule_id"]]) for row in rows]
+        cut(questions)  # findings of one overtake share a window, whichever of them are judged
+        gravest, near, others = _by_weight(questions)
         most_states = BATCH_STATES
         if are_large(by_id.values()):
             self._memory.release()
             most_states //= 2
+        self._settle(by_id, questions if self._of_all else [*gravest, *near], most_states)
+        doubtful = {_breach(question) for question in gravest if not question.is_sure}
+        self._settle(by_id, [question for question in others if _breach(question) in doubtful], most_states)
+        self._answer([q for q in questions if q.n_copies and q.is_settled])
+
+    def _settle(self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int) -> None:
+        """Judge copies until they suffice."""
         open_ = questions
         while open_ and not self._is_stopped():
-            chunks = _chunks(_windows(by_id, open_), most_states)
+            chunks = _chunks(_windows(drives, open_), most_states)
             for chunk in takewhile(lambda _chunk: not self._is_stopped(), chunks):
                 self._try(chunk)
             open_ = [q for q in open_ if q.size < SIZES and not q.is_settled]
-        self._answer([q for q in questions if q.n_copies and q.is_settled])
 
     def _try(self, chunk: Sequence[Window]) -> None:
         """Judge windows together; if that errs, one by one, so that one rule's fault is not the others'."""
@@ -277,11 +325,25 @@ class Robustness:
         self._con.unregister("_answer")
 
 
+def _breach(question: Question) -> tuple[str, ...]:
+    """Return which drive, ego and rule a finding is of."""
+    return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
+
+
+def _by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
+    """Return the gravest finding of each rule that an ego breaks, of the others those near the threshold, and the rest."""
+    gravest: dict[tuple[str, ...], Question] = {}
+    for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
+        gravest.setdefault(_breach(question), question)
+    others = [question for question in questions if gravest[_breach(question)] is not question]
+    return list(gravest.values()), [q for q in others if q.is_near], [q for q in others if not q.is_near]
+
+
 def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
     """Return the windows to judge next, with all copies at once where that costs less than another pass."""
     found = windows(drives, questions, N_COPIES)
     more = sum(
-        window.n_states * (N_COPIES[1] - N_COPIES[0]) // N_COPIES[0] for window in found if window.numbers[1] == 1
+        window.n_states * (N_COPIES[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1
     )
     if more > HASTY_STATES:
         return found

@@ -23,6 +23,8 @@ SIZES: Final = 3
 """The sizes of window: 0, the seconds around the worst step, and two larger ones for what these do not show."""
 NEAR_M: Final = (10.0, 25.0, 100.0)
 """For each size: actors that stay farther away from the ego, along x or y, are left out."""
+SHORT_NS: Final = 3_000_000_000
+"""A stretch that is no longer is in its first window as a whole."""
 LONG_NS: Final = 10_000_000_000
 """Of a longer stretch, what is farther away from its worst step is left out at first."""
 
@@ -40,7 +42,7 @@ AT_REFERENCE: Final = Around(2_000_000_000, 2_000_000_000)
 """For a rule with reference points: around these and the worst step."""
 IN_OVERTAKE: Final = Around(3_000_000_000, 2_000_000_000)
 """For an invariant about overtakes, which are known only with the lane before."""
-AT_OVERTAKE: Final = Around(3_000_000_000, 3_000_000_000)
+AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
 """For a rule with reference points in overtakes."""
 
 
@@ -150,7 +152,7 @@ def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence
     Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on,
     each with the copy without errors.
     """
-    _cut([question for question in asked if question.extent is None])
+    cut([question for question in asked if question.extent is None])
     found: dict[tuple[Any, ...], Window] = {}
     for question in asked:
         drive_id, ego_id, extent = question.finding["drive_id"], question.finding["ego_id"], question.extent
@@ -163,15 +165,11 @@ def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence
     return [found[key] for key in sorted(found, key=lambda key: key[:-2])]
 
 
-def _cut(asked: Sequence[Asked]) -> None:
-    """Give each finding the extent of its window, which it shares with those of the same ego that it overlaps.
-
-    Findings of one overtake share theirs. Of others, those that need more copies do not share with those that need fewer.
-    """
+def cut(asked: Sequence[Asked]) -> None:
+    """Give each finding the extent of its window, which it shares with those of the same ego that it overlaps."""
     last: dict[tuple[object, ...], Extent] = {}
     for question in sorted(asked, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
-        copies_ = None if question.of_overtake else question.numbers
-        key = (question.finding["drive_id"], question.finding["ego_id"], question.size, copies_)
+        key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.of_overtake)
         start, end = span(question)
         if key not in last or start > last[key].to_ns:
             last[key] = Extent(start, end, question.size, set(), at_once=True)
@@ -191,6 +189,8 @@ def span(question: Asked) -> tuple[int, int]:
         steps = (worst,) if ref is None else (ref, worst)
         around = (AT_STEP, IN_OVERTAKE) if ref is None else (AT_REFERENCE, AT_OVERTAKE)
         before, after = around[question.of_overtake]
+        if ref is None and finding["t_end_ns"] - finding["t_start_ns"] <= SHORT_NS:
+            steps = (finding["t_start_ns"], finding["t_end_ns"])
         return min(steps) - before, max(steps) + after
     start, end = max(finding["t_start_ns"], worst - LONG_NS), min(finding["t_end_ns"], worst + LONG_NS)
     before, after = 2_000_000_000, 1_000_000_000
