@@ -67,7 +67,7 @@ CREATE TABLE finding (
     lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, or 32 where all of these keep it; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, check --no-robustness was given, that part alone does not give the finding, or the run was interrupted while they were judged
+    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, fewer where these tell enough; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, it is not the gravest of its rule (check --robustness judges all), check --no-robustness was given, that part alone does not give the finding, or the run was interrupted while they were judged
     n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
     t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
     t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way

@@ -15,18 +15,19 @@ from drivelint.annotate import Annotator
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
-from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.judging_options import JudgingOptions
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.phrases import plural
 from drivelint.result import collect, evidence
+from drivelint.result.counts import SEVERITIES
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
@@ -117,7 +118,8 @@ def check(
             observers=observers,
             memory=memory,
             interruption=interruption,
-            errors=MeasurementErrors() if settings.robustness else None,
+            errors=None if settings.robustness is False else MeasurementErrors(),
+            copies_of_all=settings.robustness is True,
             limits=RuleLimits(settings.rule_timeout, task="drives", deaf=deaf),
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
@@ -217,8 +219,11 @@ class _Notes:
 def _judge_copies(session: JudgingSession, progress: Progress) -> None:
     """Judge the copies that wait; of an interrupted run too."""
     if session.n_waiting:
-        progress.doing(f"judging copies of {plural(session.n_waiting, 'drive')}")
-        session.judge_copies()
+        counts = session.finding_counts()
+        # the first answer is on the screen before the copies begin
+        found = ", ".join(f"{counts[severity]} {severity}" for severity in SEVERITIES if severity in counts)
+        progress.stage(f"{found} findings; judging copies", session.n_to_copy())
+        session.judge_copies(progress.advance)
 
 
 def _judge(

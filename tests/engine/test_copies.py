@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
-from drivelint.engine.copies import BLOCK, MeasurementErrors, copies, crop
+from drivelint.engine.robustness.copies import BLOCK, MeasurementErrors, copies, crop
 from drivelint.formats import read_trace
 
 OVERTAKE = Path(__file__).parents[2] / "fixtures" / "overtake"

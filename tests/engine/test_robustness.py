@@ -10,7 +10,7 @@ import duckdb
 import pytest
 
 from drivelint import catalogue, demo, run
-from drivelint.engine.robustness import LEAST_SHARE, N_COPIES, SMALL_MARGIN, Question
+from drivelint.engine.robustness.question import LEAST_SHARE, N_COPIES, SMALL_MARGIN, Question, by_weight
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -30,6 +30,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def checked(folder: Path, names: tuple[str, ...], out: Path | None = None, **more: Any) -> list[Row]:
+    more = {"robustness": True} | more
     traces = tuple(str(folder / f"{name}.mcap") for name in names)
     result = run.check(
         run.CheckOptions(traces, map=folder / "road.xodr", rules=RULES, out=out, annotate=False, **more), Silent()
@@ -52,12 +53,22 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
     assert told
     far = [row for row in told.values() if row["rule_id"] != "ukhc.no-collision"]
     assert len(far) == 4
-    assert all(row["n_stays"] == row["n_copies"] >= N_COPIES[0] for row in far)
+    assert all(row["n_stays"] == row["n_copies"] in N_COPIES[:2] for row in far)
     assert {certainty(row) for row in far} == {SURE}
     contact = told["ukhc.no-collision", None]
     assert -0.03 < contact["margin"] < 0
     assert 0.2 <= contact["n_stays"] / contact["n_copies"] <= 0.8
     assert certainty(contact) == POSSIBLE
+
+
+def test_by_default_the_gravest_finding_of_a_rule_is_judged(logs: Path, judged: tuple[Path, list[Row]]) -> None:
+    """Its copies are those of a run that judges all: two findings of one rule at one time, by two profiles."""
+    told = {(row["rule_id"], row["profile"]): row for row in judged[1] if row["drive_id"].startswith("collision")}
+    rows = {(row["rule_id"], row["profile"]): row for row in checked(logs, ("collision",), robustness=None)}
+    assert rows.keys() == told.keys()
+    left = [key for key, row in rows.items() if row["n_copies"] is None]
+    assert [rule for rule, _ in left] == ["ukhc.r162.safe-distance-ahead"]
+    assert all(rows[key] == told[key] for key in rows if key not in left)
 
 
 @pytest.mark.slow
@@ -98,7 +109,7 @@ def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
 
 def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do() -> None:
     """For a share of all copies that is below 95 %, within a hundredth of the draws."""
-    few, most = N_COPIES
+    few, most = N_COPIES[1:]
     for share in (0.80, 0.85, 0.90, 0.93, 0.9499):
         by_most = sum(math.comb(most, k) * share**k * (1 - share) ** (most - k) for k in range(95, most + 1))
         assert share**few < by_most + 0.011, share
@@ -110,27 +121,59 @@ def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Questi
 
 
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
-    few, most = N_COPIES
-    assert question(-SMALL_MARGIN["m"]).numbers == range(1, most + 1)
-    for margin in (-5.0, None):
+    fewest, few, most = N_COPIES
+    for margin in (-SMALL_MARGIN["m"], -2.0, None):
+        assert question(margin).numbers == range(1, few + 1)
+    for margin, n in ((-5.0, fewest), (None, few)):
         asked = question(margin)
-        assert asked.numbers == range(1, few + 1)
-        asked.take((0, *asked.numbers), dict.fromkeys(range(few + 1), margin))
+        assert asked.numbers == range(1, n + 1)
+        asked.take((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
         assert asked.is_settled
-        assert (asked.n_stays, asked.n_copies) == (few, few)
+        assert (asked.n_stays, asked.n_copies) == (n, n)
     asked = question(-5.0)
-    asked.take(
-        (0, *asked.numbers), dict.fromkeys(range(few), -5.0)
-    )  # far from 0 in all copies but one, where it does not apply
+    # far from 0 in all copies but one, where it does not apply
+    asked.take((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
     assert not asked.is_settled
+    assert asked.numbers == range(fewest + 1, few + 1)
+    asked.take((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
     assert asked.numbers == range(few + 1, most + 1)
     asked.take((0, *asked.numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
 
+@pytest.mark.parametrize(("spread", "suffice"), [(0.5, True), (2.0, False)])
+def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
+    asked = question(-5.0)
+    asked.take(
+        (0, *asked.numbers), {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)}
+    )
+    assert asked.is_settled is suffice
+
+
+@pytest.mark.parametrize(("lost", "suffice"), [(5, False), (6, True)])
+def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
+    """Of 100 copies, 95 must keep a finding that is sure."""
+    asked = question(-2.0)
+    asked.take((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
+    assert asked.is_settled is suffice
+    assert not asked.is_sure
+
+
+def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold() -> None:
+    of_one = {"drive_id": "d", "ego_id": "0", "rule_id": "ukhc.no-collision"}
+    asked = [question(margin) for margin in (-1.0, -0.2, None, -4.0, -2.0)]
+    for each in asked:
+        each.finding.update(of_one)
+    other = question(-0.5)
+    other.finding.update(of_one | {"ego_id": "1"})
+    gravest, near, others = by_weight([*asked, other])
+    assert ([q.finding["margin"] for q in gravest], [q.finding["margin"] for q in near]) == ([-4.0, -0.5], [-0.2])
+    assert sorted(q.finding["margin"] or 0.0 for q in others) == [-2.0, -1.0, 0.0]
+
+
 def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
-    few, most = N_COPIES
+    few, most = N_COPIES[1:]
     asked = question(-5.0)
     asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
     asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
@@ -141,55 +184,57 @@ def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
 
 def long_question() -> Question:
     """Return a finding whose stretch lasts longer than its first window."""
-    asked = question(-5.0)
+    asked = question(-2.0)
     asked.finding["t_end_ns"] = 10_000_000_000
     return asked
 
 
 def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole() -> None:
-    few, most = N_COPIES
-    kept = dict.fromkeys(range(few), -5.0)  # all but the last
+    few, most = N_COPIES[1:]
+    kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
     asked.take((0, *asked.numbers), kept)
     assert (asked.size, asked.n_copies) == (1, 0)
-    assert asked.numbers == range(1, most + 1)  # some copies lost it already
+    assert asked.numbers == range(1, few + 1)
+    asked.take((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
+    assert asked.numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
-    passed.take((0, *passed.numbers), kept, {few})
+    passed.take((0, *range(1, few + 1)), kept, {few})
     assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
-    short = question(-5.0)
+    short = question(-2.0)
     short.take((0, *short.numbers), kept)
     assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
 
 
 def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
     assert LEAST_SHARE == certainties.LEAST_SHARE
-    few, _ = N_COPIES
+    few, _ = N_COPIES[1:]
     asked = long_question()
-    asked.take((0, *asked.numbers), dict.fromkeys(range(few - 6), -5.0), set(range(few - 6, few)))
+    asked.take((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
     assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
 
 
 def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None:
-    few, most = N_COPIES
-    asked = question(-5.0)
+    few, most = N_COPIES[1:]
+    asked = question(-2.0)
     asked.is_hasty = True
     assert asked.numbers == range(1, most + 1)
-    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -5.0))
-    asked.take((0, *range(few + 1, most + 1)), {0: -5.0})
+    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
+    asked.take((0, *range(few + 1, most + 1)), {0: -2.0})
     assert (asked.n_copies, asked.n_stays) == (few, few)
 
 
 def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
-    few, most = N_COPIES
+    few, most = N_COPIES[1:]
     small = question(-SMALL_MARGIN["m"])
     small.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
     assert not small.is_settled
     kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
     small.take((0, *range(few + 1, most + 1)), kept)
     assert (small.n_copies, small.n_stays) == (most, most - 1)
-    large = question(-5.0)
+    large = question(None)
     for numbers in (range(1, 21), range(21, few + 1)):
-        large.take((0, *numbers), dict.fromkeys((0, *numbers), -5.0))
+        large.take((0, *numbers), dict.fromkeys((0, *numbers)))
     assert (large.n_copies, large.n_stays) == (few, few)
 
 

@@ -81,7 +81,7 @@ def check(
     margins: bool = False,
     keep_db: bool = False,
     annotate: bool = True,
-    robustness: bool = True,
+    robustness: bool | None = None,
     confidence: float | None = None,
     baseline: AnyPath | None = None,
     waivers: AnyPath | None = None,
@@ -106,7 +106,7 @@ def check(
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
             raise UsageError("--keep-db writes a file: say where with --out DIR")
-        values.check_confidence(confidence, robustness)
+        robustness = values.robustness_for(confidence, robustness)
         day = values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(
             options.path(baseline),

@@ -22,10 +22,10 @@ from drivelint.audit.store import open_store
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog, refused
 from drivelint.engine.batch import drive_with_map
-from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
@@ -63,7 +63,9 @@ class Judge:
         self._stable = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
         errors = MeasurementErrors() if settings.robustness else None
         self._memory = Memory(self._con, memory)
-        self._session = JudgingSession(self._con, rules, params, None, memory=self._memory, errors=errors)
+        self._session = JudgingSession(
+            self._con, rules, params, None, memory=self._memory, errors=errors, copies_of_all=True
+        )
         self._n_tasks = 0
         self._library, self._maps = cache(MapLibrary), cache(self._map)
         self._home = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))

@@ -100,11 +100,12 @@ def check(
         option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
     ] = True,
     robustness: Annotated[
-        bool,
+        bool | None,
         options.robustness(
-            "Count in how many copies of the drive with recording errors a critical or major finding stays."
+            "Count in how many copies of the drive with recording errors a critical or major finding stays. "
+            "Default: for the gravest finding of each rule, and for those that small errors may take away."
         ),
-    ] = True,
+    ] = None,
     confidence: Annotated[
         float | None,
         option(
@@ -157,7 +158,7 @@ def check(
     from drivelint.result.one_line import on_one_line
     from drivelint.settings import SETTINGS_FILE
 
-    values.check_confidence(confidence, robustness)
+    robustness = values.robustness_for(confidence, robustness)
     pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
     day = values.parse_today(today)
     refuse_own_baseline(baseline, out)

@@ -49,12 +49,16 @@ def one_folder(argument: Path | None, option: Path | None, default: Path) -> Pat
     return argument or option or default
 
 
-def check_confidence(confidence: float | None, robustness: bool) -> None:
-    """Refuse a confidence that is no share, or that nothing tells. Errors: `UsageError`."""
-    if confidence is not None and not robustness:
+def robustness_for(confidence: float | None, robustness: bool | None) -> bool | None:
+    """Return which copies are judged: whoever gives a confidence needs those of all findings.
+
+    Errors: `UsageError` for a confidence that is no share, or that nothing tells.
+    """
+    if confidence is not None and robustness is False:
         raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
     if confidence is not None and not 0 <= confidence <= 1:
         raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
+    return robustness if confidence is None else True
 
 
 def parse_number_or_all(option: str, text: str) -> int | None:

@@ -103,9 +103,9 @@ def watch(
     fail_on: options.FailOnOption = "critical",
     strict: options.Strict = False,
     robustness: Annotated[
-        bool,
+        bool | None,
         options.robustness("At the end, count how robust critical and major findings are, as check does."),
-    ] = True,
+    ] = None,
     memory: options.MemorySize = None,
     quiet: options.Quiet = False,
 ) -> None:

@@ -16,7 +16,7 @@ from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.margins import MarginFile
 from drivelint.engine.memory import Memory
-from drivelint.engine.robustness import Robustness
+from drivelint.engine.robustness.judging import Robustness
 from drivelint.engine.set_aside import set_aside
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
-    from drivelint.engine.copies import MeasurementErrors
+    from drivelint.engine.robustness.copies import MeasurementErrors
 
 
 class BatchObserver(Protocol):
@@ -47,7 +47,8 @@ class JudgingSession:
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
-    `errors`: those of the copies that tell how robust findings are; None: no copies are judged. `judge_copies` ends their judging.
+    `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
+    `copies_of_all`: of all critical and major findings, else of the gravest. `judge_copies` ends their judging.
     `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
     """
 
@@ -64,6 +65,7 @@ class JudgingSession:
         memory: Memory | None = None,
         interruption: Interruption | None = None,
         errors: MeasurementErrors | None = None,
+        copies_of_all: bool = False,
         limits: RuleLimits | None = None,
         limits_of_copies: RuleLimits | None = None,
     ) -> None:
@@ -89,6 +91,7 @@ class JudgingSession:
                 forget=self._forget_copies,
                 limits=self._limits_of_copies,
                 is_stopped=self._interruption.ends_judging_of_copies,
+                of_all=copies_of_all,
             )
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
@@ -156,10 +159,24 @@ class JudgingSession:
         """The number of drives whose copies still wait to be judged."""
         return self._robustness.n_waiting if self._robustness else 0
 
-    def judge_copies(self) -> None:
-        """Judge the copies that still wait: those of several batches are judged together. After an interruption too, for a while."""
+    def finding_counts(self) -> dict[str, int]:
+        """Return the number of findings of each severity."""
+        rows = self._con.execute(
+            "SELECT severity, count(*) FROM finding GROUP BY severity ORDER BY severity"
+        ).fetchall()
+        return dict(rows)
+
+    def n_to_copy(self) -> int:
+        """Return how many findings copies are judged of at first."""
+        return self._robustness.n_asked() if self._robustness else 0
+
+    def judge_copies(self, advance: Callable[[int], None] | None = None) -> None:
+        """Judge the copies that still wait: those of several batches are judged together. After an interruption too, for a while.
+
+        `advance` hears of findings whose copies suffice.
+        """
         if self._robustness:
-            self._robustness.judge()
+            self._robustness.judge(advance)
 
     def _judge(self, drives: Sequence[Drive]) -> bool:
         """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint import catalogue
-from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.profiles import load_profiles, profile_table
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes

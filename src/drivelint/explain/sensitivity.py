@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Final
 
 from drivelint.engine.batch import BATCH_STATES
-from drivelint.engine.copies import MeasurementErrors, copies
+from drivelint.engine.robustness.copies import MeasurementErrors, copies
 from drivelint.explain.model import Sensitivity
 from drivelint.result.certainty import certainty
 

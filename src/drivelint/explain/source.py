@@ -12,8 +12,8 @@ from drivelint.arrays import with_columns
 from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
-from drivelint.engine.copies import renamed
 from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.robustness.copies import renamed
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables

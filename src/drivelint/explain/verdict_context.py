@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from drivelint.engine.batch import are_few
-from drivelint.engine.copies import crop
+from drivelint.engine.robustness.copies import crop
 from drivelint.explain import evidence
 from drivelint.explain.sandbox import Sandbox
 from drivelint.result.counts import grouped

@@ -14,8 +14,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
-from drivelint.engine.copies import MeasurementErrors
 from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case

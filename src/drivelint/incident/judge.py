@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
-    from drivelint.engine.copies import MeasurementErrors
+    from drivelint.engine.robustness.copies import MeasurementErrors
     from drivelint.result.request import RunRequest
     from drivelint.result.text import Row
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from drivelint.catalogue.header import CONTACT
 from drivelint.convert import CLIP
-from drivelint.engine.copies import MeasurementErrors
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct, name_party

@@ -71,7 +71,7 @@ def check_again(result: Result, asked: RunRequest, work: Path | None, *, evidenc
         "fail_on": result.fail_on,
         "strict": result.strict,
         "require": result.required,
-        "robustness": result.findings["n_copies"].null_count < result.findings.num_rows,
+        "robustness": asked.robustness,
         "out": work,
         "margins": work is not None,
         "annotate": False,

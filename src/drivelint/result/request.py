@@ -33,6 +33,7 @@ class RunRequest(DriveInput):
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
+    robustness: bool | None = None
 
     @classmethod
     def from_options(cls, given: DriveInput, traces: dict[str, str]) -> RunRequest:
@@ -60,7 +61,7 @@ def load(folder: Path) -> RunRequest:
     """
     file = folder / RUN_FILE
     try:
-        plain = {"visibility": "none", "ego": None} | json.loads(
+        plain = {"visibility": "none", "ego": None, "robustness": True} | json.loads(
             file.read_text(encoding="utf-8")
         )  # older results do not say it
         if isinstance(plain["mapping"], dict):

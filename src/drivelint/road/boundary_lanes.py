@@ -6,7 +6,7 @@ Such maps have no roads: the lanes that lie side by side are taken as one, numbe
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -14,23 +14,16 @@ import shapely
 
 from drivelint.arrays import spelled
 from drivelint.road import driving_side
+from drivelint.road.lane_geometry import LaneGeometry, UnbuildableError, check_bounds, lane_geometry
 from drivelint.road.tables import Rows, crossing_row, map_tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.arrays import Floats, Mask
+    from drivelint.arrays import Floats
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
     from drivelint.road.quality import MapQuality
-
-
-_SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
-_SAME_M = 0.0005  # points no further apart are one point
-_JITTER_M = 0.01  # over so short a way, a line that turns back is drawn by an unsteady hand
-_WIDEST_M = 60.0  # wider is a mistake in the bounds
-FARTHEST_M: Final = 1e12  # beyond it a coordinate is a mistake, and GEOS may refuse to count with it
-_LONGEST_M = 100_000.0  # so is longer
 
 
 class Mark(NamedTuple):
@@ -50,20 +43,6 @@ SpeedLimitSpan = tuple[float, float, float | None]
 def both_marks(left: str | None, right: str | None) -> tuple[Mark, Mark]:
     """Return the marks of a lane whose markings do not change along it."""
     return Mark("left", 0.0, 1.0, left), Mark("right", 0.0, 1.0, right)
-
-
-class UnbuildableError(ValueError):
-    """A lane that has no shape or no direction; caught where the lane is named."""
-
-
-def stations(line: Floats) -> Floats:
-    """Return how far along a line (n, 2) or (n, 3), seen from above, each of its points lies (m)."""
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
-
-
-def resampled(line: Floats, s: Floats, at: Floats) -> Floats:
-    """Return the points (m, k) of a line (n, k) at other stations (m,) than its own (n,)."""
-    return np.column_stack([np.interp(at, s, column) for column in line.T])
 
 
 @dataclass(eq=False)
@@ -103,60 +82,12 @@ class BoundedLane:
         return self.line.s if self.along > 0 else self.line.s[-1] - self.line.s
 
 
-@dataclass(frozen=True)
-class LaneGeometry:
-    """A lane's points: stations s (n,), centre, left and right (n, 2), unit tangents (n, 2), half widths (n,)."""
-
-    s: Floats
-    centre: Floats
-    left: Floats
-    right: Floats
-    tangent: Floats
-    half_width: Floats
-
-    @property
-    def length(self) -> float:
-        """Length along the centre line (m)."""
-        return float(self.s[-1])
-
-    @property
-    def turn(self) -> float:
-        """Change of heading along the lane (rad), left positive."""
-        a, b = self.tangent[:-1], self.tangent[1:]
-        return float(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1)).sum())
-
-    @property
-    def area(self) -> float:
-        """Area between the bounds (m2)."""
-        ring = np.vstack([self.right, self.left[::-1]])
-        x, y = (ring - ring[0]).T
-        return abs(0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
-
-    @property
-    def width(self) -> float:
-        """Mean width (m)."""
-        return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
-
-    @property
-    def polygon(self) -> shapely.Polygon:
-        """The ground between the bounds."""
-        return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
-
-    def driving_side_points(self, z: Floats) -> Floats:
-        """Return centre line, height and half width at each point, (n, 4), as `driving_side` takes them; `z`: heights (m), NaN: unknown."""
-        return np.column_stack([self.centre, z, self.half_width])
-
-    def station(self, place: Floats) -> float:
-        """Return how far along the centre line (m) a place (2,) lies."""
-        return float(shapely.line_locate_point(shapely.LineString(self.centre), shapely.Point(place)))
-
-
 def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
     """Build the lanes, sorted by id; report in `quality` a lane that cannot be built, and leave it out."""
     built: dict[str, BoundedLane] = {}
     for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
         try:
-            lane.line = _line(lane.left + offset, lane.right + offset)
+            lane.line = lane_geometry(lane.left + offset, lane.right + offset)
             lane.z = np.full(len(lane.line.s), np.nan)
         except UnbuildableError as error:
             quality.add("invalid_lane", "error", lane.lanelet_id, f"lanelet {lane.lanelet_id} is left out: {error}")
@@ -174,78 +105,6 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
             lane.right_id = lane.right_against = None
     _roads(built)
     return list(built.values())
-
-
-def _check_bounds(left: Floats, right: Floats) -> None:
-    if len(left) < 2 or len(right) < 2:
-        raise UnbuildableError("a bound has fewer than two points")
-    if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
-        raise UnbuildableError("a bound has a coordinate that cannot be")
-
-
-def _line(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
-    _check_bounds(left, right)
-    left, right = _paired(left, right)
-    for keep_points in (_distinct, _forwards):
-        keep = keep_points((left + right) / 2)
-        left, right = left[keep], right[keep]
-    centre = (left + right) / 2
-    if len(centre) < 2:
-        raise UnbuildableError("it has no length")
-    total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
-    if total_m > _LONGEST_M:
-        raise UnbuildableError(f"it is {total_m / 1000:.0f} km long")
-    left, right = _dense(centre, left), _dense(centre, right)
-    centre = (left + right) / 2
-    step = np.diff(centre, axis=0)
-    length = np.hypot(*step.T)
-    direction = step / length[:, None]
-    tangent = np.vstack([direction[:1], direction[:-1] + direction[1:], direction[-1:]])
-    size = np.hypot(*tangent.T)
-    if (size < 0.1).any():
-        raise UnbuildableError("its centre line turns back on itself")
-    tangent = tangent / size[:, None]
-    across = left - right
-    half = (tangent[:, 0] * across[:, 1] - tangent[:, 1] * across[:, 0]) / 2
-    if (half <= 0).all():
-        raise UnbuildableError("its left bound lies on the right of its right bound")
-    half = np.maximum(half, 0.0)
-    if 2 * half.max() > _WIDEST_M:
-        raise UnbuildableError(f"it is {2 * half.max():.0f} m wide")
-    return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
-
-
-def _distinct(centre: Floats) -> Mask:
-    """Return which points of a centre line (n, 2) are not the ones before them again."""
-    return np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > _SAME_M]
-
-
-def _forwards(centre: Floats) -> Mask:
-    """Return which points of a centre line (n, 2) are not ends of a short way back."""
-    step = np.diff(centre, axis=0)
-    short = np.hypot(*step.T) <= _JITTER_M
-    back = np.sum(step[:-1] * step[1:], axis=1) < 0.0
-    return np.r_[True, ~(back & (short[:-1] | short[1:])), True][: len(centre)]
-
-
-def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
-    """Return the bounds with as many points each, one beside the other: as given, or at equal shares of their lengths."""
-    if len(left) == len(right):
-        return left, right
-    shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in map(stations, (left, right))]
-    at = np.unique(np.round(np.concatenate(shares), 6))
-    return resampled(left, shares[0], at), resampled(right, shares[1], at)
-
-
-def _dense(centre: Floats, bound: Floats) -> Floats:
-    """Return a bound with points added so that the centre line's are no more than `_SPACING_M` apart."""
-    length = np.hypot(*np.diff(centre, axis=0).T)
-    pieces = np.maximum(1, np.ceil(length / _SPACING_M)).astype(np.int64)
-    start = np.repeat(np.arange(len(pieces)), pieces)
-    share = (np.arange(len(start)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[start]
-    points = bound[start] + share[:, None] * (bound[start + 1] - bound[start])
-    return np.vstack([points, bound[-1:]])
 
 
 def _by_number(name: str) -> tuple[int, int, str]:
@@ -398,7 +257,7 @@ def crossings(
     rows = []
     for walk in walks:
         try:
-            _check_bounds(walk.left, walk.right)
+            check_bounds(walk.left, walk.right)
         except UnbuildableError as error:
             message = f"crossing {walk.lanelet_id} is left out: {error}"
             quality.add("invalid_lane", "error", walk.lanelet_id, message)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from drivelint.road.boundary_lanes import stations
+from drivelint.road.lane_geometry import stations
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats

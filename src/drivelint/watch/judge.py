@@ -13,10 +13,10 @@ from drivelint import catalogue
 from drivelint.arrays import with_columns
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.batch import drive_with_map
-from drivelint.engine.copies import renamed
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
+from drivelint.engine.robustness.copies import renamed
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import DriveLintError
 from drivelint.evaluate.limits import RuleLimits

@@ -27,9 +27,9 @@ from drivelint.road.boundary_lanes import (
     crossings,
     map_from_bounds,
     side_driven_on,
-    stations,
 )
 from drivelint.road.driving_side import choose_side
+from drivelint.road.lane_geometry import stations
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:

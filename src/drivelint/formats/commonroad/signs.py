@@ -17,7 +17,8 @@ import numpy as np
 import shapely
 
 from drivelint.formats import safe_xml
-from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
+from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.lane_geometry import FARTHEST_M
 from drivelint.road.signcodes import kind_of, turns_of_direction
 
 if TYPE_CHECKING:

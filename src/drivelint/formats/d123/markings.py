@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 
 from drivelint.formats.d123 import facts
-from drivelint.road.boundary_lanes import Mark, both_marks, resampled, stations
+from drivelint.road.boundary_lanes import Mark, both_marks
+from drivelint.road.lane_geometry import resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

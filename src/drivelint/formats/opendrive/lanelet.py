@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats
     from drivelint.formats.opendrive.network import Lane, LaneSection, Road, SpeedLimit
-    from drivelint.road.boundary_lanes import LaneGeometry
+    from drivelint.road.lane_geometry import LaneGeometry
     from drivelint.road.tables import Rows
 
 LaneKey = tuple[str, int, int]  # road, section, lane number

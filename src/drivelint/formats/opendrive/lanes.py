@@ -12,7 +12,7 @@ from drivelint.formats.opendrive.crosssection import Edges, Evaluator, sample_st
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.formats.opendrive.network import DRIVABLE
 from drivelint.formats.opendrive.xml import MalformedError
-from drivelint.road.boundary_lanes import LaneGeometry
+from drivelint.road.lane_geometry import LaneGeometry
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats

@@ -18,8 +18,9 @@ from drivelint.formats.osi import map_furniture as osi_furniture
 from drivelint.formats.osi import map_logical as osi_logical
 from drivelint.formats.osi import map_physical as osi_physical
 from drivelint.formats.osi.schema import message_class
-from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, resampled, side_driven_on, stations
+from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
+from drivelint.road.lane_geometry import resampled, stations
 from drivelint.road.line_heights import heights_beside
 from drivelint.road.quality import MapQuality
 

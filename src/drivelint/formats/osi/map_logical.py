@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from drivelint.formats.osi import map_kinds as kinds
-from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, Mark, UnbuildableError, resampled
+from drivelint.road.boundary_lanes import BoundedLane, Mark
+from drivelint.road.lane_geometry import FARTHEST_M, UnbuildableError, resampled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -14,7 +14,8 @@ import shapely
 
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M
-from drivelint.road.boundary_lanes import FARTHEST_M, BoundedLane, UnbuildableError, both_marks, resampled, stations
+from drivelint.road.boundary_lanes import BoundedLane, both_marks
+from drivelint.road.lane_geometry import FARTHEST_M, UnbuildableError, resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

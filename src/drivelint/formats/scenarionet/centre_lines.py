@@ -14,7 +14,7 @@ import shapely
 
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import points
-from drivelint.road.boundary_lanes import FARTHEST_M, stations
+from drivelint.road.lane_geometry import FARTHEST_M, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

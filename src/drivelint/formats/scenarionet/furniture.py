@@ -9,7 +9,8 @@ import shapely
 
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import numbers, points
-from drivelint.road.boundary_lanes import FARTHEST_M, signal_row
+from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.lane_geometry import FARTHEST_M
 from drivelint.road.tables import crossing_row
 
 if TYPE_CHECKING:

@@ -20,13 +20,13 @@ from drivelint.formats import safe_xml
 from drivelint.formats.sumo.location import NO_PROJECTION, location_of
 from drivelint.formats.sumo.right_of_way import control_rows
 from drivelint.road.boundary_lanes import (
-    FARTHEST_M,
     BoundedLane,
     SpeedLimitSpan,
     build_lanes,
     crossings,
     map_from_bounds,
 )
+from drivelint.road.lane_geometry import FARTHEST_M
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:

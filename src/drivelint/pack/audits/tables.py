@@ -184,7 +184,14 @@ def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) ->
     given = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
     settings = settings_of(audit)
     traces = {} if receipt is None else {receipt["drive_id"]: receipt["log"]}
-    return RunRequest(**given, traces=traces, profiles=settings.profiles, params=settings.params, rules_dirs=rules_dirs)
+    return RunRequest(
+        **given,
+        traces=traces,
+        profiles=settings.profiles,
+        params=settings.params,
+        rules_dirs=rules_dirs,
+        robustness=settings.robustness,
+    )
 
 
 def settings_of(audit: Audit) -> JudgeSettings:

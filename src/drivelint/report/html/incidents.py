@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.catalogue.header import CONTACT
-from drivelint.engine.copies import MeasurementErrors
+from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.margin_series import margin_series

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats, with_columns
-from drivelint.engine.copies import crop, renamed
+from drivelint.engine.robustness.copies import crop, renamed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
