@@ -27,6 +27,8 @@ settings.load_profile("drivelint")
 os.environ.pop("COLUMNS", None)
 # hundreds of tests start a process: each would compile the package anew
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# nor does a test read what other versions kept for the user
+os.environ["DRIVELINT_CACHE_DIR"] = str(ROOT / ".pytest_cache" / "drivelint")
 
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 

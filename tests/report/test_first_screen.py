@@ -20,7 +20,7 @@ from drivelint.report import terminal
 from drivelint.report.html.contact import before_contact
 from drivelint.report.html.strips import LEFT, RIGHT, strips
 from drivelint.report.html.svg import axis_that_decides
-from drivelint.report.outputs import write
+from drivelint.report.outputs import working_folder, write
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
@@ -244,6 +244,16 @@ def test_what_lies_beside_the_page_is_linked_only_if_it_is_there(tmp_path: Path)
     links = Parsed((tmp_path / "report.html").read_text()).all("href")
     assert {"annotated/d1.mcap", "incidents/abc.html"} <= set(links)
     assert "drivelint explain abc --in ." in plain(section((tmp_path / "report.html").read_text(), "worst"))
+
+
+def test_what_an_earlier_run_left_beside_the_page_is_not_linked(tmp_path: Path) -> None:
+    run = result([verdict("fail")], [finding(finding_id="abc")])
+    write(run, tmp_path / "fresh")
+    (tmp_path / "again" / "annotated").mkdir(parents=True)
+    (tmp_path / "again" / "annotated" / "d1.mcap").touch()
+    with working_folder(tmp_path / "again", overwrite=True) as work:
+        write(run, tmp_path / "again", work, overwrite=True)
+    assert (tmp_path / "again" / "report.html").read_bytes() == (tmp_path / "fresh" / "report.html").read_bytes()
 
 
 def test_a_contact_names_the_command_of_its_sheet_and_both_its_times() -> None:

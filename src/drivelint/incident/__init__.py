@@ -25,6 +25,7 @@ from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import visible
 from drivelint.result import request as run_request
+from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.files import publish
 from drivelint.result.load import load_result
 from drivelint.result.text import measure, number
@@ -143,6 +144,7 @@ def _log(request: IncidentRequest, asked: RunRequest, finding: NamedFinding) -> 
 def _environment() -> Environment:
     environment = Environment(
         finalize=visible,
+        bytecode_cache=CompiledTemplates("incident"),
         loader=FileSystemLoader([_HERE, _REPORT_TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,

@@ -63,7 +63,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
     """
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
-    contents["report.html"] = html.render(replace(result, folder=out))
+    # what lies beside the page is what this run made, not what an earlier one left
+    contents["report.html"] = html.render(replace(result, folder=work or out))
     contents["junit.xml"] = junit.render(result)
     if result.gate is not None:
         contents[gate.FILE] = gate.render(result.gate)

@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from graphlib import TopologicalSorter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import DriveLintError
+from drivelint.memo import Memo
 from drivelint.resources import folder
 from drivelint.sql import syntax
 from drivelint.sql.store import column_comments, lifetimes
@@ -64,9 +65,17 @@ def _derivation(table: str) -> Derivation:
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
     sql = file.read_text(encoding="utf-8")
-    tree = syntax.parse_select(sql, str(file))
-    reads = syntax.tables_read(tree) & _files().keys() - {table}
-    return Derivation(table, sql, reads, syntax.tables_needing_rows(tree))
+    reads, needs = _READS.of(sql, lambda: _reads(sql, str(file)))
+    return Derivation(table, sql, reads & _files().keys() - {table}, needs)
+
+
+_READS: Final = Memo[tuple[frozenset[str], frozenset[str]]]("derivations", tuple[frozenset[str], frozenset[str]])
+
+
+def _reads(sql: str, where: str) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the tables that a SELECT reads, and those that must have rows for it to have any."""
+    tree = syntax.parse_select(sql, where)
+    return syntax.tables_read(tree), syntax.tables_needing_rows(tree)
 
 
 def _with_sources(tables: Iterable[str]) -> list[Derivation]:

@@ -15,6 +15,7 @@ from markupsafe import Markup
 from drivelint import __version__
 from drivelint.phrases import shown
 from drivelint.report.html.anchors import anchor
+from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.schemas import OUTPUT_VERSION
 from drivelint.result.text import measure, number
 
@@ -35,6 +36,7 @@ def page_environment(
     """
     environment = Environment(
         finalize=visible,
+        bytecode_cache=CompiledTemplates("page"),
         loader=FileSystemLoader([*([folder] if folder else []), TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,
