@@ -18,6 +18,8 @@ _UNKNOWN_WORDS: Final = {
     "lanes_changed": ("info", "lane changes over road marks", "taken as not said"),
 }
 """Vocabulary -> severity, what has the words, and what follows where one is not known."""
+_NETCONVERT_STAND_IN_MPS: Final = 39.44
+"""The limit that SUMO's netconvert 1.28 gives to roads with `maxspeed=none`, and to motorways without one: 142 km/h, which no sign says."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
 
@@ -27,6 +29,14 @@ class MapQuality:
     def __init__(self) -> None:
         self.rows: list[dict[str, Any]] = []
         self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _UNKNOWN_WORDS}
+        self._stand_ins = 0
+
+    def posted_limit(self, limit_mps: float) -> float | None:
+        """Return a limit of the map in m/s; None, and counted, where it stands in for one that the map's source did not have."""
+        if abs(limit_mps - _NETCONVERT_STAND_IN_MPS) > 1e-9:
+            return limit_mps
+        self._stand_ins += 1
+        return None
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
         """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where it has none such."""
@@ -54,6 +64,9 @@ class MapQuality:
             message = f"{what} in words that are not known: {counted}: {follows}"
             if words:
                 rows.append(_row("unknown_word", severity, None, message, words.total()))
+        if self._stand_ins:
+            message = f"{_NETCONVERT_STAND_IN_MPS:g} m/s is what netconvert writes for a road without a limit: taken as unknown"
+            rows.append(_row("invalid_speed", "warning", None, message, self._stand_ins))
         return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 
 

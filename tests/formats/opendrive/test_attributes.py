@@ -59,6 +59,13 @@ def test_a_limit_without_a_unit_is_in_metres_per_second_and_nonsense_is_named() 
     assert "1.0.-1" in lanelets(broken)
 
 
+def test_the_stand_in_of_netconvert_for_a_road_without_a_limit_is_unknown() -> None:
+    """netconvert 1.28.0 writes 39.44 m/s for OpenStreetMap's `maxspeed=none`, and for a motorway without a limit (findings/)."""
+    free = load(road(lanes=section(0, lane(-1, WIDTH + '<speed sOffset="0" max="39.44"/>'))))
+    assert limits(free, "1.0.-1") == [(0, 100, None, "unread")]
+    assert "invalid_speed" in checks(free)
+
+
 def test_marks_are_seen_from_each_lanelet() -> None:
     centre = '<roadMark sOffset="0" type="solid broken" color="yellow" laneChange="none"/>'
     edge = (

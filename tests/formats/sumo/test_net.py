@@ -216,3 +216,13 @@ def test_crossings_lie_across_the_lanes() -> None:
         pytest.approx(18),
         pytest.approx(22),
     )
+
+
+def test_the_stand_in_of_netconvert_for_a_road_without_a_limit_is_unknown() -> None:
+    """netconvert 1.28.0 writes 39.44 m/s for OpenStreetMap's `maxspeed=none`, and for a motorway without a limit (findings/)."""
+    free, posted = (lane(name, 0, f"{x},0 {x + 50},0") for name, x in (("free", 0), ("posted", 60)))
+    tables = net(edge("free", free.replace("13.89", "39.44"), ends=("a", "b")), edge("posted", posted, ends=("c", "d")))
+    assert {row["lanelet_id"]: row["limit_mps"] for row in rows(tables, "speed_limit")} == {
+        "posted_0": pytest.approx(13.89)
+    }
+    assert "invalid_speed" in checks(tables)

@@ -319,7 +319,8 @@ def _speeds(
             speeds.append(SpeedLimit(start, None, known=True))
         else:
             limit = _limit(speed)
-            speeds.append(SpeedLimit(start, limit, known=True, readable=limit is not None))
+            posted = None if limit is None else quality.posted_limit(limit)
+            speeds.append(SpeedLimit(start, posted, known=True, readable=posted is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
                 message = f"line {speed.sourceline}: {said} is no speed limit: taken as unknown"

@@ -128,7 +128,7 @@ def _read(root: etree._Element, *, left: bool, quality: MapQuality) -> _Net:
         made = []
         for element in edge.iterfind("lane"):
             try:
-                made.append((int(element.attrib["index"]), _lane(edge, element)))
+                made.append((int(element.attrib["index"]), _lane(edge, element, quality)))
             except (ValueError, KeyError) as error:
                 lane = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
@@ -158,7 +158,7 @@ def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against
         lane.right_id, lane.right_against = beside, against
 
 
-def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
+def _lane(edge: etree._Element, element: etree._Element, quality: MapQuality) -> BoundedLane:
     """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
     middle = _points(str(element.attrib["shape"]))
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
@@ -167,12 +167,13 @@ def _lane(edge: etree._Element, element: etree._Element) -> BoundedLane:
         raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s cannot be")
     kind = _kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
+    # inside a junction the speed is what the bend allows, not a limit
+    posted = None if inside else quality.posted_limit(limit)
     return BoundedLane(
         str(element.attrib["id"]), left=_beside(middle, half), right=_beside(middle, -half), kind=kind, drivable=kind in _DRIVABLE,
         road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
-        # inside a junction the speed is what the bend allows, not a limit
-        limits=() if inside else ((0.0, 1.0, limit),),
+        limits=() if posted is None else ((0.0, 1.0, posted),),
     )  # fmt: skip
 
 
