@@ -267,6 +267,27 @@ CREATE TABLE ego_aside (
 );
 
 -- lifetime: part
+CREATE TABLE own_way (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    seg INTEGER NOT NULL,             -- see step: a hole begins a new piece
+    k INTEGER NOT NULL,               -- 0.. along the piece
+    t_from_ns BIGINT,                 -- when the ego's centre was at the start of the segment; NULL: beyond the end of what it drove
+    s0_m DOUBLE NOT NULL,             -- way made from the beginning of the piece to the start of the segment {position}
+    len_m DOUBLE NOT NULL,            -- its length {position}
+    driven_m DOUBLE NOT NULL,         -- way made to the end of the piece: beyond it the ego is taken to hold its bend for 3 s at its last speed, for 25 m at least {position}
+    x0_m DOUBLE NOT NULL,             -- start {position}
+    y0_m DOUBLE NOT NULL,             -- start {position}
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start {position}
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start {position}
+    x1_m DOUBLE NOT NULL,             -- end {position}
+    y1_m DOUBLE NOT NULL,             -- end {position}
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end {position}
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end {position}
+    bend_per_m DOUBLE NOT NULL        -- its bend, 1 / radius, to the left positive {position}
+);
+
+-- lifetime: part
 CREATE TABLE chain (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -521,6 +542,14 @@ CREATE TABLE lead (
     error_mps DOUBLE NOT NULL,        -- what the difference of the two speeds may be off by: 0.25 m/s for each that ingest derives by a filter (quality velocity_filtered), else 0 {velocity}
     t_since_ns BIGINT,                -- first step of the unbroken stretch in which it has been the nearest one {position}
     joined BOOLEAN                    -- the stretch began with one of the two changing lanes, or one beside coming ahead; false: it was ahead in the lane before (behind another, or further away), or the log begins there {position}
+);
+
+-- lifetime: part
+CREATE TABLE passed_by (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR NOT NULL        -- a vehicle ahead that the map puts into the running lane, and beside which the ego's own way passes by 0.2 m or more: it stands, and leaves the middle of the lane free, or the two have no room beside each other in one lane; not one that the ego swerves round in the last 2 s, nor one for whom it leaves its lane
 );
 
 -- lifetime: part

@@ -122,7 +122,7 @@ object_ahead_or_behind AS (
     )
 ),
 incomplete_pair AS (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM pair
     WHERE x_m IS NOT NULL AND y_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 ),
@@ -131,12 +131,25 @@ corridor_range AS (
 ),
 -- Objects off the lanes and further away than the corridor reaches: they may be on a part of the road that the map does not have.
 pair_beyond_corridor AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM unplaced u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
     JOIN corridor_range r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    ANTI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = u.drive_id
     WHERE u.code = 'off_lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
+    UNION ALL
+    -- Without a map: objects further away than the ego's own way goes on.
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m,
+        box_half_diagonal_m(p.length_m, p.width_m) + box_half_diagonal_m(e.length_m, e.width_m) AS half_sizes_m,
+        -- Whoever stands or moves away does not come towards the ego.
+        coalesce(p.speed_mps <= standing_mps() OR (p.x_m - e.x_m) * cos(p.yaw_rad) + (p.y_m - e.y_m) * sin(p.yaw_rad) > 0, false) AS along
+    FROM pair p
+    SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = p.drive_id
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    JOIN corridor_range r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    WHERE p.x_m IS NOT NULL AND p.s_m IS NULL AND p.distance_m < corridor_ahead_m() AND p.distance_m > r.end_m - e.s_m
 ),
 -- Places where the lanes of a chain do not meet: an end without a link although the map goes on, and holes between one lane and the next.
 lanelet_end AS (
@@ -163,7 +176,7 @@ lane_hole AS (
 ),
 hole_bucket AS (SELECT *, unnest(range(floor(end_m / 500)::BIGINT - 2, floor(end_m / 500)::BIGINT + 1)) AS bucket FROM lane_hole),
 pair_in_hole AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM ego_state e
     JOIN hole_bucket l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id AND l.bucket = floor(e.s_m / 500)::BIGINT
     JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
@@ -179,8 +192,8 @@ FROM object_ahead_or_behind
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
-    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m()),
-    CASE WHEN h.distance_m > both_half_diagonals_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
-    false, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m())
+    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m),
+    CASE WHEN h.distance_m > h.half_sizes_m THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
+    h.along, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m)
 FROM (SELECT * FROM incomplete_pair UNION ALL SELECT * FROM pair_beyond_corridor UNION SELECT * FROM pair_in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
