@@ -74,7 +74,8 @@ CREATE TABLE hidden (
     ahead BOOLEAN,                    -- it is ahead of the ego; NULL: it may be or not {position}
     along BOOLEAN NOT NULL,           -- it goes the ego's way: where it was seen last or is seen next on the corridor {position}
     late BOOLEAN NOT NULL,            -- it is not in plain view, for it would have been recorded: see track_end {position}
-    lane_m DOUBLE NOT NULL            -- in the ego's lane ahead of it, it is at least so far away: least_m; if late, as far as that lane is in plain view; if it is not on the map, as far as the corridor reaches {position}
+    lane_m DOUBLE NOT NULL,           -- in the ego's lane ahead of it, it is at least so far away: least_m; if late, as far as that lane is in plain view; if it is not on the map, as far as the corridor reaches {position}
+    beside_lane BOOLEAN NOT NULL      -- it is seen so far beside the ego's lane, and so soon before or after, that it is not in that lane {position, heading, velocity}
 );
 
 -- lifetime: part

@@ -267,12 +267,33 @@ CREATE TABLE ego_aside (
 );
 
 -- lifetime: part
+CREATE TABLE own_way (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    seg INTEGER NOT NULL,             -- see step: a hole begins a new piece
+    k INTEGER NOT NULL,               -- 0.. along the piece
+    t_from_ns BIGINT,                 -- when the ego's centre was at the start of the segment; NULL: beyond the end of what it drove
+    s0_m DOUBLE NOT NULL,             -- way made from the beginning of the piece to the start of the segment {position}
+    len_m DOUBLE NOT NULL,            -- its length {position}
+    driven_m DOUBLE NOT NULL,         -- way made to the end of the piece: beyond it the ego is taken to hold its bend for 3 s at its last speed, for 25 m at least {position}
+    x0_m DOUBLE NOT NULL,             -- start {position}
+    y0_m DOUBLE NOT NULL,             -- start {position}
+    tx0 DOUBLE NOT NULL,              -- unit tangent at the start {position}
+    ty0 DOUBLE NOT NULL,              -- unit tangent at the start {position}
+    x1_m DOUBLE NOT NULL,             -- end {position}
+    y1_m DOUBLE NOT NULL,             -- end {position}
+    tx1 DOUBLE NOT NULL,              -- unit tangent at the end {position}
+    ty1 DOUBLE NOT NULL,              -- unit tangent at the end {position}
+    bend_per_m DOUBLE NOT NULL        -- its bend, 1 / radius, to the left positive {position}
+);
+
+-- lifetime: part
 CREATE TABLE chain (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- 0.. in time order; a new one with every change to another running lane
     seq INTEGER NOT NULL,             -- order along the chain, from its far end behind
-    lanelet_id VARCHAR NOT NULL,      -- the lanelet
+    lanelet_id VARCHAR NOT NULL,      -- the lanelet; without a map a piece of own_way
     s_start_m DOUBLE NOT NULL,        -- chain station of its start; 0 = start of the first lanelet the ego was on
     length_m DOUBLE NOT NULL,         -- its length
     t_first_ns BIGINT,                -- the ego drove it with the traffic from this step; NULL: not driven, the way continued straight on, or the ego cut the corner beside it
@@ -507,7 +528,7 @@ CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR,                -- nearest vehicle ahead in the running lane, not one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane (without a map: in the strip that the ego's box sweeps on its own way), not one beside which that way passes (passed_by), nor one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
     speed_mps DOUBLE,                 -- its speed along the lane, whichever way {velocity}
@@ -524,12 +545,20 @@ CREATE TABLE lead (
 );
 
 -- lifetime: part
+CREATE TABLE passed_by (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    object_id VARCHAR NOT NULL        -- a vehicle ahead that the map puts into the running lane, and beside which the ego's own way passes by 0.2 m or more: it stands, and leaves the middle of the lane free, or the two have no room beside each other in one lane; not one that the ego swerves round in the last 2 s, nor one for whom it leaves its lane
+);
+
+-- lifetime: part
 CREATE TABLE lane_ahead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- whoever is ahead in the running lane, or reaches into it and is in the ego's way or heading into it; not on foot, no animal, and a thing only where it is in the way; see lead
-    actor_class VARCHAR,              -- [actor_class] see road_user {class}
+    object_id VARCHAR NOT NULL,       -- whoever is ahead in the running lane and not in passed_by, or reaches into it and is in the ego's way or heading into it; not on foot, no animal, and a thing only where it is in the way; see lead
+    actor_class VARCHAR,              -- [actor_class] see road_user; NULL also, without a map, of one of whom it is not known whether it is in the ego's way {class}
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
     speed_mps DOUBLE,                 -- its speed {velocity}
     oncoming BOOLEAN,                 -- it heads against the corridor {position, heading, velocity}

@@ -46,6 +46,8 @@ ego_input AS (
     SELECT s.drive_id, s.ego_id, s.environment_id, s.no_map_reason, unnest([
         {'signal': 'map', 'is_of_map': true, 'available': m.environment_id IS NOT NULL, 'reason_available': why('has_map', {'environment_id': m.environment_id}), 'reason_missing': NULL},
         {'signal': 'registration', 'is_of_map': false, 'available': r.ok, 'reason_available': r.reason, 'reason_missing': CASE WHEN s.environment_id IS NULL THEN s.no_map_reason ELSE coalesce(r.reason, why('ego_never_placed')) END},
+        {'signal': 'way', 'is_of_map': false, 'available': CASE WHEN s.environment_id IS NULL THEN r.n_steps > 0 ELSE r.ok END,
+            'reason_available': CASE WHEN s.environment_id IS NULL THEN why('has_own_way') ELSE r.reason END, 'reason_missing': coalesce(CASE WHEN s.environment_id IS NOT NULL THEN r.reason END, why('ego_never_placed'))},
         {'signal': 'handedness', 'is_of_map': true, 'available': m.handedness_source <> 'default',
             'reason_available': why('has_handedness', {'handedness': m.handedness, 'source': m.handedness_source}),
             'reason_missing': why('default_handedness', {'handedness': m.handedness})},

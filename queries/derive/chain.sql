@@ -1,7 +1,7 @@
 -- The running lane as a chain of lanelets: those that the ego drove, and beyond them those straight on. It goes on for at least 1000 m
 -- (corridor_ahead_m) beyond the last lanelet that the ego drove, and for at least 200 m (corridor_behind_m) before the first, unless the lane
 -- or the map ends before. Steps in a lane driven the other way (an overtake) or off the lanes do not interrupt the chain. A change to
--- another lane of the same direction begins a new chain.
+-- another lane of the same direction begins a new chain. Without a map the chain is the way that the ego itself drove (own_way).
 WITH RECURSIVE lane_step AS (
     SELECT
         drive_id, ego_id, t_ns, lanelet_id,
@@ -107,3 +107,10 @@ SELECT
     from_picometres(o.end_pm - to_picometres(o.length_m) - coalesce(max(CASE WHEN o.v < 0 THEN o.end_pm END) OVER (PARTITION BY o.drive_id, o.ego_id, o.chain_id), 0)) AS s_start_m
 FROM chain_lanelet_with_end o
 LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = CASE WHEN o.hop = 0 THEN o.v END
+UNION ALL
+-- Without a map the ego's own way is its lane: each piece of it is a chain of one lanelet.
+SELECT w.drive_id, w.ego_id, w.seg, 0, own_lanelet(w.seg), sum(w.len_m ORDER BY w.k), min(w.t_from_ns), min(s.t_last_ns), 0.0
+FROM own_way w
+JOIN (SELECT drive_id, ego_id, seg, max(t_ns) AS t_last_ns FROM step GROUP BY ALL) s USING (drive_id, ego_id, seg)
+SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = w.drive_id
+GROUP BY w.drive_id, w.ego_id, w.seg

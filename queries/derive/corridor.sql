@@ -30,3 +30,8 @@ SELECT
     CASE WHEN junction_id IS NULL THEN lane.width_m ELSE coalesce(lane, lane_before, lane_after).width_m END AS over_width_m,
     CASE WHEN junction_id IS NULL THEN lane.against ELSE coalesce(lane, lane_before, lane_after).against END AS over_against
 FROM corridor_lanelet
+UNION ALL
+-- What lies beside the ego's own way is not known.
+SELECT c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, NULL, NULL, NULL
+FROM chain c
+SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = c.drive_id

@@ -62,7 +62,7 @@ centre_in_lane_step AS (
 free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (
-        SELECT drive_id, ego_id, t_ns, lane_m AS m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false
+        SELECT drive_id, ego_id, t_ns, lane_m AS m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false AND NOT beside_lane
         UNION ALL
         SELECT drive_id, ego_id, t_ns, gap_m FROM lane_ahead WHERE is_vehicle(actor_class) IS DISTINCT FROM true
     )

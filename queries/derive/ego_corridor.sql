@@ -21,7 +21,7 @@ point_candidate AS (
         a.drive_id, a.ego_id, a.t_ns, a.p, a.x_m, a.y_m, c.* EXCLUDE (drive_id, ego_id, cell),
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
-    FROM box_point a
+    FROM (FROM box_point SEMI JOIN (FROM data_log WHERE environment_id IS NOT NULL) USING (drive_id)) a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
 ),
 point_on_strip AS (
@@ -104,6 +104,17 @@ box_extent AS (
     FROM best_corner
     GROUP BY ALL
     HAVING count(*) = 4
+),
+-- Without a map the ego is in the middle of its own way. Where it drives backwards, nothing is ahead on that way.
+own_place AS (
+    SELECT
+        b.drive_id, b.ego_id, w.seg, b.t_ns, w.s0_m + w.len_m * greatest(0.0, least(1.0, a.a0 / nullif(a.a0 + a.a1, 0))) AS s_m, b.half_box_width_m + own_lane_beside_m() AS half_width_m,
+        b.half_box_length_m, b.half_box_width_m, wrap_rad(b.yaw_rad - atan2(w.ty0 + w.ty1, w.tx0 + w.tx1)) AS turn_rad
+    FROM ego_box b
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    ASOF JOIN (SELECT * FROM own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id) WHERE t_from_ns IS NOT NULL) w
+        ON w.drive_id = st.drive_id AND w.ego_id = st.ego_id AND w.seg = st.seg AND w.t_from_ns <= st.t_ns
+    CROSS JOIN LATERAL (SELECT along0(b.x_m, b.y_m, w.x0_m, w.y0_m, w.tx0, w.ty0) AS a0, along1(b.x_m, b.y_m, w.x1_m, w.y1_m, w.tx1, w.ty1) AS a1) a
 )
 SELECT
     b.drive_id, b.ego_id, b.chain_id, b.t_ns, b.b.s_m AS s_m, b.b.d_m AS d_m,
@@ -113,3 +124,10 @@ SELECT
 FROM best_centre b
 JOIN ego_box g USING (drive_id, ego_id, t_ns)
 LEFT JOIN box_extent e USING (drive_id, ego_id, chain_id, t_ns)
+UNION ALL
+SELECT
+    drive_id, ego_id, seg, t_ns, s_m, 0.0, -own_lane_beside_m(), -2 * half_width_m, -own_lane_beside_m(), -2 * half_width_m,
+    CASE WHEN abs(turn_rad) < pi() / 2 THEN s_m + half_box_length_m END, CASE WHEN abs(turn_rad) < pi() / 2 THEN s_m - half_box_length_m END, half_box_width_m,
+    half_width_m, NULL, NULL, NULL, turn_rad
+FROM own_place
+WHERE s_m IS NOT NULL AND half_width_m IS NOT NULL

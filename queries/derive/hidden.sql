@@ -24,11 +24,47 @@ missing_step AS (
     FROM unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
+corridor_range AS (
+    SELECT drive_id, ego_id, chain_id, min(s_start_m) AS begin_m, max(s_start_m + length_m) AS end_m FROM corridor GROUP BY ALL
+),
+-- Places where the lanes of a chain do not meet: an end without a link although the map goes on, and holes between one lane and the next.
+lanelet_end AS (
+    SELECT
+        c.drive_id, c.ego_id, c.chain_id, c.seq, c.seq = max(c.seq) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id) AS is_last,
+        g.environment_id, c.lanelet_id, c.s_start_m + c.length_m AS end_m,
+        p.x1_m AS x_m, p.y1_m AS y_m, p.tx1 AS tx, p.ty1 AS ty, p.hw1_m AS half_width_m
+    FROM corridor c
+    JOIN data_log g USING (drive_id)
+    JOIN lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
+),
+lane_hole AS (
+    -- If only the link is missing, an object straight on from the end of the lane is ahead.
+    SELECT e.*, 'inf'::DOUBLE AS hole_length_m
+    FROM lanelet_end e
+    JOIN lane_next n ON n.environment_id = e.environment_id AND n.lanelet_id = e.lanelet_id
+    WHERE e.is_last AND n.ahead_id IS NULL
+    UNION ALL
+    SELECT e.*, along0(f.x0_m, f.y0_m, e.x_m, e.y_m, e.tx, e.ty) AS hole_length_m
+    FROM lanelet_end e
+    JOIN corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.seq = e.seq + 1
+    JOIN lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
+    WHERE hole_length_m > f.slack0_m
+),
 sighting AS (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
+        -- How far beside the ego's lane the object is, and how fast it may get nearer to that lane. The first velocity of a track may be
+        -- missing: that of the next sample is near it. An object without a place beside a corridor that is whole is out of its strip.
+        coalesce(p.speed_mps, lead(p.speed_mps) OVER w, lag(p.speed_mps) OVER w) AS v_mps,
+        {
+            'chain_id': e.chain_id, 'across_mps': v_mps * coalesce(abs(sin(p.heading_diff_rad)), 1.0), 'v_mps': v_mps,
+            'm': CASE
+                WHEN p.d_m IS NOT NULL THEN abs(p.d_m) - coalesce(p.lat_half_m, half_diagonal_m) - p.half_width_m
+                WHEN NOT p.off_level AND h.chain_id IS NULL AND p.distance_m < least(z.end_m - e.s_m, e.s_m - z.begin_m) THEN strip_m() - half_diagonal_m - widest_lane_half_m()
+            END
+        } AS beside,
         -- Place along the road of an object that heads the ego's way (1) or moves against it (-1).
         CASE
             WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' THEN NULL
@@ -41,7 +77,10 @@ sighting AS (
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
     LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    LEFT JOIN corridor_range z ON z.drive_id = e.drive_id AND z.ego_id = e.ego_id AND z.chain_id = e.chain_id
+    LEFT JOIN (SELECT DISTINCT drive_id, ego_id, chain_id FROM lane_hole WHERE NOT is_last) h ON h.drive_id = e.drive_id AND h.ego_id = e.ego_id AND h.chain_id = e.chain_id
     WHERE p.distance_m IS NOT NULL
+    WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
 ),
 -- The least distance of the object after its last and before its next sighting. It goes straight on, or brakes or turns as hard as tyres
 -- allow.
@@ -57,6 +96,8 @@ step_with_sightings AS (
         CASE WHEN a.along.chain_id = r.chain_id THEN 0.0 ELSE lane_station_error_m() END AS next_error_m,
         b.distance_m - unseen_closing_mps() * (m.t_ns - b.t_ns) / 1e9 AS least_since_m, a.distance_m - unseen_closing_mps() * (a.t_ns - m.t_ns) / 1e9 AS least_until_m,
         (m.t_ns - b.t_ns) / 1e9 AS since_s, (a.t_ns - m.t_ns) / 1e9 AS until_s,
+        coalesce(b.beside.chain_id = e.chain_id AND b.beside.m > comes_beside_m(m.actor_class, b.beside.across_mps, b.beside.v_mps, since_s), false)
+            OR coalesce(a.beside.chain_id = e.chain_id AND a.beside.m > comes_beside_m(m.actor_class, a.beside.across_mps, a.beside.v_mps, until_s), false) AS beside_lane,
         b.x_m + b.vx_mps * since_s - e.x_m AS last_x_m, b.y_m + b.vy_mps * since_s - e.y_m AS last_y_m, a.x_m - a.vx_mps * until_s - e.x_m AS next_x_m, a.y_m - a.vy_mps * until_s - e.y_m AS next_y_m
     FROM missing_step m
     ASOF LEFT JOIN sighting b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.object_id = m.object_id AND b.t_ns <= m.t_ns
@@ -84,7 +125,7 @@ station_range AS (
 ),
 distance_bound AS (
     SELECT
-        drive_id, ego_id, t_ns, object_id, actor_class, late, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
+        drive_id, ego_id, t_ns, object_id, actor_class, late, beside_lane, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
         half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END) AS half_sizes_m,
         greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_diagonal_m AS off_ahead_m,
@@ -122,48 +163,35 @@ object_ahead_or_behind AS (
     )
 ),
 incomplete_pair AS (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM pair
     WHERE x_m IS NOT NULL AND y_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 ),
-corridor_range AS (
-    SELECT drive_id, ego_id, chain_id, min(s_start_m) AS begin_m, max(s_start_m + length_m) AS end_m FROM corridor GROUP BY ALL
-),
 -- Objects off the lanes and further away than the corridor reaches: they may be on a part of the road that the map does not have.
 pair_beyond_corridor AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM unplaced u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
     JOIN corridor_range r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    ANTI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = u.drive_id
     WHERE u.code = 'off_lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
-),
--- Places where the lanes of a chain do not meet: an end without a link although the map goes on, and holes between one lane and the next.
-lanelet_end AS (
-    SELECT
-        c.drive_id, c.ego_id, c.chain_id, c.seq, c.seq = max(c.seq) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id) AS is_last,
-        g.environment_id, c.lanelet_id, c.s_start_m + c.length_m AS end_m,
-        p.x1_m AS x_m, p.y1_m AS y_m, p.tx1 AS tx, p.ty1 AS ty, p.hw1_m AS half_width_m
-    FROM corridor c
-    JOIN data_log g USING (drive_id)
-    JOIN lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
-),
-lane_hole AS (
-    -- If only the link is missing, an object straight on from the end of the lane is ahead.
-    SELECT e.*, 'inf'::DOUBLE AS hole_length_m
-    FROM lanelet_end e
-    JOIN lane_next n ON n.environment_id = e.environment_id AND n.lanelet_id = e.lanelet_id
-    WHERE e.is_last AND n.ahead_id IS NULL
     UNION ALL
-    SELECT e.*, along0(f.x0_m, f.y0_m, e.x_m, e.y_m, e.tx, e.ty) AS hole_length_m
-    FROM lanelet_end e
-    JOIN corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.seq = e.seq + 1
-    JOIN lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
-    WHERE hole_length_m > f.slack0_m
+    -- Without a map: objects further away than the ego's own way goes on.
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m,
+        box_half_diagonal_m(p.length_m, p.width_m) + box_half_diagonal_m(e.length_m, e.width_m) AS half_sizes_m,
+        -- Whoever stands or moves away does not come towards the ego.
+        coalesce(p.speed_mps <= standing_mps() OR (p.x_m - e.x_m) * cos(p.yaw_rad) + (p.y_m - e.y_m) * sin(p.yaw_rad) > 0, false) AS along
+    FROM pair p
+    SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = p.drive_id
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    JOIN corridor_range r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    WHERE p.x_m IS NOT NULL AND p.s_m IS NULL AND p.distance_m < corridor_ahead_m() AND p.distance_m > r.end_m - e.s_m
 ),
 hole_bucket AS (SELECT *, unnest(range(floor(end_m / 500)::BIGINT - 2, floor(end_m / 500)::BIGINT + 1)) AS bucket FROM lane_hole),
 pair_in_hole AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM ego_state e
     JOIN hole_bucket l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id AND l.bucket = floor(e.s_m / 500)::BIGINT
     JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
@@ -174,13 +202,13 @@ pair_in_hole AS (
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
     greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - half_sizes_m, along_m, CASE WHEN late THEN coalesce(around_m, 0.0) - half_sizes_m END) AS least_m, ahead, along, late,
-    greatest(least_m, off_ahead_m, CASE WHEN late THEN lane_in_view_m END) AS lane_m
+    greatest(least_m, off_ahead_m, CASE WHEN late THEN lane_in_view_m END) AS lane_m, beside_lane
 FROM object_ahead_or_behind
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
-    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m()),
-    CASE WHEN h.distance_m > both_half_diagonals_m() THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
-    false, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - both_half_diagonals_m())
+    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m),
+    CASE WHEN h.distance_m > h.half_sizes_m THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
+    h.along, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m), false
 FROM (SELECT * FROM incomplete_pair UNION ALL SELECT * FROM pair_beyond_corridor UNION SELECT * FROM pair_in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)

@@ -1,7 +1,16 @@
 -- Vehicles and objects ahead of the ego in its running lane: with their centre in the lane, or partly in the lane and in the ego's way. The
 -- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object beside the lane that faces the ego and is in
 -- its way is ahead, too (`outside`).
+--
+-- Without a map the running lane is the ego's own way. Beyond the end of what it drove, the ego may bend otherwise than it did: who is then
+-- in its way only perhaps has no class here, as one of whom nothing can be told. So has one whom the ego would hit within two seconds, both
+-- on the bend that it holds and straight on, although its way passes by: nobody knows whether the road bends there, or whether the ego swerves.
 WITH
+own_way_end AS (
+    SELECT drive_id, ego_id, seg AS chain_id, min(driven_m) AS driven_m
+    FROM own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id)
+    GROUP BY drive_id, ego_id, seg
+),
 -- Actors that follow a lane of a junction. If such an actor comes across the ego's path, it crosses that path and is not ahead: see
 -- conflict.
 actor_on_junction_lane AS (
@@ -16,7 +25,8 @@ object_ahead AS (
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.rear_s_m - e.front_s_m AS gap_m, along_lane_mps(p.speed_mps, p.heading_diff_rad) AS speed_mps,
         abs(p.heading_diff_rad) > pi() / 2 AS oncoming, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
         sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad) AS ego_across_mps, sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad) AS across_mps,
-        abs(p.d_m) <= p.half_width_m AS is_centre_in_lane, NOT in_lane(p.d_m, p.lat_half_m, p.half_width_m) AS outside,
+        abs(p.d_m) <= p.half_width_m OR w.may_bend_m > 0 AS is_centre_in_lane, NOT in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m) AS outside,
+        w.may_bend_m > 0 AND NOT in_lane(p.d_m, p.lat_half_m - w.may_bend_m, p.half_width_m) AS is_unsure,
         -- In the ego's way now, or soon at the present speeds across the lane. For an oncoming object only its present place counts.
         abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
         < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
@@ -25,9 +35,11 @@ object_ahead AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN actor_on_junction_lane c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
+    LEFT JOIN own_way_end n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.chain_id = e.chain_id
+    CROSS JOIN LATERAL (SELECT coalesce(bends_otherwise_m(p.s_m - n.driven_m, e.speed_mps), 0.0) AS may_bend_m) w
     WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m
         AND (
-            in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+            in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m)
             OR abs(p.heading_diff_rad) > 2 * pi() / 3 AND abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m
                 -- Only the ego's front reaches an object that stands there. The rest of its box follows the front.
                 AND (
@@ -37,10 +49,40 @@ object_ahead AS (
         )
         -- An object beside the ego's box is not ahead, even if part of it is in the lane. If the two boxes overlap, they have met.
         AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
-        AND (c.t_ns IS NULL OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
+        AND (c.t_ns IS NULL AND (n.driven_m IS NULL OR abs(p.heading_diff_rad) > 3 * pi() / 4) OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
+),
+-- Without a map: whom the bend that the ego holds, or held a moment before, would hit soon, although its way passes by.
+on_course AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, p.object_id, f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad) AS gap_m, along_lane_mps(p.speed_mps, f.turn_rad) AS speed_mps,
+        -- Straight on counts as well: who comes out of a bend straightens.
+        bool_or(
+            abs(arc_offset_m(f.dx, f.dy, s.bend_per_m)) < e.width_m / 2 + box_half_across_m(p.length_m, p.width_m, f.turn_rad - s.bend_per_m * f.dx)
+            AND abs(f.dy) < e.width_m / 2 + box_half_across_m(p.length_m, p.width_m, f.turn_rad)
+        )
+            OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS is_course_held
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    SEMI JOIN own_way_end n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id
+    ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.seg = e.chain_id AND s.t_from_ns <= e.t_ns
+    CROSS JOIN LATERAL (
+        SELECT
+            (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy,
+            p.yaw_rad - e.yaw_rad AS turn_rad
+    ) f
+    WHERE may_be_vehicle(p.actor_class) AND p.distance_m < lost_near_m() + late_s() * e.speed_mps AND f.dx > 0
+        AND ttc_s(f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad), e.speed_mps - CASE WHEN p.speed_mps > standing_mps() THEN p.speed_mps * cos(f.turn_rad) ELSE 0.0 END) < late_s()
+        AND (p.speed_mps <= standing_mps() OR cos(f.turn_rad) > cos(pi() / 4))
 )
 -- The object's centre is in the lane, or the object is in the ego's way. A vehicle that only reaches over the line must not hide the
 -- vehicle that the ego follows.
-SELECT drive_id, ego_id, t_ns, object_id, actor_class, gap_m, speed_mps, oncoming, across_m, ego_across_mps, across_mps, soon, outside
-FROM object_ahead
+SELECT
+    drive_id, ego_id, t_ns, object_id, CASE WHEN NOT is_unsure THEN actor_class END AS actor_class, gap_m, speed_mps, oncoming, across_m, ego_across_mps, across_mps, soon, outside
+FROM object_ahead o
+-- Whom the ego's own way passes beside, it neither meets nor follows.
+ANTI JOIN passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
 WHERE is_centre_in_lane OR soon
+UNION ALL BY NAME
+SELECT c.* EXCLUDE (is_course_held) FROM on_course c
+ANTI JOIN object_ahead o ON o.drive_id = c.drive_id AND o.ego_id = c.ego_id AND o.t_ns = c.t_ns AND o.object_id = c.object_id
+WHERE c.is_course_held

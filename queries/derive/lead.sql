@@ -18,7 +18,7 @@ actor_with_filtered_velocity AS (SELECT DISTINCT drive_id, actor_id FROM quality
 hidden_vehicle AS (
     SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m
     FROM hidden
-    WHERE vehicle AND ahead IS DISTINCT FROM false
+    WHERE vehicle AND ahead IS DISTINCT FROM false AND NOT beside_lane
     GROUP BY ALL
 ),
 lead_step AS (

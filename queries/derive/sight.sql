@@ -30,6 +30,17 @@ corridor_segment AS (
     JOIN data_log l USING (drive_id)
     JOIN lane_segment g ON g.environment_id = l.environment_id AND g.lanelet_id = c.lanelet_id
     WHERE l.in_sight
+    UNION ALL
+    SELECT w.drive_id, w.ego_id, w.seg, w.s0_m, w.x0_m, w.y0_m, w.tx0, w.ty0
+    FROM own_way w
+    SEMI JOIN (FROM data_log WHERE environment_id IS NULL AND in_sight) l ON l.drive_id = w.drive_id
+),
+-- Nobody knows where the ego's lane is beyond the end of its own way.
+own_way_end AS (
+    SELECT w.drive_id, w.ego_id, w.seg AS chain_id, max(w.s0_m + w.len_m) AS end_m
+    FROM own_way w
+    SEMI JOIN (FROM data_log WHERE environment_id IS NULL) l ON l.drive_id = w.drive_id
+    GROUP BY ALL
 ),
 ego_segment AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.chain_id, e.s_m, e.range_m, p.x0_m, p.y0_m, p.tx0, p.ty0
@@ -77,14 +88,15 @@ hidden_place AS (
 SELECT
     e.drive_id, e.ego_id, e.t_ns, greatest(0.0, least(n.around_m, e.range_m)) AS around_m,
     greatest(0.0, CASE
-        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.lane_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.lane_m, w.end_m - e.front_s_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS lane_m,
     greatest(0.0, CASE
-        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_distance_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
+        WHEN r.t_ns IS NOT NULL OR b.t_ns IS NOT NULL THEN least(n.vehicle_distance_m, w.end_m - e.front_s_m, least(b.along_m, e.range_m - both_half_diagonals_m() / 2) - e.length_m / 2)
         ELSE least(n.around_m, e.range_m) - e.length_m / 2
     END) AS vehicle_lane_m
 FROM viewpoint e
 LEFT JOIN nearest_box n USING (drive_id, ego_id, t_ns)
 LEFT JOIN straight_lane r USING (drive_id, ego_id, t_ns)
 LEFT JOIN hidden_place b USING (drive_id, ego_id, t_ns)
+LEFT JOIN own_way_end w ON w.drive_id = e.drive_id AND w.ego_id = e.ego_id AND w.chain_id = e.chain_id

@@ -21,7 +21,7 @@ stop_period AS (
     HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
 ),
 stop_place AS (
-    SELECT s.*, e.road_type, e.lanelet_id, e.chain_id, e.front_s_m, e.rear_s_m, n.junction_id AS lane_junction_id
+    SELECT s.*, e.road_type, e.lanelet_id, e.chain_id, e.front_s_m, e.rear_s_m, n.junction_id AS lane_junction_id, g.environment_id IS NOT NULL AS has_map
     FROM stop_period s
     JOIN data_log g USING (drive_id)
     JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_start_ns
@@ -56,7 +56,7 @@ stop_context AS (
     SELECT
         t.*, coalesce(a.junction.id, t.lane_junction_id) AS junction_id, a.junction.clear_m AS junction_clear_m, a.junction.inside_m AS junction_inside_m, a.crossing.id AS crossing_id,
         a.crossing.clear_m AS crossing_clear_m, a.line_ahead,
-        CASE WHEN t.front_s_m IS NOT NULL THEN coalesce(a.junction_m, 'inf'::DOUBLE) END AS junction_m
+        CASE WHEN t.front_s_m IS NOT NULL AND t.has_map THEN coalesce(a.junction_m, 'inf'::DOUBLE) END AS junction_m
     FROM stop_place t
     LEFT JOIN nearest_mark a USING (drive_id, ego_id, t_start_ns)
 ),

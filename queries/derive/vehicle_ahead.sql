@@ -21,7 +21,7 @@ lane_summary AS (
 hidden_vehicle AS (
     SELECT drive_id, ego_id, t_ns, min(lane_m) FILTER (NOT late) AS least_m, min(lane_m) FILTER (late) AS late_m, bool_and(along) AS along
     FROM hidden
-    WHERE vehicle AND ahead IS DISTINCT FROM false
+    WHERE vehicle AND ahead IS DISTINCT FROM false AND NOT beside_lane
     GROUP BY ALL
 ),
 further_vehicle AS (

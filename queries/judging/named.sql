@@ -60,13 +60,14 @@ WITH _verdict_with_rule AS (
                 {'object_id': p.object_id})
         WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN why('object_class_unknown', {'object_id': p.object_id})
         WHEN n.nearest IS NOT NULL AND d.of_hidden THEN hidden_reason(n.nearest)
-        WHEN d.of_lanes AND (e.lanelet_id IS NULL OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
+        WHEN d.of_lanes AND (e.lanelet_id IS NULL AND g.environment_id IS NOT NULL OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
         WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL THEN why('object_off_lanes', {'object_id': p.object_id})
         WHEN d.of_hidden AND d.of_lanes AND d.object_id IS NULL AND f.object_id IS NOT NULL
             THEN why(CASE WHEN f.actor_class IS NULL THEN 'may_be_vehicle_ahead' ELSE 'no_vehicle_ahead' END, {'object_id': f.object_id})
         WHEN b.drive_id IS NOT NULL
             THEN why(CASE WHEN c.drive_id IS NULL THEN 'ego_speed_unknown_near' ELSE 'ego_speed_contradicted_near' END) END AS because
     FROM _unexplained_verdict d
+    LEFT JOIN data_log g USING (drive_id)
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
     LEFT JOIN state_dynamics h ON h.drive_id = d.drive_id AND h.actor_id = CASE WHEN p.off_level THEN d.object_id END AND h.t_ns = d.t_ns

@@ -53,6 +53,13 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
         ELSE 5.0 * t_s * t_s
     END;
 
+-- How much nearer to a lane an actor can get within t seconds of being seen beside it: by its speed across, by steering or braking, and by
+-- a bend of the lane (50 m of radius).
+CREATE OR REPLACE MACRO comes_beside_m(actor_class, across_mps, v_mps, t_s) AS across_mps * t_s + strays_m(actor_class, t_s) + 0.01 * (v_mps * t_s) ** 2;
+
+-- Half the width of the widest lane.
+CREATE OR REPLACE MACRO widest_lane_half_m() AS 3.0;
+
 -- One place along a road has a different station in each lane. The stations differ by at most this: in a quarter turn, by about the width
 -- of a lane times pi / 2.
 CREATE OR REPLACE MACRO lane_station_error_m() AS 6.0;

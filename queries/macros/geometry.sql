@@ -144,3 +144,27 @@ CREATE OR REPLACE MACRO between_blur_m(way, dt_s) AS swerve_mps2() * dt_s ** 2 /
 -- Where the object is after the fraction u of that time, seen from the ego, on one axis. a: its place at the start, g: the change of that
 -- place, p and q as above.
 CREATE OR REPLACE MACRO between_offset(u, a, g, p, q) AS a + g * u + p * u * (1 - u) ** 2 - q * u ** 2 * (1 - u);
+
+-- The ego's own way: its points are so far apart, and beyond its recorded end the ego is taken to hold its bend for so long a way, which
+-- is 3 s at its last speed.
+CREATE OR REPLACE MACRO way_point_m() AS 2.0;
+CREATE OR REPLACE MACRO way_on_m(v_mps) AS greatest(25.0, 3.0 * coalesce(v_mps, 0.0));
+-- The lanelet of a piece of the ego's own way, and how much wider than the ego's box it is on both sides.
+CREATE OR REPLACE MACRO own_lanelet(seg) AS 'own way ' || seg;
+CREATE OR REPLACE MACRO own_lane_beside_m() AS 0.2;
+-- No vehicle turns in less than 4 m, so no bend is sharper.
+CREATE OR REPLACE MACRO sharpest_bend_per_m() AS 0.25;
+-- How far the ego may be off the way on which it holds its bend, after on_m at the speed v: where roads begin to bend, it is by no less than
+-- 100 m of radius, and drivers change the acceleration across the road by no more than 1 m/s2 unless they turn off.
+CREATE OR REPLACE MACRO bends_otherwise_m(on_m, v_mps) AS least(0.01 / 2 * greatest(0.0, on_m) ** 2, 1.0 / 2 * (greatest(0.0, on_m) / nullif(v_mps, 0)) ** 2);
+-- Offset to the left, from an arc that starts at the origin along x with that bend, of the point (dx, dy).
+CREATE OR REPLACE MACRO arc_offset_m(dx, dy, bend_per_m) AS
+    (2 * dy - bend_per_m * (dx * dx + dy * dy)) / (1 + sqrt(greatest(0.0, 1 - bend_per_m * (2 * dy - bend_per_m * (dx * dx + dy * dy)))));
+-- Half the extent of a box across a direction from which it is turned by turn_rad.
+CREATE OR REPLACE MACRO box_half_across_m(length_m, width_m, turn_rad) AS length_m / 2 * abs(sin(turn_rad)) + width_m / 2 * abs(cos(turn_rad));
+-- Half the width of the strip that a box sweeps in a bend: its outer corners reach further out than its side.
+CREATE OR REPLACE MACRO swept_in_bend_half_m(length_m, width_m, bend_per_m) AS width_m / 2 + length_m ** 2 / 8 * abs(bend_per_m);
+-- A box that the ego's own way passes at this distance or more is not in that way: places of standing vehicles are noisy by some 0.1 m.
+CREATE OR REPLACE MACRO passes_beside_m() AS 0.2;
+-- Who still steers into a vehicle so shortly before it, and then round it, swerves: one second to see it and one to steer.
+CREATE OR REPLACE MACRO late_s() AS 2.0;

@@ -149,12 +149,17 @@ def test_seen_again_soon_it_was_not_far() -> None:
     assert not rows(con, "FROM beside")
 
 
-def test_off_the_map_everybody_near_may_be_beside() -> None:
+def test_without_a_map_the_own_way_tells_who_is_beside() -> None:
     t = times(0.5)
     way = road()
     ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 100 + 10 * t, way.other)
     far = moving("far", way, t, 130 + 10 * t, way.other)
     found = rows(derived(drive([ego, other, far], None), tables=["beside"]), "FROM beside")
+    assert {row["object_id"] for row in found} == {"x"}
+    assert [row["gap_m"] for row in found] == pytest.approx([LANE - 1.8] * len(t))
+    # without a heading the ego has no place on its way, and everybody near may be beside
+    blind = replace(ego, yaw=np.full(t.shape, np.nan))
+    found = rows(derived(drive([blind, other, far], None), tables=["beside"]), "FROM beside")
     assert {(row["object_id"], row["gap_m"]) for row in found} == {("x", None)}
     assert len(found) == len(t)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing, tee, times
+from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 
 if TYPE_CHECKING:
     from tests.scenes import Actor, Floats, Road
@@ -172,3 +172,21 @@ def test_somebody_unseen_ahead_of_whom_is_seen_far_away_leaves_the_way_free_as_f
         r["verdict"] for r in judged([drive([ego, lost, far], way.environment)], rules=["ukhc.r126.thinking-gap"])
     }
     assert verdicts == {"pass"}
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_who_is_first_seen_far_beside_the_lane_was_not_the_lead_a_moment_before(hand: str) -> None:
+    """A car that stands 8 m beside the lane, 20 m ahead, is recorded from 3 s on: 0.5 s before it was not ahead of the vehicle that is seen.
+
+    A second before, it might have come from there at 10 m/s2.
+    """
+    way = road(hand=hand)
+    t = times(6.0)
+    ego, seen = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 140 + 10 * t, way.own)
+    late = standing("p", way, t, 155, way.own + 8.0 * np.sign(way.own)).keep(t > 2.95)
+    con = derived(drive([ego, seen, late], way.environment), tables=["lead", "hidden"])
+    leads = {round(row["t_ns"] / 1e9, 1): row["object_id"] for row in rows(con, "FROM lead")}
+    assert {leads.get(at) for at in (2.5, 2.6, 2.7, 2.8, 2.9, 3.0)} == {"x"}
+    beside = {round(row["t_ns"] / 1e9, 1): row["beside_lane"] for row in rows(con, "FROM hidden")}
+    assert [beside[at] for at in (1.5, 2.5)] == [False, True]
+    assert 1.5 not in leads

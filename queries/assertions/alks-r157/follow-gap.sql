@@ -11,7 +11,7 @@
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 0.5
 -- reads = ["following", "pair", "vehicle_ahead"]
--- requires = ["mode_engaged", "map", "registration", "ego_size"]
+-- requires = ["mode_engaged", "way", "ego_size"]
 --
 -- [params.v_max_mps]
 -- default = 16.67

@@ -12,7 +12,7 @@
 -- near_margin = 0.5
 -- merge_gap_s = 1.0
 -- reads = ["ego_state", "pair", "step", "vehicle_ahead"]
--- requires = ["map", "registration", "ego_size", "speeds"]
+-- requires = ["way", "ego_size", "speeds"]
 --
 -- [params.most_mps2]
 -- default = 3.4

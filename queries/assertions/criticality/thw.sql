@@ -12,7 +12,7 @@
 -- near_margin = 0.3
 -- merge_gap_s = 1.0
 -- reads = ["cut_in", "ego_state", "pair", "step", "vehicle_ahead"]
--- requires = ["map", "registration", "ego_size", "speeds"]
+-- requires = ["way", "ego_size", "speeds"]
 --
 -- [params.least_s]
 -- default = 0.9

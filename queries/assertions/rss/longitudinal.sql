@@ -11,7 +11,7 @@
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 2.0
 -- reads = ["step", "vehicle_ahead"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [params.rho_s]
 -- default = 1.0

@@ -14,7 +14,7 @@
 -- near_margin = 0.5
 -- reads = ["clock", "ego_motion", "step", "vehicle_ahead"]
 -- without_time = "it cannot be told at every step who was ahead of the ego, or how near and fast: rss.longitudinal says at which it cannot, and what to record"
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [params.rho_s]
 -- default = 1.0

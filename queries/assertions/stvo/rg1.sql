@@ -12,7 +12,7 @@
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 1.0
 -- reads = ["following"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [applies]
 -- road_type = ["motorway"]

@@ -12,7 +12,7 @@
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 2.0
 -- reads = ["ego_condition", "following"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [applies]
 -- road_type = ["motorway"]

@@ -12,7 +12,7 @@
 -- near_margin = 2.0
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "following"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [params.settle_s]
 -- default = 10.0

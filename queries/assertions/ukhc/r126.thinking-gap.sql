@@ -12,7 +12,7 @@
 -- near_margin = 1.0
 -- merge_gap_s = 5.0
 -- reads = ["following"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [params.settle_s]
 -- default = 10.0

@@ -12,7 +12,7 @@
 -- near_margin = 0.2
 -- merge_gap_s = 5.0
 -- reads = ["ego_condition", "following"]
--- requires = ["map", "registration", "ego_size"]
+-- requires = ["way", "ego_size"]
 --
 -- [applies]
 -- limit_min_mps = 22.35

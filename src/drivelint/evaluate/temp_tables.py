@@ -56,7 +56,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
         row |= {
-            "of_lanes": "registration" in rule.requires,
+            "of_lanes": bool({"registration", "way"} & set(rule.requires)),
             "of_contact": CONTACT in rule.tags,
             "of_standing": STANDING in rule.tags,
         }

@@ -1,0 +1,60 @@
+-- Vehicles ahead that the map's lane puts into the ego's lane, although the ego's own way, as it was driven from here on, passes beside
+-- them. A lane of a map may be wide, cut a corner, or run where nobody drives. The ego follows nobody whom its box does not meet on its
+-- way. Two kinds are listed: a vehicle that stands and leaves the middle of the lane free, and one that moves, not towards that way, is not
+-- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
+--
+-- Who stands in the ego's way and is swerved round at the last moment is not listed at any step: the ego's lane and the bend that it
+-- drove, both held, led into that vehicle less than `late_s` before it. Nor is one for whom the ego leaves its lane. Beyond the end of what
+-- the ego drove, it is taken to hold its bend, and passes beside only whom it would pass if it bent otherwise.
+WITH candidate AS (
+    SELECT
+        p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
+        e.yaw_rad AS ego_yaw_rad, e.speed_mps AS ego_speed_mps, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
+        (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy
+    FROM pair p
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    WHERE p.s_m > e.s_m AND p.distance_m < lost_near_m() + 2 * drift_s() * e.speed_mps AND may_be_vehicle(p.actor_class) AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
+        AND CASE WHEN p.speed_mps <= standing_mps() THEN abs(p.d_m) > p.lat_half_m
+            ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m AND p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m END
+),
+segment_cell AS (
+    SELECT w.*, cell_key(floor((x0_m + x1_m) / 8) + i.i, floor((y0_m + y1_m) / 8) + j.j) AS cell
+    FROM own_way w
+    SEMI JOIN candidate c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id
+    CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS i(i) CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS j(j)
+),
+-- The first place of the ego's way that is level with the vehicle.
+way_place AS (
+    SELECT
+        drive_id, ego_id, t_ns, object_id,
+        min({'t_ns': t_from_ns, 'on_m': s0_m + len_m - driven_m, 'd_m': d_m, 'heading_rad': atan2(ty0 + u * (ty1 - ty0), tx0 + u * (tx1 - tx0)), 'bend_per_m': bend_per_m}) AS there
+    FROM (
+        SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
+        FROM (
+            SELECT
+                c.drive_id, c.ego_id, c.t_ns, c.object_id, c.x_m, c.y_m, s.* EXCLUDE (drive_id, ego_id, seg, cell),
+                along0(c.x_m, c.y_m, s.x0_m, s.y0_m, s.tx0, s.ty0) AS a0, along1(c.x_m, c.y_m, s.x1_m, s.y1_m, s.tx1, s.ty1) AS a1
+            FROM candidate c
+            JOIN segment_cell s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.seg = c.seg AND s.cell = corridor_cell_of(c.x_m, c.y_m)
+            WHERE (s.t_from_ns > c.t_ns OR s.t_from_ns IS NULL) AND along0(c.x_m, c.y_m, s.x0_m, s.y0_m, s.tx0, s.ty0) >= 0 AND along1(c.x_m, c.y_m, s.x1_m, s.y1_m, s.tx1, s.ty1) > 0
+        )
+    )
+    GROUP BY drive_id, ego_id, t_ns, object_id
+),
+beside_way AS (
+    SELECT
+        c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns,
+        c.across_m < 0 AND c.dx - (c.length_m + c.ego_length_m) / 2 < late_s() * c.ego_speed_mps
+            AND abs(arc_offset_m(c.dx, c.dy, s.bend_per_m)) < c.ego_width_m / 2 + box_half_across_m(c.length_m, c.width_m, c.yaw_rad - c.ego_yaw_rad - s.bend_per_m * c.dx) AS is_course_held
+    FROM candidate c
+    JOIN way_place w USING (drive_id, ego_id, t_ns, object_id)
+    ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.seg = c.seg AND s.t_from_ns <= c.t_ns
+    -- Who moves towards the way may be in it soon.
+    WHERE abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m)
+        >= passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END
+)
+SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id
+FROM beside_way b
+ANTI JOIN (FROM beside_way WHERE is_course_held) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
+ANTI JOIN (FROM excursion WHERE max_out_m > passes_beside_m()) x ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, x.t0_ns) AND x.t_end_ns >= b.t_ns
