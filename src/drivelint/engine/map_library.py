@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
-from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.finish import with_condition_of_map, with_quality_finding
 from drivelint.drive.trace import QualityFinding
 from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
@@ -87,7 +87,7 @@ class MapLibrary:
             headings = self._headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load(source, trace, voted)
-        return environment, trace
+        return environment, with_condition_of_map(trace, "nation", environment.nation)
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
         """Return the drive in the map's frame, and what shows that it is of another place.

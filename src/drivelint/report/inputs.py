@@ -8,6 +8,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
+from drivelint.report.law import law_words
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, ego_absences, off_map_reason
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
+LAW: Final = "law"
+"""Label of the note that the terminal has in its first line."""
 _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
 """Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
@@ -36,9 +39,10 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: map, log, not judged."""
+    """Return the parts of the line: the law, where it is one nation's, map, log, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-    return [_map(drives), _log(drives), _not_judged(result, result.drives.num_rows - len(drives))]
+    law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
+    return [*law, _map(drives), _log(drives), _not_judged(result, result.drives.num_rows - len(drives))]
 
 
 def _map(drives: Sequence[Row]) -> InputNote:

@@ -16,7 +16,8 @@ from rich.text import Text
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
-from drivelint.report.inputs import input_notes
+from drivelint.report.inputs import LAW, input_notes
+from drivelint.report.law import law_words
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
@@ -67,8 +68,10 @@ def _head(result: Result) -> Text:
     packs = list(counts.verdicts_by_pack(result.rules, result.verdicts))
     total = [pc.sum(drives[name]).as_py() or 0.0 for name in ("km", "duration_s")]
     n_rules = plural(result.rules.num_rows, "rule")
+    law = law_words(result)
     return Text(
         f"drivelint: {plural(drives.num_rows, 'drive')}, {total[0]:.2f} km, {total[1]:.0f} s, {n_rules} ({', '.join(packs)})"
+        f"{'; law ' if law else ''}{law}"
     )
 
 
@@ -274,7 +277,7 @@ def _unknown(result: Result) -> list[Text]:
 def _inputs(result: Result) -> Text:
     """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged."""
     line = Text()
-    for note in input_notes(result):
+    for note in (note for note in input_notes(result) if note.label != LAW):
         line.append(f"{' | ' if line else ''}{note.label}: ", "default")
         line.append(note.words, "yellow" if note.is_warning else "default")
     return line
