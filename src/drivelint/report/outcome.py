@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import OWN_MAP_UNUSABLE
+from drivelint.drive.trace import NOT_IN_FOLDER, OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
@@ -37,6 +37,11 @@ _FINDINGS: Final = "FINDINGS"
 _KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
+_NO_MAP: Final = {
+    OWN_MAP_UNUSABLE: "the log's own map cannot be used",
+    NOT_IN_FOLDER: "no map in the folder is of the place",
+}
+"""Check that leaves a drive without a map -> words."""
 _COUNTED: Final = "counted"
 """Findings that the asked confidence does not let through."""
 
@@ -104,7 +109,7 @@ def headline(result: Result) -> Headline:
     if n := rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
-        missing = "the log's own map cannot be used" if OWN_MAP_UNUSABLE in checks else "no map was given"
+        missing = next((words for check, words in _NO_MAP.items() if check in checks), "no map was given")
         parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
 
