@@ -253,7 +253,8 @@ def _log_row(
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "map_offset_x_m": offset[0], "map_offset_y_m": offset[1],
-        "has_indicator": known["indicator"], "has_brake_light": known["brake_light"],
+        "has_indicator": known["indicator"], "names_indicator": recording.names_indicator,
+        "has_brake_light": known["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
     }  # fmt: skip

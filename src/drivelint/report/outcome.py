@@ -71,7 +71,8 @@ class Headline(NamedTuple):
 
 class RuleCounts(NamedTuple):
     """How many rules were judged somewhere, and of these not everywhere. The others by their verdicts: all of them unknown or errors
-    (`never`), all not applicable (`idle`), or both (`open`).
+    (`never`), all not applicable (`idle`), or both (`open`). `unrecorded`: all not applicable, some because the log has nothing of a signal
+    that the rule needs; they are not among the idle.
     """
 
     judged: int
@@ -79,6 +80,7 @@ class RuleCounts(NamedTuple):
     never: int
     idle: int
     open: int
+    unrecorded: int
 
 
 def headline(result: Result) -> Headline:
@@ -88,7 +90,8 @@ def headline(result: Result) -> Headline:
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
     label = _label(result, bool(rows))
     told = counts.total(result.verdicts)
-    whole = not told["unknown"] + told["error"] and not result.interrupted
+    lacking = counts.unrecorded(result.verdicts).num_rows
+    whole = not told["unknown"] + told["error"] + lacking and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_otherwise(before)
@@ -134,7 +137,11 @@ def rule_counts(result: Result) -> RuleCounts:
     undecided = [n for n in others if n["unknown"] + n["error"]]
     never = sum(not n["not_applicable"] for n in undecided)
     partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
-    return RuleCounts(len(judged), partly, never, len(others) - len(undecided), len(undecided) - never)
+    lacking = set(counts.unrecorded(result.verdicts)["rule_id"].to_pylist())
+    names = result.rules["rule_id"].to_pylist()
+    idle = [name for name in names if not sum(by_rule[name][v] for v in ("pass", "fail", "unknown", "error"))]
+    unrecorded = len(lacking.intersection(idle))
+    return RuleCounts(len(judged), partly, never, len(idle) - unrecorded, len(undecided) - never, unrecorded)
 
 
 def _label(result: Result, has_findings: bool) -> str:
@@ -148,7 +155,8 @@ def _label(result: Result, has_findings: bool) -> str:
     if has_findings:
         return _FINDINGS
     if not told["pass"] + told["fail"]:
-        return "UNKNOWN" if told["unknown"] + told["error"] or not told["not_applicable"] else _NOT_APPLICABLE
+        lacking = counts.unrecorded(result.verdicts).num_rows
+        return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
     return _MOSTLY if _is_mostly_open(result) else LABELS[code]
 
 
@@ -165,7 +173,10 @@ def _without_findings(result: Result, told: Mapping[str, int], label: str, *, wh
     judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
     if not judged or not result.verdicts.num_rows:
         return "nothing was judged"
-    if not told["pass"] + told["fail"] and told["unknown"] + told["error"]:
+    if (
+        not told["pass"] + told["fail"]
+        and told["unknown"] + told["error"] + counts.unrecorded(result.verdicts).num_rows
+    ):
         return "no findings, as nothing could be decided"
     if not told["pass"] + told["fail"]:
         return "no findings, as no rule applied: what they are about did not happen"
