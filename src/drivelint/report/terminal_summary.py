@@ -241,7 +241,7 @@ def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
     n = rule_counts(result)
     said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
-    said += [f"{n.unrecorded} without a signal that the log does not have" if n.unrecorded else ""]
+    said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
     said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
     first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
