@@ -8,6 +8,7 @@ from typing import Any
 import pyarrow as pa
 import pytest
 
+from drivelint.engine.batch import Drive
 from drivelint.errors import ExitCode
 from drivelint.gate import diff
 from drivelint.reasons.reason_text import sentence
@@ -16,7 +17,7 @@ from drivelint.report.outcome import headline, rule_counts
 from drivelint.result.model import exit_status
 from tests.report.synthetic import drive as drive_row
 from tests.report.synthetic import finding, result, rule, verdict
-from tests.scenes import Drive, drive, judged, moving, road, saying, times
+from tests.scenes import drive, judged, moving, road, saying, times
 
 HORN, HAZARDS, SIGNAL, DIRECTION = "r112.horn", "r116.hazards", "exit-sign-signal", "r143.direction"
 
