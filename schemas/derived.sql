@@ -501,7 +501,7 @@ CREATE TABLE oncoming_vehicle (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, a vehicle or an animal, or is parked the wrong way round in the ego's
+    object_id VARCHAR NOT NULL,       -- who comes towards the ego on the lane that it would overtake in, a vehicle or an animal; one that was never seen to move does not
     vehicle BOOLEAN,                  -- NULL: its class is not known {class}
     da_m DOUBLE,                      -- along the corridor, the ego's front to its nearest corner; on its way: what it has yet to go as well {position}
     speed_mps DOUBLE,                 -- its speed {velocity}

@@ -54,7 +54,7 @@ CREATE TABLE common_ground (
 CREATE TABLE conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ground swept by another's box and by the ego's (its trailer's with it) crosses or merges at more than 20 degrees (its way against the ego's where that comes nearest), at most 10 s apart; who stands all the while it is on it is in the way and no partner, nor who lacks position, heading or size: see passage_conflict
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; the ground swept by another's box and by the ego's (its trailer's with it) crosses or merges at more than 20 degrees (its way against the ego's where that comes nearest), at most 10 s apart; who stands all the while it is on it is in the way and no partner, nor who lacks position, heading or size, nor who takes that ground on the same course (to 20 degrees): see passage_conflict
     object_id VARCHAR NOT NULL,       -- the other actor
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     t_ego_in_ns BIGINT NOT NULL,      -- first step at which the ego's box is on ground that the other's box was or will be on (the conflict area) {position}

@@ -16,6 +16,7 @@ CREATE TABLE data_log (
     map_offset_x_m DOUBLE,            -- added to the map's x to bring it to where the log is, as the mapping or the log says; NULL: nothing said
     map_offset_y_m DOUBLE,            -- the same for y
     has_indicator BOOLEAN NOT NULL,   -- the ego's indicator is known in at least one state
+    names_indicator BOOLEAN,          -- its mapping names a column of the indicators; NULL: it has no mapping
     has_brake_light BOOLEAN NOT NULL, -- the ego's brake light is known in at least one state
     has_acceleration BOOLEAN NOT NULL, -- acceleration was recorded, not derived
     geo_reference VARCHAR,            -- projection by which the drive is put on the earth: the map's, else the log's; NULL: neither has one that gives positions on the earth (in data_log.parquet of a converted log: as the log says it, usable or not)

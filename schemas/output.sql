@@ -23,7 +23,7 @@ CREATE TABLE drive (
     status VARCHAR NOT NULL,          -- judged, not_judged
     status_reason VARCHAR,            -- why it was not judged; NULL: it was
     lossy BOOLEAN NOT NULL,           -- parts of the log were lost or salvaged: the verdicts stand on what was left
-    conditions STRUCT("condition" VARCHAR, "value" VARCHAR, source VARCHAR)[] NOT NULL, -- what was given for the drive (env) or the log says of it (trace): weather, nation, ...
+    conditions STRUCT("condition" VARCHAR, "value" VARCHAR, source VARCHAR)[] NOT NULL, -- what was given for the drive (env), or the log (trace) or its map (map) says: weather, nation, ...
     exposure STRUCT(ego_id VARCHAR, km DOUBLE, hours DOUBLE, engaged_km DOUBLE, engaged_hours DOUBLE, n_steps BIGINT)[] NOT NULL, -- per ego: way, time without holes, both with the automated driver, steps
     occasions STRUCT(rule_id VARCHAR, profile VARCHAR, n BIGINT, n_judged BIGINT)[] NOT NULL, -- per rule and profile: how often it applied or may have (verdict rows but not_applicable), and how often of these it passed or failed
     quality STRUCT(check_id VARCHAR, severity VARCHAR, actor_id VARCHAR, n BIGINT, t_first_ns BIGINT, message VARCHAR)[] NOT NULL, -- data-quality findings of the log and its map
@@ -51,6 +51,7 @@ CREATE TABLE rule (
     unit VARCHAR,                     -- of observed, required and margin
     observes VARCHAR,                 -- what observed is, as a noun phrase; NULL: nothing is measured, or the title says it
     near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
+    law VARCHAR[] NOT NULL,           -- [nation] whose law it is: not applicable where the nation is known to be another; empty: no nation's own
     tags VARCHAR[] NOT NULL,          -- [rule_tag] what reports know it by
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
     profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none

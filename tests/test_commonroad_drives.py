@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 LIMIT, RED, SOLID = "ukhc.r124.speed-limit", "ukhc.r175.red", "ukhc.r129.no-cross-solid"
 
 
-def verdicts(name: str, *rules: str) -> Mapping[tuple[str, str], str]:
-    """Return (ego, rule) -> verdict of every vehicle of a scenario."""
+def verdicts(name: str, *rules: str, nation: str = "gb") -> Mapping[tuple[str, str], str]:
+    """Return (ego, rule) -> verdict of every vehicle of a scenario, as if it was in this nation."""
     path = str(shared(f"commonroad/{name}.xml"))
-    result = check(CheckOptions((path,), rules=rules, ego="all", robustness=False), Silent())
+    result = check(CheckOptions((path,), rules=rules, ego="all", robustness=False, env=(f"nation={nation}",)), Silent())
     return {(row["ego_id"], row["rule_id"]): row["verdict"] for row in result.verdicts.to_pylist()}
 
 

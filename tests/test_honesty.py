@@ -436,5 +436,5 @@ def test_a_log_without_indicators_is_named_and_counted(judged: Judged) -> None:
     for run in RUNS:
         for rule in sorted(asked):
             (row,) = judged.of(Case(run, "nothing"), rule)
-            assert (row["verdict"], row["reason_code"]) == ("unknown", "missing_indicator")
+            assert (row["verdict"], row["reason_code"]) == ("not_applicable", "unrecorded_indicator")
             assert row["reason"] == "the log has no indicators of the ego"

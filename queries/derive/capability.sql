@@ -4,7 +4,7 @@ WITH ego_log AS (
     SELECT
         c.drive_id, c.ego_id, g.environment_id,
         coalesce((
-            SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('own_map_unusable', 'lanes_without_width')
+            SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('own_map_unusable', 'map_not_in_folder', 'lanes_without_width')
         ), why('no_map')) AS no_map_reason, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS has_ego_size,
         NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'assumed_motion') AS has_speeds,

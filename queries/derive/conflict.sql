@@ -132,11 +132,42 @@ encounter AS MATERIALIZED (
     FROM entry_or_exit_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
+-- The course over ground of each on the common ground, whatever its recorded heading; where it moves less than a metre there, also half a
+-- second before and after. NULL: it hardly moves.
+course_on_ground AS MATERIALIZED (
+    SELECT drive_id, ego_id, object_id, n, is_ego, min({'margin_ns': margin_ns, 'course_rad': atan2(north_m, east_m)}).course_rad AS course_rad
+    FROM (
+        SELECT
+            p.*, max({'t_ns': s.t_ns, 'x_m': s.x_m}).x_m - min({'t_ns': s.t_ns, 'x_m': s.x_m}).x_m AS east_m,
+            max({'t_ns': s.t_ns, 'y_m': s.y_m}).y_m - min({'t_ns': s.t_ns, 'y_m': s.y_m}).y_m AS north_m
+        FROM (
+            SELECT e.drive_id, e.ego_id, e.object_id, e.n, true AS is_ego, e.ego_id AS actor_id, e.t_ego_in_ns AS t_in_ns, e.t_ego_out_ns AS t_out_ns, m.margin_ns
+            FROM encounter e CROSS JOIN (VALUES (0), (500_000_000)) AS m(margin_ns)
+            UNION ALL
+            SELECT e.drive_id, e.ego_id, e.object_id, e.n, false, e.object_id, e.t_object_in_ns, e.t_object_out_ns, m.margin_ns
+            FROM encounter e CROSS JOIN (VALUES (0), (500_000_000)) AS m(margin_ns)
+        ) p
+        JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.actor_id AND s.t_ns >= p.t_in_ns - p.margin_ns AND s.t_ns <= p.t_out_ns + p.margin_ns
+        WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
+        GROUP BY ALL
+    )
+    WHERE sqrt(east_m ** 2 + north_m ** 2) >= standing_spread_m()
+    GROUP BY drive_id, ego_id, object_id, n, is_ego
+),
+-- Two that take the common ground on one course follow each other: only their headings, of which one is wrong, are at an angle. The time
+-- between them is headway.
+following_encounter AS MATERIALIZED (
+    SELECT e.drive_id, e.ego_id, e.object_id, e.n
+    FROM (FROM course_on_ground WHERE is_ego) e
+    JOIN (FROM course_on_ground WHERE NOT is_ego) o USING (drive_id, ego_id, object_id, n)
+    WHERE abs(wrap_rad(o.course_rad - e.course_rad)) <= conflict_angle_rad()
+),
 -- An actor that stands as long as it is on the ground is an obstacle, not a partner in a conflict.
 moving_encounter AS MATERIALIZED (
     SELECT
         e.*, (later_entry.ns - earlier_exit.ns) / 1e9 AS pet_s, later_entry.is_unknown OR NOT earlier_exit.is_known AS pet_at_most, later_entry.angle_rad AS angle_rad
     FROM encounter e
+    ANTI JOIN following_encounter f ON f.drive_id = e.drive_id AND f.ego_id = e.ego_id AND f.object_id = e.object_id AND f.n = e.n
     SEMI JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
     SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id

@@ -1,17 +1,27 @@
 -- All vehicles that come towards the ego on the lane in which it would overtake, at each step (OV, oncoming vehicle, and DA, distance
--- ahead, of Harper et al. 2021). The nearest of them need not be the one that matters most: one that is parked or slow leaves more time. A
--- horse on the road counts as a vehicle. A vehicle that comes from another lane counts from 15 s before it gets to that lane, at the
--- distance that it really drives until then.
+-- ahead, of Harper et al. 2021). The nearest of them need not be the one that matters most: one that waits or is slow leaves more time. One
+-- that was never seen to move does not come towards the ego: it is parked, in a narrow street on either side. A horse on the road counts as
+-- a vehicle. A vehicle that comes from another lane counts from 15 s before it gets to that lane, at the distance that it really drives
+-- until then.
 WITH ego_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
     FROM ego_state e
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
+-- Its positions and velocities may jitter, so that one moves that leaves its place, or that is seen too briefly to leave it but is fast.
+standing_object AS (
+    SELECT drive_id, actor_id AS object_id
+    FROM state_dynamics
+    GROUP BY ALL
+    HAVING greatest(max(x_m) - min(x_m), max(y_m) - min(y_m)) <= standing_spread_m()
+        AND (max(t_ns) - min(t_ns) >= standing_spread_m() / standing_mps() * 1e9 OR coalesce(max(speed_mps) <= standing_mps(), false))
+),
 oncoming_object AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.rear_s_m, p.speed_mps, p.rear_s_m - e.front_s_m AS da_m, is_vehicle(p.actor_class) OR p.actor_class = 'animal' AS vehicle
     FROM pair p
     JOIN ego_step e USING (drive_id, ego_id, t_ns)
+    ANTI JOIN standing_object o ON o.drive_id = p.drive_id AND o.object_id = p.object_id
     WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'animal') AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
         AND e.side * p.d_m - p.lat_half_m < p.half_width_m + coalesce(p.over_width_m, e.over_width_m, 2 * p.half_width_m)
         -- A vehicle that stands the wrong way round in the running lane is parked there. One that moves is oncoming.

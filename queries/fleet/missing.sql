@@ -3,7 +3,7 @@
 WITH requirement AS (
     SELECT DISTINCT rule_id, rule_version, unnest(requires) AS signal FROM {of}rules
 ), {subject}, undecided AS (
-    SELECT key, ego_id, rule_id, rule_version FROM {of}verdicts WHERE verdict = 'unknown' AND starts_with(reason_code, 'missing_') GROUP BY ALL
+    SELECT key, ego_id, rule_id, rule_version FROM {of}verdicts WHERE verdict = 'unknown' AND starts_with(reason_code, 'missing_') OR starts_with(reason_code, 'unrecorded_') GROUP BY ALL
 ), lack AS (
     SELECT DISTINCT d.key, m.ego_id, m.signal FROM (SELECT key, unnest(not_judged) AS m FROM {of}drives) d
 ), needed AS (

@@ -6,7 +6,8 @@ WITH lone AS (
 ), rule_there AS (
     SELECT rule_id, flatten(list(profiles)) AS profiles FROM {of}rules GROUP BY rule_id
 ), said AS (
-    SELECT v.* FROM {of}verdicts v SEMI JOIN lone l ON l.there_key = v.key
+    -- what no signal of the log tells is not known to be kept
+    SELECT v.* REPLACE (CASE WHEN starts_with(v.reason_code, 'unrecorded_') THEN 'unknown' ELSE v.verdict END AS verdict) FROM {of}verdicts v SEMI JOIN lone l ON l.there_key = v.key
 ), egos AS (
     SELECT DISTINCT key, ego_id FROM said
 ), objects AS (

@@ -9,7 +9,7 @@ WITH {subject}, {profiled}, judged_subject AS (
         count(*) FILTER (verdict = 'fail' AND n_judged >= n_expected) AS n_whole_failed,
         -- A fail that was not judged at every step counts as not wholly judged, as a pass of that kind would be unknown: else the
         -- outcome would decide what is counted.
-        CASE WHEN bool_or(verdict IN ('unknown', 'error') OR verdict IN ('pass', 'fail') AND n_judged < n_expected) THEN 'unknown'
+        CASE WHEN bool_or(verdict IN ('unknown', 'error') OR starts_with(reason_code, 'unrecorded_') OR verdict IN ('pass', 'fail') AND n_judged < n_expected) THEN 'unknown'
             WHEN bool_and(verdict = 'not_applicable' AND reason_code IN ('other_nation', 'not_engaged', 'outside_conditions'))
             THEN 'outside' ELSE 'judged' END AS extent
     FROM profiled GROUP BY ALL

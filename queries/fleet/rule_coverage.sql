@@ -1,6 +1,6 @@
 -- Per rule and profile: in how many drives it was decided, could not be decided, or did not apply, and why not.
 WITH {subject}, {profiled}, drive_of_rule AS (
-    SELECT s.content, p.rule_id, p.profile, bool_or(verdict IN ('pass', 'fail')) AS decided, bool_or(verdict IN ('unknown', 'error')) AS unknown,
+    SELECT s.content, p.rule_id, p.profile, bool_or(verdict IN ('pass', 'fail')) AS decided, bool_or(verdict IN ('unknown', 'error') OR starts_with(reason_code, 'unrecorded_')) AS unknown,
         bool_or(verdict = 'fail') AS failed, bool_or(verdict = 'not_applicable' AND reason_code = 'not_triggered') AS not_triggered,
         count(*) FILTER (verdict IN ('pass', 'fail')) AS n
     FROM profiled p JOIN subject s ON s.key = p.key AND s.ego_id = p.ego_id GROUP BY ALL

@@ -26,6 +26,8 @@ WITH _outcome_or_clean_group AS (
     UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'unknown' AS verdict, 'missing_' || signal AS code, reason FROM _gated
     UNION ALL BY NAME
+    SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, 'unrecorded_' || signal AS code, reason FROM _unrecorded
+    UNION ALL BY NAME
     SELECT rule_no, drive_id, ego_id, 'not_applicable' AS verdict, code FROM _excluded
 ), _blind_stretch_of_rule AS (
     SELECT r.rule_no, b.*, s.max_gap_ns, s.start_ns
@@ -51,7 +53,7 @@ WITH _outcome_or_clean_group AS (
     FROM _blind_stretch_of_rule b
     LEFT JOIN _watched w ON w.drive_id = b.drive_id AND w.ego_id = b.ego_id
     LEFT JOIN (
-        SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions')) AS elsewhere FROM _rule_row GROUP BY ALL
+        SELECT rule_no, drive_id, ego_id, bool_and(code IN ('other_nation', 'outside_conditions') OR starts_with(code, 'unrecorded_')) AS elsewhere FROM _rule_row GROUP BY ALL
     ) k ON k.rule_no = b.rule_no AND k.drive_id = b.drive_id AND k.ego_id = b.ego_id
     ANTI JOIN (
         -- an error, or an unknown without times, speaks of the whole drive

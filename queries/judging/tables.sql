@@ -11,7 +11,7 @@ CREATE OR REPLACE TEMP TABLE _segment AS
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
     sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
     of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN, of_standing BOOLEAN, by_object BOOLEAN, limit_min_mps DOUBLE, limit_max_mps DOUBLE);
-CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR, is_assumed BOOLEAN);
+CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR, is_assumed BOOLEAN, may_be_unrecorded BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _allowed (rule_no INTEGER, code VARCHAR, condition VARCHAR, word VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, code VARCHAR, reason VARCHAR);
 CREATE OR REPLACE TEMP TABLE _group (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, object_id VARCHAR, clean BOOLEAN,

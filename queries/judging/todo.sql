@@ -48,6 +48,24 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     WHERE coalesce(c.available, n.is_assumed) IS DISTINCT FROM true
     GROUP BY ALL);
 
+-- What only few logs have, such as indicators or declared events: of a log that has nothing of it a rule asks nothing, if it is not asked for by
+-- its id (`is_named`) and the log's mapping does not name the signal. A rule that something else forbids anyway is not among them.
+CREATE OR REPLACE TEMP TABLE _unrecorded AS
+SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
+    SELECT n.rule_no, s.drive_id, s.ego_id,
+        min({'pos': n.pos, 'signal': n.signal, 'reason': coalesce(c.reason, why('nothing_known', {'signal': n.signal}))}) AS first
+    FROM _needs n CROSS JOIN _subject s
+    LEFT JOIN capability c ON c.drive_id = s.drive_id AND c.ego_id = s.ego_id AND c.signal = n.signal
+    LEFT JOIN data_log l ON l.drive_id = s.drive_id
+    WHERE n.may_be_unrecorded AND c.available IS DISTINCT FROM true AND NOT (n.signal = 'indicator' AND coalesce(l.names_indicator, false))
+    GROUP BY ALL
+) u
+ANTI JOIN _excluded e ON e.rule_no = u.rule_no AND e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.code <> 'outside_conditions';
+DELETE FROM _gated g WHERE EXISTS (
+    SELECT 1 FROM _unrecorded u WHERE u.rule_no = g.rule_no AND u.drive_id = g.drive_id AND u.ego_id = g.ego_id);
+DELETE FROM _excluded e WHERE EXISTS (
+    SELECT 1 FROM _unrecorded u WHERE u.rule_no = e.rule_no AND u.drive_id = e.drive_id AND u.ego_id = e.ego_id);
+
 -- A rule with all its signals is run, and says itself at which steps or occasions its conditions do not hold.
 DELETE FROM _excluded e WHERE code = 'outside_conditions' AND NOT EXISTS (
     SELECT 1 FROM _gated g WHERE g.rule_no = e.rule_no AND g.drive_id = e.drive_id AND g.ego_id = e.ego_id);
@@ -60,4 +78,5 @@ DELETE FROM _gated g WHERE EXISTS (
 CREATE OR REPLACE TEMP TABLE _todo AS
 SELECT r.rule_no, s.drive_id, s.ego_id FROM _rule r CROSS JOIN _subject s
 ANTI JOIN _gated g ON g.rule_no = r.rule_no AND g.drive_id = s.drive_id AND g.ego_id = s.ego_id
+ANTI JOIN _unrecorded u ON u.rule_no = r.rule_no AND u.drive_id = s.drive_id AND u.ego_id = s.ego_id
 ANTI JOIN _excluded e ON e.rule_no = r.rule_no AND e.drive_id = s.drive_id AND e.ego_id = s.ego_id;

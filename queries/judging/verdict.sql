@@ -38,7 +38,7 @@ SELECT v.drive_id, v.ego_id, v.rule_id, rule_version, kind, v.profile, severity,
     t_worst_ns, verdict, code AS reason_code, sentence AS reason, cause_code, cause_args, reason_measures, observed, required, margin, unit,
     coalesce(verdict = 'pass' AND is_near_miss(margin, near_margin), false) AS near_miss,
     coalesce(n_expected, 0) AS n_expected, coalesce(n_judged, 0) AS n_judged, p.x_m, p.y_m, p.lanelet_id,
-    CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation'
+    CASE WHEN of_others AND verdict IN ('pass', 'fail', 'not_applicable') AND code <> 'other_nation' AND NOT starts_with(code, 'unrecorded_')
         AND NOT (code = 'outside_conditions' AND t_start_ns IS NULL)
         AND (coalesce(g.gone_ns <= t_end_ns, g.gone_ns IS NOT NULL) OR coalesce(g.to_come_ns >= t_start_ns, g.to_come_ns IS NOT NULL))
         THEN 'line_of_sight' END AS assumes,

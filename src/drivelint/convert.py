@@ -176,7 +176,9 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
     """Return the map that goes along, the user's, else the log's own, the trace in its frame, and what to tell. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
-        return (None, trace, []) if own is None else _own_road(request, trace, MapSource(MAP_FILE, own))
+        if own is None:
+            return None, trace, list(library.doubts(trace, None).values())
+        return _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
     # a wrong map is refused now, not by whoever checks the converted log

@@ -165,3 +165,22 @@ def test_the_same_two_meet_once_more() -> None:
     found = of_both(ego, moving("other", NORTH, t, o, 0.0))
     assert len(found) == 2
     assert [row["ego_first"] for row in found] == [True, False]
+
+
+@pytest.mark.parametrize("turned", [math.pi, math.pi / 2, -math.pi / 3])
+@pytest.mark.parametrize("v", [1.2, 8.0])
+def test_followers_on_one_course_do_not_meet_whatever_a_heading_says(turned: float, v: float) -> None:
+    """The heading of the follower flips for two seconds: its course over ground stays."""
+    gap = 2.0 * v + 5.0
+    ego, other = (moving(name, line(), T, s0 + v * T, 0.0) for name, s0 in (("ego", 0.0), ("other", gap)))
+    ego.yaw[80:100] += turned
+    assert of_both(ego, other) == []
+
+
+@pytest.mark.parametrize("degrees", [30, 60, 180, -45])
+def test_ways_at_an_angle_meet(degrees: int) -> None:
+    """As slow as the followers, with headings that are right."""
+    heading = math.radians(degrees)
+    other = moving("other", line(heading, -16.0 * math.cos(heading), -16.0 * math.sin(heading)), T, 1.4 * T, 0.0)
+    (row,) = of_both(moving("ego", line(), T, -14.4 + 1.2 * T, 0.0), other)
+    assert row["angle_rad"] == pytest.approx(heading) or abs(degrees) == 180

@@ -225,6 +225,28 @@ def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_directio
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
+    ("standing_off_m", "driving_off_m", "ok"),
+    [
+        (1.3, 0.0, True),  # it waits at the kerb for most of the log, then drives in the middle
+        (0.0, 1.3, False),  # it waits in the middle, and drives beside it
+        (0.0, 1.1, True),
+    ],
+)
+@pytest.mark.parametrize("driving_s", [3.0, 9.0])
+def test_where_the_ego_stands_says_nothing_of_the_fit(  # noqa: PLR0917
+    hand: str, standing_off_m: float, driving_off_m: float, ok: bool, driving_s: float
+) -> None:
+    way, t = road(hand=hand), times(30.0 + driving_s)
+    s = 100.0 + 5.0 * np.maximum(t - 30.0, 0.0)
+    off = np.where(t <= 30.0, standing_off_m, driving_off_m)
+    con = derived(drive([moving("ego", way, t, s, way.own - off * way.over)], way.environment), tables=["registration"])
+    (found,) = rows(con, "FROM registration")
+    assert found["ok"] == ok
+    assert found["lateral_median_m"] == pytest.approx(driving_off_m, abs=1e-6)
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
     ("others", "ok"),
     [
         ((), False),

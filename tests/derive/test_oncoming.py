@@ -37,6 +37,34 @@ def test_who_is_oncoming(hand: str, lanes: tuple[int, int], d: float, counts: bo
     assert {row["n_unplaced"] for row in found} == ({1} if d == 5.0 else {0})
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(
+    ("until_s", "from_s", "jitter_m", "seen_s", "counts"),
+    [
+        (0.0, 9.0, 0.0, 6.0, False),  # parked at the other kerb of a narrow street
+        (0.0, 9.0, 0.3, 6.0, False),  # its place and velocity jitter
+        (2.0, 9.0, 0.0, 6.0, True),  # it came, and waits for the ego
+        (0.0, 5.0, 0.0, 6.0, True),  # it waits, and then comes
+        (0.0, 9.0, 0.0, 0.1, False),  # it stands, and is seen for a moment only
+        (9.0, 9.0, 0.0, 0.1, True),  # it is seen for a moment only, but moves
+    ],
+)
+def test_one_that_never_moves_is_parked_and_not_oncoming(  # noqa: PLR0917
+    hand: str, until_s: float, from_s: float, jitter_m: float, seen_s: float, counts: bool
+) -> None:
+    """It stands from `until_s` to `from_s`."""
+    way, t = road(hand=hand), times(6.0)
+    ego = moving("ego", way, t, 100 + 2 * t, way.own)
+    driven = 5.0 * (np.minimum(t, until_s) + np.maximum(t - from_s, 0.0))
+    s = 250 - driven + jitter_m * np.sin(9.0 * t)
+    other = moving("x", way, t, s, way.other + 0.5 * way.over)
+    other.yaw[:] = way.at(s, np.zeros(len(t)))[2] + math.pi
+    con = derived(drive([ego, other.keep(t <= seen_s + 0.05)], way.environment), tables=["oncoming"])
+    found = rows(con, f"FROM oncoming WHERE t_ns <= {seen_s * 1e9:.0f}")
+    assert {row["object_id"] for row in found} == ({"x"} if counts else {None})
+    assert {row["n_unplaced"] for row in found} == {0}
+
+
 @pytest.mark.parametrize("kind", ["car", "truck", "motorcycle", "bicycle", "animal", None])
 def test_every_vehicle_and_animal_counts_and_an_unknown_kind_may_be_one(kind: str | None) -> None:
     way = road()

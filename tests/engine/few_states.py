@@ -7,6 +7,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from drivelint.drive.trace import Trace
+from drivelint.sql.store import owned_table
 
 
 def states(x: float) -> pa.Table:
@@ -25,4 +26,5 @@ def log_of(
     rows: pa.Table, path: Path = Path("logs/drive.mcap"), *, embedded: bytes | None = None, reference: str | None = None
 ) -> Trace:
     """Return a drive of these states only."""
-    return Trace("drive", path, {"actor_state": rows}, embedded, None, [], geo_reference=reference)
+    tables = {"drive_condition": owned_table("drive_condition", "drive", [], "few"), "actor_state": rows}
+    return Trace("drive", path, tables, embedded, None, [], geo_reference=reference)

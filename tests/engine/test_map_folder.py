@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from drivelint.engine.map_folder import MapFolder
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
 from tests.engine.few_states import log_of, states
+from tests.formats.argoverse2.argoverse_log import points, road, segment
 from tests.formats.commonroad.scenario_text import lanelet, scenario
 
 
@@ -53,13 +55,31 @@ def test_then_the_only_one_of_the_place(tmp_path: Path) -> None:
     assert (found(tmp_path, x=5.0), found(tmp_path, x=1005.0)) == ("a", "b")
 
 
-def test_none_or_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> None:
+def test_without_a_map_of_the_place_a_drive_has_none_and_says_so(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
-    with pytest.raises(MapError, match=r"none of its maps is of the place of drive\.mcap: name its map in .*maps\.csv"):
-        found(tmp_path, x=5000.0)
+    library, log = MapLibrary(DriveInput(map_dir=tmp_path)), log_of(states(5000.0))
+    environment, _ = library.find(log)
+    assert environment is None
+    assert library.doubts(log, environment) == {
+        "map_not_in_folder": f"no map in {tmp_path.name} is of the place of drive.mcap: it is judged without one: name its map in maps.csv"
+    }
+    assert not library.doubts(log_of(states(5.0), Path("logs/other.mcap")), None)
+
+
+def test_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> None:
+    put(tmp_path, "a.xml")
     put(tmp_path, "b.xml", x=10.0)
-    with pytest.raises(MapError, match=r"a\.xml, b\.xml are all of the place"):
+    with pytest.raises(MapError, match=r"a\.xml, b\.xml are all of the place of drive\.mcap: name its map in .*maps\.csv"):
         found(tmp_path, x=12.0)
+
+
+def test_maps_of_argoverse_are_searched_and_other_json_is_not(tmp_path: Path) -> None:
+    archive = road(segment(1, points((0, 2), (50, 2)), points((0, -2), (50, -2))))
+    (tmp_path / "log_map_archive_s.json").write_text(json.dumps(archive))
+    (tmp_path / "scene.json").write_text('{"objects": []}')
+    put(tmp_path, "a.xml", x=1000.0)
+    assert MapFolder(tmp_path).sources()[1].name == "log_map_archive_s.json"
+    assert [found(tmp_path, x=x) for x in (5.0, 1005.0)] == ["log_map_archive_s", "a"]
 
 
 def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:
@@ -73,8 +93,9 @@ def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(
     (tmp_path / "broken.xodr").unlink()
     assert not MapLibrary(DriveInput(map_dir=tmp_path)).doubts(log, environment)
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
-    with pytest.raises(MapError, match=r"none of its maps .* \(1 could not be read, the first: .*broken\.xodr"):
-        found(tmp_path, x=5000.0)
+    library, log = MapLibrary(DriveInput(map_dir=tmp_path)), log_of(states(5000.0))
+    assert library.find(log)[0] is None
+    assert "(1 could not be read, the first: " in library.doubts(log, None)["map_not_in_folder"]
 
 
 @pytest.mark.parametrize(

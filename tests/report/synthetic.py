@@ -62,7 +62,7 @@ def drive(drive_id: str = "d1", **over: Any) -> dict[str, Any]:
 def rule(rule_id: str = SDA, **over: Any) -> dict[str, Any]:
     """Return the row of a stable critical rule."""
     return {
-        "rule_id": rule_id, "rule_version": "v", "pack": "ukhc", "pack_title": "UK Highway Code", "tags": [],
+        "rule_id": rule_id, "rule_version": "v", "pack": "ukhc", "pack_title": "UK Highway Code", "law": [], "tags": [],
         "title": "room to overtake", "clause": "Rule 162",
         "hypothesis": "is there room?", "kind": "execution", "derivation": "model", "severity": "critical",
         "legal": "should", "status": "stable", "sense": ">", "unit": "m", "requires": [], "profiles": ["nominal"],

@@ -49,10 +49,12 @@ def rule_table(settings: JudgeSettings) -> pa.Table:
 
 
 def run_id(settings: JudgeSettings) -> str:
-    """Return the hash of rules, their parameters, profiles, whether copies are judged, and versions. Errors: as `rule_table`."""
+    """Return the hash of rules, which are named, their parameters, profiles, whether copies are judged, and versions. Errors: as there."""
     rules = rule_table(settings).select(["rule_id", "rule_version", "params", "profiles"]).to_pylist()
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles).to_pylist()
-    return digest([versions(), rules, profiles, settings.robustness])
+    chosen = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
+    named = sorted(rule.id for rule in chosen if rule.is_named)
+    return digest([versions(), rules, named, profiles, settings.robustness])
 
 
 class OptionHashes:

@@ -21,6 +21,8 @@ from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Final
 
+import msgspec
+
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
@@ -36,6 +38,8 @@ def select_rules(
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
+    A rule is `is_named` where a selector is or contains its id.
+
     Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
     id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
     """
@@ -48,7 +52,8 @@ def select_rules(
             chosen.pop(rule.id, None)
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
-    return [chosen[rule_id] for rule_id in sorted(chosen)]
+    named = {part.strip() for selector in include for part in selector.split(",")}
+    return [msgspec.structs.replace(chosen[name], is_named=name in named) for name in sorted(chosen)]
 
 
 def required_rules(

@@ -179,6 +179,18 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     return replace(trace, tables={**trace.tables, "quality": ordered})
 
 
+def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Trace:
+    """Return the trace with what its map says of this condition, where neither the user nor the log says anything."""
+    rows = trace.tables["drive_condition"]
+    if word is None or condition in rows["condition"].to_pylist():
+        return trace
+    row = {"condition": condition, "value": word, "source": "map"}
+    rows = pa.concat_tables([rows, owned_table("drive_condition", trace.drive_id, [row], "of the map")]).sort_by(
+        "condition"
+    )
+    return replace(trace, tables={**trace.tables, "drive_condition": rows})
+
+
 def _refuse_no_drive(path: Path, states: States) -> None:
     """Refuse a log without states, or of which an id or a time shows that it holds something else than a drive."""
     if not len(states):
@@ -241,7 +253,8 @@ def _log_row(
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "map_offset_x_m": offset[0], "map_offset_y_m": offset[1],
-        "has_indicator": known["indicator"], "has_brake_light": known["brake_light"],
+        "has_indicator": known["indicator"], "names_indicator": recording.names_indicator,
+        "has_brake_light": known["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
     }  # fmt: skip

@@ -61,6 +61,7 @@ ASSUMED_SIZE = "assumed_size"
 TURNED_FRAME = "turned_frame"
 """The check, information only, of a log whose mapping turns it, as its own frame is left-handed."""
 OWN_MAP_UNUSABLE = "own_map_unusable"
+NOT_IN_FOLDER = "map_not_in_folder"
 """The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
 ASIDE_OF_LANE = "aside_of_lane"
 """The check of a drive whose ego fits the map, but far from the middle of its lane."""
@@ -330,6 +331,7 @@ class Recording:
     the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
     `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
     those of `Trace`. `frames_ns`: the times of the log's frames, those in which nobody is among them; None: those of the states.
+    `names_indicator`: whether a mapping names the column of the indicators.
     `ends_apart_ns`: so far apart the parts of a log may begin and end that were recorded beside each other, such as topics.
     """
 
@@ -353,6 +355,7 @@ class Recording:
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     frames_ns: Times | None = None
     ends_apart_ns: int = 0
+    names_indicator: bool | None = None
 
     def hand_over_states(self) -> States:
         """Return the states and keep none: memory has to hold those of a long drive once, not twice."""

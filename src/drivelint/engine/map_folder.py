@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 MANIFEST: Final = "maps.csv"
 _HEAD_BYTES = 65536
+_LANES_OF_ARGOVERSE: Final = b'"lane_segments"'
+"""What the JSON of an Argoverse map has somewhere, and other JSON files have not."""
 
 
 class MapFolder:
@@ -34,7 +36,7 @@ class MapFolder:
             raise MapError(f"--map-dir {folder}: no such folder")
         self._files = {file.relative_to(folder).as_posix(): file for file in sorted(folder.rglob("*")) if _is_map(file)}
         if not self._files:
-            raise MapError(f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad or Lanelet2)")
+            raise MapError(f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad, Lanelet2 or Argoverse 2)")
         self._manifest = self._read_manifest()
         self._source = cache(lambda name: read_source(self._files[name]))
 
@@ -76,7 +78,10 @@ class MapFolder:
 
 
 def _is_map(file: Path) -> bool:
-    if not file.is_file() or file.suffix.lower() not in {".xodr", ".xml", ".osm"}:
+    suffix = file.suffix.lower()
+    if not file.is_file() or suffix not in {".xodr", ".xml", ".osm", ".json"}:
         return False
+    if suffix == ".json":
+        return _LANES_OF_ARGOVERSE in file.read_bytes()
     with file.open("rb") as content:
         return (root_element_name(content.read(_HEAD_BYTES)) or "").lower() in READERS

@@ -15,8 +15,8 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
-from drivelint.drive.finish import with_quality_finding
-from drivelint.drive.trace import QualityFinding
+from drivelint.drive.finish import with_condition_of_map, with_quality_finding
+from drivelint.drive.trace import NOT_IN_FOLDER, QualityFinding
 from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
@@ -48,6 +48,8 @@ OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewher
 class MapLibrary:
     """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither.
 
+    A drive for which a folder of maps has none is judged without one: `doubts` says so.
+
     Errors: `MapError` for a map or folder that cannot be read, `UsageError`.
     """
 
@@ -61,6 +63,7 @@ class MapLibrary:
         self._lanes = cache(map_fit.one_way_lanes)
         self._loaded: dict[tuple[str, tuple[float, float], str | None], MapTables] = {}
         self._unread: dict[Path, str] = {}
+        self._without_map: dict[Path, str] = {}
 
     def load_given(self) -> None:
         """Read the map of `--map` before there is a drive, to know that it can be read. Errors: `MapError`, `UsageError`."""
@@ -87,7 +90,7 @@ class MapLibrary:
             headings = self._headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load(source, trace, voted)
-        return environment, trace
+        return environment, with_condition_of_map(trace, "nation", environment.nation)
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
         """Return the drive in the map's frame, and what shows that it is of another place.
@@ -137,7 +140,7 @@ class MapLibrary:
         Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
         """
         if environment is None:
-            return {}
+            return {NOT_IN_FOLDER: text} if (text := self._without_map.get(trace.path)) else {}
         found = {
             "handedness_disagrees": self._side_doubt(trace, environment),
             "map_unread": self._unread.get(trace.path),
@@ -176,8 +179,11 @@ class MapLibrary:
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
         return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
 
-    def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource:
-        """Return the one map on which the drive lies, of those that can be read. Errors: `MapError` where none or several are."""
+    def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource | None:
+        """Return the one map on which the drive lies, of those that can be read; None: there is none.
+
+        Errors: `MapError` where there are several.
+        """
         fitting = []
         unread: list[MapError] = []
         for source in maps.sources():
@@ -195,11 +201,17 @@ class MapLibrary:
                     f"{unread[0]}"
                 )
             return fitting[0]
-        what = "none of its maps is of" if not fitting else f"{listed([s.name for s in fitting])} are all of"
         besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
-        raise MapError(
-            f"{maps.folder}: {what} the place of {trace.path.name}{besides}: name its map in {maps.folder / MANIFEST}"
+        if fitting:
+            raise MapError(
+                f"{maps.folder}: {listed([s.name for s in fitting])} are all of the place of {trace.path.name}{besides}: "
+                f"name its map in {maps.folder / MANIFEST}"
+            )
+        self._without_map[trace.path] = (
+            f"no map in {maps.folder.name} is of the place of {trace.path.name}{besides}: it is judged without one: "
+            f"name its map in {MANIFEST}"
         )
+        return None
 
     def _load(self, source: MapSource, trace: Trace | None, voted_handedness: str | None) -> MapTables:
         """Return a map in the place that the user or the drive says; `trace` None: the user alone."""

@@ -10,6 +10,7 @@ import pyarrow as pa
 from drivelint.catalogue.header import CONTACT, OTHERS, STANDING
 from drivelint.drive import conditions
 from drivelint.evaluate import applicability
+from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
 from drivelint.sql import store
 from drivelint.sql.derivations import with_sources
 from drivelint.sql.statements import statement, texts
@@ -68,7 +69,10 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
 
 def _needs(bindings: Sequence[Binding]) -> pa.Table:
     return pa.Table.from_pylist([
-        {"rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == OTHERS}
+        {
+            "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == OTHERS,
+            "may_be_unrecorded": signal in SIGNALS_OF_FEW_LOGS and not b.rule.is_named,
+        }
         for b in bindings
         for pos, signal in enumerate(b.rule.needed)
     ])  # fmt: skip

@@ -7,7 +7,10 @@ from dataclasses import replace
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+import pyarrow as pa
+
 from drivelint.gate import match
+from drivelint.reasons.signals import UNRECORDED
 from drivelint.result import counts
 from drivelint.result.gate import ComparedFinding, Difference, NewUnknowns
 from drivelint.result.text import number
@@ -181,7 +184,8 @@ def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLooku
 
 def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
     """Return (drive, ego, rule, profile) -> rows that are unknown or in error, and the reason given most often."""
-    rows = counts.distinct_rows(counts.undecided(result.verdicts), [*_WHERE, "reason"])
+    open_rows = pa.concat_tables([counts.undecided(result.verdicts), counts.unrecorded(result.verdicts)])
+    rows = counts.distinct_rows(open_rows, [*_WHERE, "reason"])
     return {
         at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
         for at, told in counts.grouped(rows, itemgetter(*_WHERE)).items()
@@ -203,9 +207,11 @@ def _undecided(base: Result, new: Result, same: Mapping[str, str], had: ResultLo
 
 def _counted(result: Result) -> dict[Any, Counter[str]]:
     """Return (drive, ego, rule, profile) -> verdict -> number of rows."""
-    rows = counts.distinct_rows(result.verdicts, [*_WHERE, "verdict"])
-    groups = counts.grouped(rows, itemgetter(*_WHERE))
-    return {at: Counter({row["verdict"]: row["count_all"] for row in told}) for at, told in groups.items()}
+    found: dict[Any, Counter[str]] = defaultdict(Counter)
+    for row in counts.distinct_rows(result.verdicts, [*_WHERE, "verdict", "reason_code"]):
+        verdict = "unknown" if row["reason_code"].startswith(UNRECORDED) else row["verdict"]
+        found[itemgetter(*_WHERE)(row)][verdict] += row["count_all"]
+    return found
 
 
 class LookupResult(NamedTuple):
@@ -232,7 +238,7 @@ class ResultLookup:
                 start, end = (match.seconds_since_start(each[name], drive) for name in ("t_from_ns", "t_to_ns"))
                 self._recorded[drive["drive_id"], each["actor_id"]].append((start, end))
         columns = (
-            "drive_id", "ego_id", "rule_id", "profile", "object_id", "verdict", "reason",
+            "drive_id", "ego_id", "rule_id", "profile", "object_id", "verdict", "reason_code", "reason",
             "t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns", "n_expected", "n_judged",
         )  # fmt: skip
         for row in result.verdicts.select(columns).to_pylist():
@@ -291,6 +297,8 @@ class ResultLookup:
 
     def _judged(self, each: Row, at: TimedFinding) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
+        if each["reason_code"].startswith(UNRECORDED):
+            return LookupResult("unknown", each["reason"])
         if each["verdict"] != "fail":
             return LookupResult(each["verdict"], each["reason"])
         mine = self.findings.get(each["drive_id"], ())

@@ -25,6 +25,14 @@ ADVICE: Final[dict[str, str]] = {
 }
 SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
 """What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
+MISSING: Final = "missing_"
+"""Begins the reason code of a rule that is unknown for want of a signal."""
+UNRECORDED: Final = "unrecorded_"
+"""Begins the reason code of a rule that is not applicable because the log has nothing of a signal that few logs have."""
+SIGNALS_OF_FEW_LOGS: Final = {
+    "indicator", "brake_light", "declared_events", "modes", *(f"mode_{mode}" for mode in ON_OFF_EVENTS)
+}  # fmt: skip
+"""What the ego itself would have to record: a rule that needs it asks nothing of a log that has none, unless it is asked for by its id."""
 SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Conditions that the map gives under another name."""
 WHAT_IS_NULL: Final = "what is NULL, or has no row, in the rows that it was judged on"
@@ -55,8 +63,8 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
     """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
-    if code.startswith("missing_") and code not in REMEDIES:
-        return how_to_provide(code.removeprefix("missing_"), log_format, advice) + _AGAIN
+    if code.startswith((MISSING, UNRECORDED)) and code not in REMEDIES:
+        return how_to_provide(code.removeprefix(MISSING).removeprefix(UNRECORDED), log_format, advice) + _AGAIN
     condition = code.removesuffix("_unknown")
     if condition in DRIVE_CONDITION_VALUES or condition == "limit":
         return (

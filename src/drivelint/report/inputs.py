@@ -8,6 +8,8 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
+from drivelint.reasons.signals import MISSING, UNRECORDED
+from drivelint.report.law import law_words
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, ego_absences, off_map_reason
 
@@ -18,11 +20,12 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
+LAW: Final = "law"
+"""Label of the note that the terminal has in its first line."""
 _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
 """Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
 _NAMED: Final = 2
-_MISSING: Final = "missing_"
 _NO_MAP: Final = "missing_map"
 _EGO: Final = ["drive_id", "ego_id"]
 
@@ -36,9 +39,16 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: map, log, not judged."""
+    """Return the parts of the line: the law, where it is one nation's, map, log, what it does not have, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-    return [_map(drives), _log(drives), _not_judged(result, result.drives.num_rows - len(drives))]
+    law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
+    return [
+        *law,
+        _map(drives),
+        _log(drives),
+        *_unrecorded(result),
+        _not_judged(result, result.drives.num_rows - len(drives)),
+    ]
 
 
 def _map(drives: Sequence[Row]) -> InputNote:
@@ -112,18 +122,27 @@ def _copies(drives: Sequence[Row]) -> list[str]:
     return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _NAMED)}"]
 
 
+def _unrecorded(result: Result) -> list[InputNote]:
+    """Return the rules that ask nothing of these logs, as they have nothing of a signal that few logs have."""
+    rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
+    return [InputNote("not in the log", _by_signal(result, rows), is_warning=True)] if rows else []
+
+
+def _by_signal(result: Result, rows: Sequence[Row]) -> str:
+    """Return the signals that verdicts lack, each with its number of rules, the most first."""
+    missing = counts.grouped(rows, lambda row: signal_name(row["reason_code"]))
+    order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
+    egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
+    return listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
+
+
 def _not_judged(result: Result, drives: int) -> InputNote:
     """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
     rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
-    signals = [row for row in rows if row["reason_code"].startswith(_MISSING)]
-    missing = counts.grouped(signals, lambda row: signal_name(row["reason_code"]))
-    order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
-    egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
+    signals = [row for row in rows if row["reason_code"].startswith(MISSING)]
     parts = [plural(drives, "drive")] if drives else []
-    if order:
-        parts.append(
-            listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
-        )
+    if signals:
+        parts.append(_by_signal(result, signals))
     if others := len(rows) - len(signals):
         parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
@@ -146,8 +165,8 @@ def rules_without_map(result: Result) -> int:
 
 
 def signal_name(reason_code: str) -> str:
-    """Return what is missing, in words, from a reason code that begins with `missing_`."""
-    return reason_code.removeprefix(_MISSING).removeprefix("mode_").replace("_", " ")
+    """Return what is missing, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
+    return reason_code.removeprefix(MISSING).removeprefix(UNRECORDED).removeprefix("mode_").replace("_", " ")
 
 
 def _n_rules(rows: Iterable[Row]) -> int:

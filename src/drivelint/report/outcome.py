@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import OWN_MAP_UNUSABLE
+from drivelint.drive.trace import NOT_IN_FOLDER, OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
@@ -37,6 +37,11 @@ _FINDINGS: Final = "FINDINGS"
 _KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
+_NO_MAP: Final = {
+    OWN_MAP_UNUSABLE: "the log's own map cannot be used",
+    NOT_IN_FOLDER: "no map in the folder is of the place",
+}
+"""Check that leaves a drive without a map -> words."""
 _COUNTED: Final = "counted"
 """Findings that the asked confidence does not let through."""
 
@@ -66,7 +71,8 @@ class Headline(NamedTuple):
 
 class RuleCounts(NamedTuple):
     """How many rules were judged somewhere, and of these not everywhere. The others by their verdicts: all of them unknown or errors
-    (`never`), all not applicable (`idle`), or both (`open`).
+    (`never`), all not applicable (`idle`), or both (`open`). `unrecorded`: all not applicable, some because the log has nothing of a signal
+    that the rule needs; they are not among the idle.
     """
 
     judged: int
@@ -74,6 +80,7 @@ class RuleCounts(NamedTuple):
     never: int
     idle: int
     open: int
+    unrecorded: int
 
 
 def headline(result: Result) -> Headline:
@@ -83,7 +90,8 @@ def headline(result: Result) -> Headline:
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
     label = _label(result, bool(rows))
     told = counts.total(result.verdicts)
-    whole = not told["unknown"] + told["error"] and not result.interrupted
+    lacking = counts.unrecorded(result.verdicts).num_rows
+    whole = not told["unknown"] + told["error"] + lacking and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_otherwise(before)
@@ -104,7 +112,7 @@ def headline(result: Result) -> Headline:
     if n := rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
-        missing = "the log's own map cannot be used" if OWN_MAP_UNUSABLE in checks else "no map was given"
+        missing = next((words for check, words in _NO_MAP.items() if check in checks), "no map was given")
         parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
 
@@ -129,7 +137,11 @@ def rule_counts(result: Result) -> RuleCounts:
     undecided = [n for n in others if n["unknown"] + n["error"]]
     never = sum(not n["not_applicable"] for n in undecided)
     partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
-    return RuleCounts(len(judged), partly, never, len(others) - len(undecided), len(undecided) - never)
+    lacking = set(counts.unrecorded(result.verdicts)["rule_id"].to_pylist())
+    names = result.rules["rule_id"].to_pylist()
+    idle = [name for name in names if not sum(by_rule[name][v] for v in ("pass", "fail", "unknown", "error"))]
+    unrecorded = len(lacking.intersection(idle))
+    return RuleCounts(len(judged), partly, never, len(idle) - unrecorded, len(undecided) - never, unrecorded)
 
 
 def _label(result: Result, has_findings: bool) -> str:
@@ -143,7 +155,8 @@ def _label(result: Result, has_findings: bool) -> str:
     if has_findings:
         return _FINDINGS
     if not told["pass"] + told["fail"]:
-        return "UNKNOWN" if told["unknown"] + told["error"] or not told["not_applicable"] else _NOT_APPLICABLE
+        lacking = counts.unrecorded(result.verdicts).num_rows
+        return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
     return _MOSTLY if _is_mostly_open(result) else LABELS[code]
 
 
@@ -160,7 +173,10 @@ def _without_findings(result: Result, told: Mapping[str, int], label: str, *, wh
     judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
     if not judged or not result.verdicts.num_rows:
         return "nothing was judged"
-    if not told["pass"] + told["fail"] and told["unknown"] + told["error"]:
+    if (
+        not told["pass"] + told["fail"]
+        and told["unknown"] + told["error"] + counts.unrecorded(result.verdicts).num_rows
+    ):
         return "no findings, as nothing could be decided"
     if not told["pass"] + told["fail"]:
         return "no findings, as no rule applied: what they are about did not happen"

@@ -16,7 +16,8 @@ from rich.text import Text
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
-from drivelint.report.inputs import input_notes
+from drivelint.report.inputs import LAW, input_notes
+from drivelint.report.law import law_words
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
@@ -67,8 +68,10 @@ def _head(result: Result) -> Text:
     packs = list(counts.verdicts_by_pack(result.rules, result.verdicts))
     total = [pc.sum(drives[name]).as_py() or 0.0 for name in ("km", "duration_s")]
     n_rules = plural(result.rules.num_rows, "rule")
+    law = law_words(result)
     return Text(
         f"drivelint: {plural(drives.num_rows, 'drive')}, {total[0]:.2f} km, {total[1]:.0f} s, {n_rules} ({', '.join(packs)})"
+        f"{'; law ' if law else ''}{law}"
     )
 
 
@@ -118,6 +121,7 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
     of_drive = counts.grouped(found, lambda row: row["drive_id"])
     let_through = counts.grouped(every, lambda row: row["drive_id"])
     unknown = counts.verdicts_by(result.verdicts, "drive_id")
+    lacking = set(counts.unrecorded(result.verdicts)["drive_id"].to_pylist())
     starts = result.start_times
 
     def order(drive: Row) -> tuple[Any, ...]:
@@ -140,7 +144,7 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
         elif name in let_through:
             worst = _known(result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         else:
-            worst = _without_finding(drive, unknown[name])
+            worst = _without_finding(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         table.add_row(
@@ -151,12 +155,12 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
     return table
 
 
-def _without_finding(drive: Row, verdicts: Mapping[str, int]) -> Text:
+def _without_finding(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
     if off_map_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
     if verdicts["pass"]:
         return Text("no finding", "dim")
-    applied = verdicts["unknown"] + verdicts["error"] or not verdicts["not_applicable"]
+    applied = verdicts["unknown"] + verdicts["error"] or lacks_signals or not verdicts["not_applicable"]
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
@@ -237,6 +241,7 @@ def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
     n = rule_counts(result)
     said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
+    said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
     said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
     first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
@@ -274,7 +279,7 @@ def _unknown(result: Result) -> list[Text]:
 def _inputs(result: Result) -> Text:
     """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged."""
     line = Text()
-    for note in input_notes(result):
+    for note in (note for note in input_notes(result) if note.label != LAW):
         line.append(f"{' | ' if line else ''}{note.label}: ", "default")
         line.append(note.words, "yellow" if note.is_warning else "default")
     return line
@@ -291,7 +296,7 @@ def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
         lines.append(Text(f"baseline of its findings {said}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
-    if counts.total(result.verdicts)["unknown"]:
+    if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:
         lines.append(Text("inspect  drivelint inspect TRACE tells what a log lacks: unknown is not pass"))
     if out is None:
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))

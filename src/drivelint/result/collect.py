@@ -77,6 +77,7 @@ def _rule_row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[st
         "rule_id": rule.id,
         "rule_version": rule.version,
         "window_s": window,
+        "law": list(rule.law),
         "tags": list(rule.tags),
         "requires": list(rule.requires),
         "profiles": sorted(profiles) if rule.per_profile else [],

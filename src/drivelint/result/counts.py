@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.reasons.signals import UNRECORDED
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
@@ -61,6 +63,11 @@ def distinct_rows(rows: pa.Table, columns: Sequence[str]) -> list[dict[str, Any]
 def undecided(verdicts: pa.Table) -> pa.Table:
     """Return the verdicts that are unknown or errors."""
     return verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
+
+
+def unrecorded(verdicts: pa.Table) -> pa.Table:
+    """Return the verdicts that are not applicable because the log has nothing of a signal: what they are about may have happened."""
+    return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED))
 
 
 def grouped(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:

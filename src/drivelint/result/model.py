@@ -13,7 +13,8 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
-from drivelint.result.counts import SEVERITIES
+from drivelint.reasons.signals import UNRECORDED
+from drivelint.result.counts import SEVERITIES, unrecorded
 from drivelint.result.gate import NOT_FIXED
 from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
 
@@ -118,10 +119,14 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     yield from _lossy(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
-    if _count(result.verdicts, "unknown") == result.verdicts.num_rows > 0:
-        yield ExitStatus(
-            ExitCode.OK, "nothing failed, as nothing could be decided: every verdict is unknown (--strict makes it 4)"
+    lacking = unrecorded(result.verdicts).num_rows
+    if _count(result.verdicts, "unknown") + lacking == result.verdicts.num_rows > 0:
+        why = (
+            "the log lacks a signal for every rule"
+            if lacking == result.verdicts.num_rows
+            else "every verdict is unknown"
         )
+        yield ExitStatus(ExitCode.OK, f"nothing failed, as nothing could be decided: {why} (--strict makes it 4)")
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
@@ -187,9 +192,12 @@ def failures_without_finding(result: Result) -> pa.Table:
 
 
 def gating_unknowns(result: Result) -> pa.Table:
-    """Return the unknown verdicts that make exit code 4: those of every stable rule (`strict`), or of the required ones."""
+    """Return the unknown verdicts that make exit code 4: those of every stable rule (`strict`), or of the required ones.
+
+    So do those of rules that were not judged because the log has nothing of a signal.
+    """
     rows = _of_stable_rules(result, result.verdicts)
-    rows = rows.filter(pc.equal(rows["verdict"], "unknown"))
+    rows = rows.filter(pc.or_(pc.equal(rows["verdict"], "unknown"), pc.starts_with(rows["reason_code"], UNRECORDED)))
     required = pa.array(result.required, pa.string())
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
 

@@ -1,7 +1,5 @@
 """Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI, Argoverse), which run in the direction of travel.
-
-Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards.
-"""
+Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards."""
 
 from __future__ import annotations
 
@@ -151,6 +149,7 @@ def map_from_bounds(
     kind: str,
     side: tuple[str, str],
     geo: GeoFrame | None = None,
+    nation: str | None = None,
 ) -> MapTables:
     """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
@@ -181,7 +180,7 @@ def map_from_bounds(
         "road_object": [],
         **furniture,
     }  # fmt: skip
-    return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo)
+    return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo, nation=nation)
 
 
 def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:

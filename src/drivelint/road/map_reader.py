@@ -44,7 +44,8 @@ class MapTables:
 
     `lanes`: the side (lht, rht) by whose rule the lanes' directions were read, which on roads of one direction alone need not be
     the side that is driven on; None: the map gives each lane's direction. `lanes_source` tells how it was found, as
-    `handedness_source` does; default: a guess that the traces may correct.
+    `handedness_source` does; default: a guess that the traces may correct. `nation`: the country of all its roads, as two letters;
+    None: the map does not say it.
     """
 
     environment_id: str
@@ -53,3 +54,4 @@ class MapTables:
     tables: dict[str, pa.Table] = field(repr=False)
     lanes: str | None = None
     lanes_source: str | None = None
+    nation: str | None = None

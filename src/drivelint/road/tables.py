@@ -45,6 +45,7 @@ def map_tables(
     side: tuple[str, str],
     geo: GeoFrame | None = None,
     lanes_reversed: bool = False,
+    nation: str | None = None,
 ) -> MapTables:
     """Return the map: `content`, rows or columns by table, with `environment` and `map_quality`.
 
@@ -53,6 +54,7 @@ def map_tables(
 
     `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth;
     `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
+    `nation`: the country of its roads, as two letters; None: it does not say it.
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
@@ -73,7 +75,7 @@ def map_tables(
     }  # fmt: skip
     about = owned_table("environment", name, [environment], kind)
     found = owned_table("map_quality", name, quality.sorted_rows(), kind)
-    return MapTables(name, *side, {"environment": about, **tables, "map_quality": found})
+    return MapTables(name, *side, {"environment": about, **tables, "map_quality": found}, nation=nation)
 
 
 def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:

@@ -10,6 +10,8 @@ from typing import Final
 
 from drivelint.road.geo_reference import GeoFrame
 
+NATION: Final = "us"
+"""The country of all six."""
 ORIGINS: Final = {
     "ATX": (14, 621150.0275, 3349889.9996),  # Austin: 30.27464237939507, -97.7404457407424
     "DTW": (17, 320669.9346, 4685369.9988),  # Detroit: 42.29993066912924, -83.17555750783717

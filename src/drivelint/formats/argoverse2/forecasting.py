@@ -22,7 +22,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError
 from drivelint.formats.argoverse2 import cells, vehicle
 from drivelint.formats.argoverse2.categories import FORECASTING_CLASSES, class_codes
-from drivelint.formats.argoverse2.cities import frame_of_city
+from drivelint.formats.argoverse2.cities import NATION, frame_of_city
 from drivelint.formats.folders import folder_kind
 from drivelint.formats.tables import parquet
 from drivelint.phrases import listed
@@ -84,6 +84,7 @@ def read(probe: Probe) -> Recording:
     if EGO_ID in states.ids:
         recording.findings.append(vehicle.assumed_size(EGO_ID))
     recording.sensor_range_m = SENSOR_RANGE_M
+    recording.conditions["nation"] = NATION
     city = [word for word in _distinct(path, rows, "city") if word]
     if len(city) == 1 and (frame := frame_of_city(city[0])):
         recording.geo_reference, recording.geo_offset = frame.reference, (frame.x_m, frame.y_m, 0.0)

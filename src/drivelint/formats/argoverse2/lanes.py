@@ -19,7 +19,7 @@ import numpy as np
 import shapely
 
 from drivelint.errors import MapError
-from drivelint.formats.argoverse2.cities import frame_by_file_name
+from drivelint.formats.argoverse2.cities import NATION, frame_by_file_name
 from drivelint.road.boundary_lanes import (
     BoundedLane,
     Mark,
@@ -90,7 +90,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     walks = _walks(archive.get("pedestrian_crossings", {}), quality)
     furniture = {"traffic_signal": [], "stop_line": [], "crossing": crossings(walks, lanes, request.offset, quality)}
     geo = frame_by_file_name(source.name)
-    return map_from_bounds(source, request, lanes, furniture, quality, kind="argoverse2", side=side, geo=geo)
+    return map_from_bounds(
+        source, request, lanes, furniture, quality, kind="argoverse2", side=side, geo=geo, nation=NATION
+    )
 
 
 def _archive(source: MapSource) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.argoverse2 import cells, vehicle
 from drivelint.formats.argoverse2.categories import EGO_CATEGORY, RIDDEN, RIDERS, SENSOR_CLASSES, class_codes
-from drivelint.formats.argoverse2.cities import frame_by_file_name
+from drivelint.formats.argoverse2.cities import NATION, frame_by_file_name
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.folders import folder_kind
 from drivelint.formats.riders import join_riders
@@ -75,6 +75,7 @@ def read(probe: Probe) -> Recording:
     recording = Recording(NAME, States.joined([ego, others]), ego_ids=[EGO_ID], findings=findings, lost=lost)
     recording.notes = notes + more
     recording.sensor_range_m = SENSOR_RANGE_M
+    recording.conditions["nation"] = NATION
     _add_map(recording, probe.path)
     return recording
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
+from drivelint.formats.commonroad.country import country_of
 from drivelint.formats.commonroad.signs import (
     Signs,
     points,
@@ -27,6 +28,7 @@ from drivelint.road.boundary_lanes import (
     map_from_bounds,
     side_driven_on,
 )
+from drivelint.road.countries import nation_of, side_of_nation
 from drivelint.road.driving_side import choose_side
 from drivelint.road.geo_reference import GeoFrame
 from drivelint.road.quality import MapQuality
@@ -51,17 +53,13 @@ _MARKINGS = {
     "lowered_curb": "curb", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken", "no_marking": "none",
 }  # fmt: skip
 """Our words; of a mixed double line the file does not say which side is nearer: not known."""
-_LEFT_DRIVEN = frozenset({
-    "AUS", "BGD", "CYP", "GBR", "HKG", "IDN", "IND", "IRL", "JPN", "KEN", "LKA", "MLT", "MYS", "NPL", "NZL", "PAK", "SGP",
-    "THA", "TZA", "UGA", "ZAF", "ZMB", "ZWE",
-})  # fmt: skip
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
     root = safe_xml.parse_map(source)
     quality = MapQuality()
-    signs = read_signs(root, _country(root), quality)
+    signs = read_signs(root, country_of(root), quality)
     built: list[BoundedLane] = []
     walks: list[BoundedLane] = []
     for element in root.findall("lanelet"):
@@ -79,8 +77,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    country = _country(root)
-    by_country = None if country in {"", "ZAM", "TES"} else "lht" if country in _LEFT_DRIVEN else "rht"
+    nation = nation_of(country_of(root))
+    by_country = None if nation is None else side_of_nation(nation)
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", by_country)], quality)
     try:
         lines = stop_line_stations(root, lanes, request.offset)
@@ -95,7 +93,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "crossing": crossings(walks, lanes, request.offset, quality),
     }
     geo = _geo_frame(root, quality)
-    return map_from_bounds(source, request, lanes, furniture, quality, kind="commonroad", side=side, geo=geo)
+    return map_from_bounds(
+        source, request, lanes, furniture, quality, kind="commonroad", side=side, geo=geo, nation=nation
+    )
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
@@ -161,11 +161,6 @@ def _report_words(root: etree._Element, quality: MapQuality) -> None:
         if unread:
             listed = ", ".join(f"{word or 'no word'} ({n})" for word, n in unread.items())
             quality.add("unknown_word", "info", None, f"{what} that are not read: {listed}", sum(unread.values()))
-
-
-def _country(root: etree._Element) -> str:
-    """Return the three letters of the country in the scenario's name; ZAM stands for none."""
-    return (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()
 
 
 def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:

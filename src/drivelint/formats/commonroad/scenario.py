@@ -16,9 +16,11 @@ from drivelint.drive.box_centre import velocity_of_centre, yaw_rates
 from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
+from drivelint.formats.commonroad.country import country_of
 from drivelint.formats.commonroad.lights import signal_states
 from drivelint.formats.commonroad.shapes import box_offsets, read_shape, shape_findings
 from drivelint.phrases import listed
+from drivelint.road.countries import nation_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -112,6 +114,8 @@ def read(probe: Probe) -> Recording:
         states, columns["yaw_rate"], np.concatenate(offsets, axis=1), np.repeat([s.turn_rad for s in shapes], counts)
     )
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
+    if nation := nation_of(country_of(root)):
+        recording.conditions["nation"] = nation
     if len(states):
         recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
         recording.findings += findings

@@ -10,6 +10,7 @@ import numpy as np
 from drivelint.arrays import Codes  # noqa: TC001 (part of a type that is looked up)
 from drivelint.drive.trace import ACTOR_CLASSES, SIGNAL_STATES
 from drivelint.resources import toml_beside
+from drivelint.road.countries import side_of_nation
 
 _FACTS: Final = toml_beside(__file__, "facts.toml")
 EGO_LABEL: Final = "EGO"
@@ -28,7 +29,7 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     `lines_of_lanes`: the road lines are the bounds of the lanes, left and right, in the lanes' order, without the unmarked.
     `estimated_bounds`: bounds of lanes that the converter estimates, "": none.
     `unsure_lines`: types of road lines that may be others.
-    `sides`: location -> lht or rht.
+    `nations`: location -> country, as two letters; *: of every location.
     """
 
     sensor_range_m: float | None = None
@@ -40,11 +41,16 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lines_of_lanes: bool = False
     estimated_bounds: str = ""
     unsure_lines: tuple[str, ...] = ()
-    sides: dict[str, str] = msgspec.field(default_factory=dict)
+    nations: dict[str, str] = msgspec.field(default_factory=dict)
+
+    def nation_of(self, location: str | None) -> str | None:
+        """Return the country where the location tells it."""
+        return self.nations.get(location or "", self.nations.get("*"))
 
     def side_driven_on(self, location: str | None) -> str | None:
         """Return lht or rht where the location tells it."""
-        return self.sides.get(location or "", self.sides.get("*"))
+        nation = self.nation_of(location)
+        return None if nation is None else side_of_nation(nation)
 
 
 DATASETS: Final = {name: msgspec.convert(facts, Dataset) for name, facts in _FACTS["datasets"].items()}

@@ -73,7 +73,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "crossing": crossing_rows(layers, built, request.offset, quality),
     }
     report_unread(layers, about, quality)
-    return map_from_bounds(source, request, built, furniture, quality, kind="123d", side=side)
+    return map_from_bounds(
+        source, request, built, furniture, quality, kind="123d", side=side, nation=about.nation_of(layers.info.location)
+    )
 
 
 def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:

@@ -68,6 +68,8 @@ def read(probe: Probe) -> Recording:
     frames = _frames(folder, sync, ego, boxes)
     recording = Recording(NAME, _NOBODY, sensor_range_m=about.sensor_range_m, notes=[_origin(info), *time.notes])
     recording.notes += frames.notes
+    if nation := about.nation_of(info.location):
+        recording.conditions["nation"] = nation
     if frames.malformed.any():
         n = int(frames.malformed.sum())
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))

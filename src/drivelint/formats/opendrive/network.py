@@ -10,6 +10,7 @@ import numpy as np
 
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
 from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
+from drivelint.road.countries import only_nation
 from drivelint.road.geo_reference import GeoFrame
 
 if TYPE_CHECKING:
@@ -147,6 +148,7 @@ class Network:
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
     geo: GeoFrame | None
+    nation: str | None  # of all its roads and signals, as two letters; None: the file does not say it
 
 
 def network(root: etree._Element, quality: MapQuality) -> Network:
@@ -162,7 +164,9 @@ def network(root: etree._Element, quality: MapQuality) -> Network:
             quality.add("invalid_road", "error", name, message, max(lanes, 1))
         else:
             roads[road.road_id] = road
-    return Network(roads, tuple(_connections(root, quality)), _geo_frame(root, quality))
+    said = [element.get("country") for element in root.iterfind("road/type")]
+    said += [element.get("country") for element in root.iterfind("road/signals/signal")]
+    return Network(roads, tuple(_connections(root, quality)), _geo_frame(root, quality), only_nation(said))
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:

@@ -53,7 +53,15 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         **beside,
     }
     tables = map_tables(
-        source, request, content, quality, kind="opendrive", side=side, geo=net.geo, lanes_reversed=turned
+        source,
+        request,
+        content,
+        quality,
+        kind="opendrive",
+        side=side,
+        geo=net.geo,
+        lanes_reversed=turned,
+        nation=net.nation,
     )
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 

@@ -65,7 +65,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     said = scenario.dataset.side_driven_on(scenario.place)
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
     beside = furniture(scenario, lanes, request.offset, quality)
-    return map_from_bounds(source, request, lanes, beside, quality, kind="scenarionet", side=side)
+    nation = scenario.dataset.nation_of(scenario.place)
+    return map_from_bounds(source, request, lanes, beside, quality, kind="scenarionet", side=side, nation=nation)
 
 
 def _stations_on(centre: CentreLine, places: Floats) -> Floats:

@@ -69,6 +69,8 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     recording.signals, unknown = _signals(scenario, t_s)
     recording.findings += unknown
     recording.sensor_range_m = dataset.sensor_range_m
+    if nation := dataset.nation_of(scenario.place):
+        recording.conditions["nation"] = nation
     if any("LANE" in str(feature.get("type")) for feature in scenario.features.values()):
         recording.embedded_map = content
     return recording

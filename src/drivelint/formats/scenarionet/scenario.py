@@ -11,6 +11,7 @@ from drivelint.formats.scenarionet.pickle_shortcuts import Points
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.unpickle import load
 from drivelint.resources import toml_beside
+from drivelint.road.countries import side_of_nation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -42,11 +43,16 @@ class Dataset(NamedTuple):
     speed_limits: bool = True
     heights: bool = True
     stop_points: bool = True
-    sides: Mapping[str, str] = {}
+    nations: Mapping[str, str] = {}
+
+    def nation_of(self, place: str) -> str | None:
+        """Return the country of a place, which the scenario names, as two letters; None: not known."""
+        return next((nation for begin, nation in self.nations.items() if place.startswith(begin)), None)
 
     def side_driven_on(self, place: str) -> str | None:
         """Return lht or rht at a place, which the scenario names; None: not known."""
-        return next((side for begin, side in self.sides.items() if place.startswith(begin)), None)
+        nation = self.nation_of(place)
+        return None if nation is None else side_of_nation(nation)
 
 
 class Scenario(NamedTuple):

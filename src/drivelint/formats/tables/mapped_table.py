@@ -199,6 +199,7 @@ class _Body:
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,
+            names_indicator=self.mapping.indicator is not None,
         )
 
     def _placed(self, k: str, n: int) -> Mask:

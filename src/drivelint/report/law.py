@@ -1,0 +1,37 @@
+"""Says in words which nation's law was applied, and where it was taken for granted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Final
+
+from drivelint.drive.conditions import broader_values, with_narrower_values
+from drivelint.phrases import listed, plural
+
+if TYPE_CHECKING:
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
+
+_SOURCES: Final = {"env": "--env", "trace": "the log", "map": "the map"}
+
+
+def law_words(result: Result) -> str:
+    """Return the law of the rules that are one nation's, as in: that of gb assumed; '' where no rule is one nation's."""
+    laws = sorted({tuple(rule["law"]) for rule in result.rules.select(["law"]).to_pylist() if rule["law"]})
+    drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
+    return "; ".join(_law(law, drives) for law in laws) if drives else ""
+
+
+def _law(law: tuple[str, ...], drives: list[Row]) -> str:
+    """Return whether this law was applied in the drives, and what says so."""
+    applied = {*with_narrower_values(law), *broader_values(law)}
+    counted: Counter[str] = Counter()
+    for drive in drives:
+        given = next((said for said in drive["conditions"] if said["condition"] == "nation"), None)
+        if given is None:
+            counted["assumed, as the nation is not known"] += 1
+        else:
+            how = "applied" if given["value"] in applied else "not applied"
+            counted[f"{how}: nation {given['value']} by {_SOURCES[given['source']]}"] += 1
+    each = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(counted.items())]
+    return f"of {listed(list(law))} {'; '.join(each)}"

@@ -1,0 +1,87 @@
+"""Whose law is applied: the nation that the user, the log or its map gives, in this order; the first line names it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drivelint.drive.trace import DriveInput
+from drivelint.engine.map_library import MapLibrary
+from drivelint.formats import load_map, read_trace
+from drivelint.report.law import law_words
+from drivelint.road.map_reader import MapSource
+from tests.engine.few_states import log_of, states
+from tests.formats.commonroad.scenario_text import lanelet, scenario, state
+from tests.formats.opendrive.xodr import road, xodr
+from tests.report.synthetic import drive, result, rule, verdict
+
+
+def signal(country: str) -> str:
+    return (
+        f'<signals><signal s="5" t="-2" id="{country}" name="" dynamic="no" orientation="+" zOffset="0" '
+        f'country="{country}" type="206" subtype="-1"/></signals>'
+    )
+
+
+OBSTACLE = (
+    '<dynamicObstacle id="7"><type>car</type><shape><rectangle><length>4.5</length><width>1.8</width></rectangle></shape>'
+    f"{state('initialState', 0, 5.0, 0.0, 0.0)}<trajectory>{state('state', 1, 6.0, 0.0, 0.0)}</trajectory></dynamicObstacle>"
+)
+
+
+def given(trace: Any) -> list[tuple[str, str, str]]:
+    return [(row["condition"], row["value"], row["source"]) for row in trace.tables["drive_condition"].to_pylist()]
+
+
+@pytest.mark.parametrize(
+    ("benchmark", "env", "expected"),
+    [
+        ("DEU_T-1_1_T-1", (), [("nation", "de", "trace")]),
+        ("ZAM_T-1_1_T-1", (), []),
+        ("DEU_T-1_1_T-1", ("nation=gb",), [("nation", "gb", "env")]),
+    ],
+)
+def test_a_scenario_names_its_country_and_the_user_counts_more(
+    benchmark: str, env: tuple[str, ...], expected: list[tuple[str, str, str]], tmp_path: Path
+) -> None:
+    path = tmp_path / "drive.xml"
+    path.write_text(scenario(lanelet(1, 0.0), OBSTACLE, benchmark=benchmark))
+    assert given(read_trace(path, DriveInput(ego="7", env=env).ingest_options())) == expected
+
+
+def test_the_map_tells_where_the_log_does_not(tmp_path: Path) -> None:
+    road_file = tmp_path / "road.xml"
+    road_file.write_text(scenario(lanelet(1, 0.0), benchmark="DEU_T-1"))
+    _, log = MapLibrary(DriveInput(map=road_file)).find(log_of(states(5.0)))
+    assert given(log) == [("nation", "de", "map")]
+
+
+@pytest.mark.parametrize(
+    ("countries", "nation"), [(["DE"], "de"), (["DEU", "OpenDRIVE"], "de"), (["DE", "GB"], None), (["OpenDRIVE"], None)]
+)
+def test_the_country_of_the_signals_of_an_opendrive_map(countries: list[str], nation: str | None) -> None:
+    roads = [road(str(n), more=signal(country)) for n, country in enumerate(countries, 1)]
+    assert load_map(MapSource("road.xodr", xodr(*roads).encode())).nation == nation
+
+
+@pytest.mark.parametrize(
+    ("conditions", "words"),
+    [
+        ([[]], "of gb assumed, as the nation is not known"),
+        ([[("us", "trace")]], "of gb not applied: nation us by the log"),
+        ([[("gb-wls", "env")]], "of gb applied: nation gb-wls by --env"),
+        (
+            [[], [("de", "map")]],
+            "of gb assumed, as the nation is not known in 1 drive; not applied: nation de by the map in 1 drive",
+        ),
+    ],
+)
+def test_the_first_line_names_the_law(conditions: list[list[tuple[str, str]]], words: str) -> None:
+    drives = [
+        drive(f"d{n}", conditions=[{"condition": "nation", "value": v, "source": s} for v, s in those])
+        for n, those in enumerate(conditions)
+    ]
+    assert law_words(result([verdict("pass")], drives=drives, rules=[rule(law=["gb"])])) == words
+    assert not law_words(result([verdict("pass")], drives=drives, rules=[rule()]))
