@@ -167,8 +167,9 @@ CREATE TABLE lane_change (
     leader_id VARCHAR,                -- nearest vehicle ahead in the new lane at t_start; NULL: nobody, see known {position}
     leader_gap_m DOUBLE,              -- ego front to its rear {position, heading, size}
     leader_speed_mps DOUBLE,          -- its speed {velocity}
-    follower_id VARCHAR,              -- nearest vehicle behind in the new lane at t_start; NULL: nobody, see known {position}
+    follower_id VARCHAR,              -- nearest vehicle behind in the new lane at t_start, or beside the ego there and still when its centre goes over the line; NULL: nobody, see known {position}
     follower_gap_m DOUBLE,            -- its front to the ego's rear; negative: alongside {position, heading, size}
+    follower_gap_before_m DOUBLE,     -- the same gap at the step before t_start: the ego comes over the line between the two; NULL: not seen {position, heading, size}
     follower_speed_mps DOUBLE,        -- its speed {velocity}
     follower_decel_mps2 DOUBLE,       -- its strongest mean deceleration over 0.5 s in the 4 s after t_start (positive: it slowed); NULL: not seen whole, or nobody {velocity}
     known BOOLEAN NOT NULL,           -- every vehicle nearby was placed at t_start: nobody else is leader or follower {position}
