@@ -35,7 +35,7 @@ CREATE TABLE ego_motion (
     v_long_mps DOUBLE,                -- speed along its own heading; negative: reversing {velocity}
     accel_mps2 DOUBLE,                -- longitudinal acceleration, least-squares over 0.25 s to both sides; NULL where that is not whole (log's ends, holes), and below 5 Hz {velocity}
     lat_accel_mps2 DOUBLE,            -- speed times smoothed yaw rate, to the left positive {velocity}
-    jerk_mps3 DOUBLE,                 -- slope of accel_mps2, smoothed the same way {velocity}
+    jerk_mps3 DOUBLE,                 -- slope of accel_mps2 over 0.7 s on either side, at every rate {velocity}
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step {velocity}
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step {velocity}
     accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be further from zero by so much (also when braking), as the filter flattens peaks {velocity}
