@@ -35,7 +35,7 @@ CREATE TABLE ego_motion (
     v_long_mps DOUBLE,                -- speed along its own heading; negative: reversing {velocity}
     accel_mps2 DOUBLE,                -- longitudinal acceleration, least-squares over 0.25 s to both sides; NULL where that is not whole (log's ends, holes), and below 5 Hz {velocity}
     lat_accel_mps2 DOUBLE,            -- speed times smoothed yaw rate, to the left positive {velocity}
-    jerk_mps3 DOUBLE,                 -- slope of accel_mps2, smoothed the same way {velocity}
+    jerk_mps3 DOUBLE,                 -- slope of accel_mps2 over 0.7 s on either side, at every rate {velocity}
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step {velocity}
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step {velocity}
     accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be further from zero by so much (also when braking), as the filter flattens peaks {velocity}
@@ -168,8 +168,9 @@ CREATE TABLE lane_change (
     leader_id VARCHAR,                -- nearest vehicle ahead in the new lane at t_start; NULL: nobody, see known {position}
     leader_gap_m DOUBLE,              -- ego front to its rear {position, heading, size}
     leader_speed_mps DOUBLE,          -- its speed {velocity}
-    follower_id VARCHAR,              -- nearest vehicle behind in the new lane at t_start; NULL: nobody, see known {position}
+    follower_id VARCHAR,              -- nearest vehicle behind in the new lane at t_start, or beside the ego there and still when its centre goes over the line; NULL: nobody, see known {position}
     follower_gap_m DOUBLE,            -- its front to the ego's rear; negative: alongside {position, heading, size}
+    follower_gap_before_m DOUBLE,     -- the same gap at the step before t_start: the ego comes over the line between the two; NULL: not seen {position, heading, size}
     follower_speed_mps DOUBLE,        -- its speed {velocity}
     follower_decel_mps2 DOUBLE,       -- its strongest mean deceleration over 0.5 s in the 4 s after t_start (positive: it slowed); NULL: not seen whole, or nobody {velocity}
     known BOOLEAN NOT NULL,           -- every vehicle nearby was placed at t_start: nobody else is leader or follower {position}

@@ -1,6 +1,10 @@
 -- The ego's own motion, filtered before it is differentiated. The acceleration is the least-squares slope of v_long_mps over the samples
--- within 0.25 s on either side (2.2 periods if that is more, so always two samples). The jerk is the same slope of the acceleration, and
--- the yaw rate that of the heading. At 20 Hz this is a mean over half a second: a spike of one sample appears at a third of its height.
+-- within 0.25 s on either side (2.2 periods if that is more, so always two samples). The yaw rate is the same slope of the heading. At
+-- 20 Hz this is a mean over half a second: a spike of one sample appears at a third of its height.
+--
+-- The jerk is the slope of the acceleration over the samples within 0.7 s on either side. The window is one of time, not of samples, so
+-- that the jerk does not depend on the rate of the log. nuPlan differentiates the acceleration with a Savitzky-Golay filter of second order
+-- over 15 samples at 10 Hz, which at the middle of its window is this slope (nuPlan devkit, state_extractors, extract_ego_jerk).
 --
 -- A value is NULL if the velocity itself comes from a filter (quality velocity_filtered), if a sample in the window is not known, or if the
 -- samples do not reach 0.7 of the half window to both sides (at the log's ends, at a hole). It is also NULL in logs with less than 5
@@ -53,7 +57,7 @@ slope_sample AS (
 jerk_sample AS (
     SELECT
         *,
-        CASE WHEN whole_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near, half_ns) THEN
+        CASE WHEN whole_jerk_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near) THEN
             CASE WHEN count(a) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
@@ -61,7 +65,7 @@ jerk_sample AS (
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
-        RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND coalesce(half_ns, 0) FOLLOWING
+        RANGE BETWEEN jerk_half_ns() PRECEDING AND jerk_half_ns() FOLLOWING
     )
 ),
 -- A mean acceleration is the change of speed divided by the time: samples between the two ends cannot alter it.

@@ -34,7 +34,7 @@ crossed_change AS (
         -- If the ego was never wholly in the lane that it leaves, the change begins at the crossing into that lane.
         greatest(coalesce(b.x.t0_ns, c.t_ns), c.t_chain_ns) AS t_start_ns,
         coalesce(b.x.seen AND b.x.t0_ns >= c.t_chain_ns, false) AS begin_seen,
-        CASE WHEN c.seen THEN c.t_ns END AS t_cross_ns,
+        CASE WHEN c.seen THEN c.t_ns END AS t_cross_ns, c.t_before_ns AS t_own_lane_ns, c.t_ns AS t_new_lane_ns,
         CASE WHEN coalesce(d.n, 0) = 0 THEN CASE WHEN y.front_s_m IS NOT NULL THEN c.t_ns END WHEN d.t_back_ns < coalesce(c.t_next_ns, d.t_back_ns + 1) THEN d.t_back_ns END AS t_done_ns,
         c.last_id, c.to_lanelet_id, a.s_m AS from_s_m, y.s_m AS to_s_m
     FROM crossing_step c
@@ -46,7 +46,7 @@ crossed_change AS (
 unfinished_change AS (
     SELECT
         x.drive_id, x.ego_id, x.chain_id AS from_chain_id, NULL::INTEGER AS to_chain_id, x.side, x.t0_ns AS t_start_ns, x.begin_seen,
-        NULL::BIGINT AS t_cross_ns, NULL::BIGINT AS t_done_ns, e.lanelet_id AS last_id, NULL::VARCHAR AS to_lanelet_id,
+        NULL::BIGINT AS t_cross_ns, x.t_end_ns AS t_own_lane_ns, x.t_end_ns AS t_new_lane_ns, NULL::BIGINT AS t_done_ns, e.lanelet_id AS last_id, NULL::VARCHAR AS to_lanelet_id,
         NULL::DOUBLE AS from_s_m, NULL::DOUBLE AS to_s_m
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns AND e.chain_id = x.chain_id
@@ -61,13 +61,14 @@ change AS MATERIALIZED (
     SELECT
         w.*, (row_number() OVER (PARTITION BY w.drive_id, w.ego_id ORDER BY w.t_start_ns, w.side) - 1)::INTEGER AS occurrence,
         g.environment_id, coalesce(CASE WHEN e.chain_id = w.from_chain_id THEN e.lanelet_id END, w.last_id) AS from_lanelet_id,
-        e.speed_mps AS ego_speed_mps, e.s_m, e.front_s_m, e.rear_s_m, st.seg,
+        e.speed_mps AS ego_speed_mps, e.s_m, e.front_s_m, e.rear_s_m, st.seg, b.t_ns AS t_before_ns,
         -- Whether the new lane is already the running lane of that step. Otherwise it is beside the lane that is left.
         coalesce(e.chain_id = w.to_chain_id, false) AS is_in_new_lane
     FROM (SELECT * FROM crossed_change UNION ALL BY NAME SELECT * FROM unfinished_change) w
     JOIN data_log g ON g.drive_id = w.drive_id
     JOIN ego_state e ON e.drive_id = w.drive_id AND e.ego_id = w.ego_id AND e.t_ns = w.t_start_ns
     JOIN step st ON st.drive_id = w.drive_id AND st.ego_id = w.ego_id AND st.t_ns = w.t_start_ns
+    LEFT JOIN step b ON b.drive_id = w.drive_id AND b.ego_id = w.ego_id AND b.k = st.k - 1 AND b.seg = st.seg
 ),
 new_lane_width AS (
     SELECT c.drive_id, c.ego_id, c.occurrence, b.width_m
@@ -76,9 +77,9 @@ new_lane_width AS (
     JOIN lanelet b ON b.environment_id = c.environment_id
         AND b.lanelet_id = coalesce(c.to_lanelet_id, CASE c.side WHEN 1 THEN n.left_id ELSE n.right_id END)
 ),
-object_in_new_lane AS MATERIALIZED (
+object_at_start AS MATERIALIZED (
     SELECT
-        c.drive_id, c.ego_id, c.occurrence, p.object_id, p.speed_mps, p.s_m > c.s_m AS ahead,
+        c.drive_id, c.ego_id, c.occurrence, p.object_id, p.speed_mps, p.s_m > c.s_m AS centre_ahead,
         p.rear_s_m - c.front_s_m AS ahead_gap_m, c.rear_s_m - p.front_s_m AS behind_gap_m, p.heading_diff_rad,
         is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS vehicle
     FROM change c
@@ -90,16 +91,44 @@ object_in_new_lane AS MATERIALIZED (
             ELSE in_lane(c.side * p.d_m - p.half_width_m - w.width_m / 2, p.lat_half_m, w.width_m / 2)
         END
 ),
+-- Where the same object is at the step before the change, and at the two steps between which the ego's centre goes over the line.
+later_place AS (
+    SELECT
+        o.drive_id, o.ego_id, o.occurrence, o.object_id, v.moment, p.s_m > e.s_m AS centre_ahead, p.rear_s_m > e.front_s_m AS clear_ahead,
+        e.rear_s_m - p.front_s_m AS behind_gap_m
+    FROM object_at_start o
+    JOIN change c USING (drive_id, ego_id, occurrence)
+    CROSS JOIN LATERAL (VALUES ('before', c.t_before_ns), ('own_lane', c.t_own_lane_ns), ('new_lane', c.t_new_lane_ns)) AS v(moment, t_ns)
+    JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.object_id = o.object_id AND p.t_ns = v.t_ns
+    JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = v.t_ns
+),
+-- An object whose centre is ahead of the ego's at the start is ahead only if the ego can tuck in behind it: it is clear of the ego's front
+-- when the ego's centre goes over the line. Else the ego changes lanes into it, as into one that is behind. The order is not known
+-- (behind is NULL) if it changes between two samples.
+object_in_new_lane AS MATERIALIZED (
+    SELECT
+        o.*, b.behind_gap_m AS behind_gap_before_m,
+        CASE
+            WHEN NOT o.centre_ahead THEN true
+            WHEN o.ahead_gap_m <= 0 AND NOT n.clear_ahead THEN true
+            WHEN o.ahead_gap_m <= 0 AND (n.clear_ahead IS NULL OR w.clear_ahead IS DISTINCT FROM true) OR NOT b.centre_ahead THEN NULL
+            ELSE false
+        END AS behind
+    FROM object_at_start o
+    LEFT JOIN later_place b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.occurrence = o.occurrence AND b.object_id = o.object_id AND b.moment = 'before'
+    LEFT JOIN later_place w ON w.drive_id = o.drive_id AND w.ego_id = o.ego_id AND w.occurrence = o.occurrence AND w.object_id = o.object_id AND w.moment = 'own_lane'
+    LEFT JOIN later_place n ON n.drive_id = o.drive_id AND n.ego_id = o.ego_id AND n.occurrence = o.occurrence AND n.object_id = o.object_id AND n.moment = 'new_lane'
+),
 leader AS (
     SELECT drive_id, ego_id, occurrence, min({'gap_m': ahead_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS nearest
     FROM object_in_new_lane
-    WHERE vehicle AND ahead AND (abs(heading_diff_rad) < 2 * pi() / 3 OR speed_mps <= standing_mps())
+    WHERE vehicle AND centre_ahead AND (abs(heading_diff_rad) < 2 * pi() / 3 OR speed_mps <= standing_mps())
     GROUP BY ALL
 ),
 follower AS (
-    SELECT drive_id, ego_id, occurrence, min({'gap_m': behind_gap_m, 'object_id': object_id, 'speed_mps': speed_mps}) AS nearest
+    SELECT drive_id, ego_id, occurrence, min({'gap_m': behind_gap_m, 'object_id': object_id, 'speed_mps': speed_mps, 'gap_before_m': behind_gap_before_m}) AS nearest
     FROM object_in_new_lane
-    WHERE vehicle AND NOT ahead AND abs(heading_diff_rad) < pi() / 2
+    WHERE vehicle AND behind AND abs(heading_diff_rad) < pi() / 2
     GROUP BY ALL
 ),
 -- The follower's speed in the 4 s after the start of the change.
@@ -160,8 +189,8 @@ uncertain_object AS (
     FROM (
         SELECT drive_id, ego_id, t_ns, least_m, ahead FROM hidden WHERE vehicle
         UNION ALL
-        SELECT drive_id, ego_id, t_start_ns, greatest(ahead_gap_m, behind_gap_m), ahead FROM object_in_new_lane JOIN change USING (drive_id, ego_id, occurrence)
-        WHERE NOT vehicle
+        SELECT drive_id, ego_id, t_start_ns, greatest(ahead_gap_m, behind_gap_m), NOT behind FROM object_in_new_lane JOIN change USING (drive_id, ego_id, occurrence)
+        WHERE NOT vehicle OR behind IS NULL AND abs(heading_diff_rad) < pi() / 2
     )
     GROUP BY ALL
 )
@@ -174,7 +203,7 @@ SELECT
         WHEN c.to_chain_id IS NOT NULL THEN a.ahead_id IS NULL AND f.end_m - c.from_s_m < 500 AND t.end_m - c.to_s_m > f.end_m - c.from_s_m + 20
     END AS merge,
     c.ego_speed_mps, l.nearest.object_id AS leader_id, l.nearest.gap_m AS leader_gap_m, l.nearest.speed_mps AS leader_speed_mps,
-    b.nearest.object_id AS follower_id, b.nearest.gap_m AS follower_gap_m, b.nearest.speed_mps AS follower_speed_mps,
+    b.nearest.object_id AS follower_id, b.nearest.gap_m AS follower_gap_m, b.nearest.gap_before_m AS follower_gap_before_m, b.nearest.speed_mps AS follower_speed_mps,
     CASE WHEN s.whole_course THEN s.decel_mps2 END AS follower_decel_mps2,
     c.front_s_m IS NOT NULL AND coalesce(d.near_m >= lane_change_near_m(), true) AS known,
     CASE WHEN c.front_s_m IS NOT NULL THEN coalesce(d.behind_m, 'inf'::DOUBLE) END AS unseen_m

@@ -156,7 +156,8 @@ passable_object AS (
     JOIN pair p USING (drive_id, ego_id, t_ns)
     LEFT JOIN overtaking o ON o.drive_id = n.drive_id AND o.ego_id = n.ego_id AND o.seg = n.seg AND o.line_no = n.line_no AND o.run_no = n.run_no
     CROSS JOIN LATERAL (
-        SELECT CASE WHEN p.actor_class IS DISTINCT FROM 'object' OR abs(p.d_m) >= p.half_width_m THEN may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) END AS is_allowed
+        -- A thing whose centre is beside the lane, such as a post, is part of the verge.
+        SELECT may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) AND (p.actor_class IS DISTINCT FROM 'object' OR abs(p.d_m) < p.half_width_m) AS is_allowed
     ) x
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND n.side * p.d_m < p.half_width_m
         AND p.half_width_m - n.side * p.d_m - p.lat_half_m < n.width_m + passing_room_m(p.actor_class)

@@ -19,6 +19,11 @@ CREATE OR REPLACE MACRO peak_rise(value, past, next) AS
 CREATE OR REPLACE MACRO whole_window(t_ns, first_ns, last_ns, half_ns) AS
     t_ns - first_ns >= 0.7 * half_ns AND last_ns - t_ns >= 0.7 * half_ns;
 
+-- Half width of the window over which the jerk is the slope of the acceleration: 15 samples at 10 Hz.
+CREATE OR REPLACE MACRO jerk_half_ns() AS 700_000_000;
+-- Whether the samples of that window reach 0.6 s to both sides: at 5 Hz, too.
+CREATE OR REPLACE MACRO whole_jerk_window(t_ns, first_ns, last_ns) AS t_ns - first_ns >= 590_000_000 AND last_ns - t_ns >= 590_000_000;
+
 -- An actor that is not seen comes nearer to the ego at no more than unseen_closing_mps. The sum of the half diagonals of two boxes is at
 -- most both_half_diagonals_m.
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;

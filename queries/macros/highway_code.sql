@@ -35,10 +35,10 @@ CREATE OR REPLACE MACRO most_mean_mps(total_s, gone_s, gone_m, v_mps, v_most_mps
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
     CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
 
--- Whether an actor may be passed over a line that must not be crossed (UKHC R129): vehicles that stand, and cyclists and horses at 10 mph
--- or less.
+-- Whether an actor may be passed over a line that must not be crossed (UKHC R129): vehicles and things that stand, and cyclists and horses at
+-- 10 mph or less.
 CREATE OR REPLACE MACRO may_be_passed_over_solid_line(actor_class, length_m, speed_mps) AS
-    is_vehicle(actor_class) AND speed_mps <= standing_mps()
+    (is_vehicle(actor_class) OR is_class(actor_class, 'object')) AND speed_mps <= standing_mps()
     OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
 
 -- Room to leave beside a passed actor: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).

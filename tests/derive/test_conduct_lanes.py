@@ -130,7 +130,8 @@ WHOM = [
     (None, 0.0, None),
     (None, 4.4, None),
     (None, 4.6, False),
-    ("object", 0.0, None),
+    ("object", 0.4, True),
+    ("object", 0.6, None),  # a thing that moves may be anything
 ]
 
 

@@ -27,14 +27,14 @@ def free(t: Floats, speed: Floats, yaw: Floats, slip: float = 0.0) -> Actor:
     return Actor("ego", t, x, y, np.remainder(yaw + math.pi, 2 * math.pi) - math.pi, vx, vy)
 
 
-def slope(t: Floats, y: Floats, half: float) -> Floats:
-    """Least-squares slope around each sample; NaN where the samples do not reach 0.7 of `half` to both sides, or one is NaN."""
+def slope(t: Floats, y: Floats, half: float, share: float = 0.7) -> Floats:
+    """Least-squares slope around each sample; NaN where the samples do not reach `share` of `half` to both sides, or one is NaN."""
     found = np.full(t.shape, np.nan)
     for k, at in enumerate(t):
         near = np.abs(t - at) <= half + 1e-9
         if (
-            at - t[near].min() >= 0.7 * half - 1e-9
-            and t[near].max() - at >= 0.7 * half - 1e-9
+            at - t[near].min() >= share * half - 1e-9
+            and t[near].max() - at >= share * half - 1e-9
             and np.isfinite(y[near]).all()
         ):
             found[k] = np.polyfit(t[near] - at, y[near], 1)[0]
@@ -58,7 +58,7 @@ def test_slopes_are_those_of_numpy(period: float) -> None:
     found = columns(free(t, speed, yaw, slip=0.4))
     half = max(0.25, 2.2 * float(np.median(np.diff(t))))
     accel, turning = slope(t, speed, half), slope(t, yaw, half)
-    jerk = slope(t, accel, half)
+    jerk = slope(t, accel, 0.7, 0.59 / 0.7)
     assert found["v_long_mps"] == pytest.approx(speed, abs=1e-9)
     assert found["accel_mps2"] == pytest.approx(accel, abs=1e-6, nan_ok=True)
     assert found["lat_accel_mps2"] == pytest.approx(speed * turning, abs=1e-5, nan_ok=True)
@@ -69,6 +69,23 @@ def test_slopes_are_those_of_numpy(period: float) -> None:
             mean = np.where(t - t[0] >= back - 1e-9, (value - value[first]) / (t - t[first]), np.nan)
         assert found[name] == pytest.approx(mean, abs=1e-6, nan_ok=True)
         assert np.isfinite(mean).any()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_jerk_does_not_depend_on_the_rate(seed: int) -> None:
+    """A drive of smooth random accelerations, at 20, 10 and 5 Hz."""
+    rng = np.random.default_rng(seed)
+    parts = [(rng.uniform(0.3, 1.2), rng.uniform(0.5, 4.0), rng.uniform(0, 6)) for _ in range(4)]
+    found = {}
+    for period in (0.05, 0.1, 0.2):
+        t = times(16.0, period=period)
+        speed = 20 + sum(a * np.sin(w * t + p) for a, w, p in parts)
+        found[period] = columns(free(t, speed, np.zeros(t.shape)))["jerk_mps3"][:: round(0.2 / period)]
+    whole = np.isfinite(found[0.2])
+    assert whole.sum() > 60
+    most = float(np.nanmax(np.abs(found[0.05])))
+    assert np.abs(found[0.1] - found[0.05])[whole].max() < 0.04 * most
+    assert np.abs(found[0.2] - found[0.05])[whole].max() < 0.12 * most
 
 
 def test_reversing_is_negative_and_turns_the_other_way_round() -> None:

@@ -53,7 +53,7 @@ SELECT m.drive_id, m.ego_id, m.t_ns, decided.share AS observed, 1.0::DOUBLE AS r
     CASE WHEN bound.largest_share <= 1 AND bound.possible_share > 1 THEN why('peak_over_bound_flattened') END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
--- nuPlan computes the jerk with a wider filter than ours, so a peak of the jerk that our filter flattens does not count.
+-- nuPlan's filter of the jerk is as wide as ours, so a peak of the jerk that our filter flattens does not count.
 -- greatest() ignores NULL: the known values can show that a bound was exceeded, but not that all bounds were kept.
 CROSS JOIN LATERAL (
     SELECT greatest(m.accel_mps2 / $accel_mps2, -m.accel_mps2 / $brake_mps2, abs(m.lat_accel_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS largest_share,

@@ -9,7 +9,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- tags = ["excuses"]
--- reads = ["data_log", "ego_aside", "ego_condition", "ego_motion", "ego_state", "excursion", "hidden", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
+-- reads = ["chain", "clock", "data_log", "ego_aside", "ego_condition", "ego_motion", "ego_state", "excursion", "hidden", "lane_beside", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.reverse_mps]
@@ -80,6 +80,26 @@
 WITH ego_step AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
+-- Steps at which the ego is beyond the end of the lane that it came along, in a lane of a two-way road: the map joins the two roads by no
+-- link. Whether the ego is still on its way past somebody is not known then, for as long as an overtake takes.
+chain_end AS (
+    SELECT drive_id, ego_id, chain_id, max(s_start_m + length_m) AS end_m FROM chain GROUP BY ALL
+),
+beyond_lane_step AS (
+    SELECT e.drive_id, e.ego_id, e.t_ns
+    FROM (
+        SELECT drive_id, ego_id, t_ns, lanelet_id, front_s_m,
+            last_value(CASE WHEN front_s_m IS NOT NULL THEN {'t_ns': t_ns, 'chain_id': chain_id, 'front_s_m': front_s_m, 'speed_mps': speed_mps} END IGNORE NULLS)
+                OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS last_place
+        FROM ego_state
+    ) e
+    JOIN data_log g USING (drive_id)
+    JOIN clock k USING (drive_id, ego_id)
+    JOIN chain_end c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.last_place.chain_id
+    SEMI JOIN (SELECT environment_id, lanelet_id FROM lane_beside WHERE drivable AND against) b ON b.environment_id = g.environment_id AND b.lanelet_id = e.lanelet_id
+    WHERE e.front_s_m IS NULL AND e.t_ns - e.last_place.t_ns <= longest_overtake_ns()
+        AND c.end_m - e.last_place.front_s_m <= e.last_place.speed_mps * k.max_gap_ns / 1e9
+),
 -- An overtake excuses the ego while it is beside the overtaken vehicle, on its way up to it, and until that vehicle is left behind. A
 -- vehicle on which the ego does not gain is not being overtaken: it excuses the ego for no longer than an overtake takes. If the vehicle is
 -- not placed, it is not known whether it excuses the ego, unless the vehicle is known to be left behind.
@@ -106,6 +126,8 @@ passing_step AS (
         LEFT JOIN hidden h ON h.drive_id = o.drive_id AND h.ego_id = o.ego_id AND h.t_ns = o.t_ns AND h.object_id = o.vbp_id
         UNION ALL
         SELECT drive_id, ego_id, t_ns, true FROM line_step WHERE passing_id IS NOT NULL
+        UNION ALL
+        SELECT drive_id, ego_id, t_ns, NULL FROM beyond_lane_step
     )
     GROUP BY ALL
 ),
