@@ -59,6 +59,26 @@ def test_who_collides_and_is_pushed_along_is_another(tmp_path: Path) -> None:
     assert not {row for row in doubts(drive(tmp_path, front=front, rear=rear)) if row[2] == "same_body"}
 
 
+def in_line(gap: float, closing: float, speed: float = 8.0) -> dict[str, dict[str, Any]]:
+    """Return a lorry's cab and its trailer, behind it by `gap` at first, 3 s long."""
+    front, rear = track(speed, n=30, length_m=8.0, width_m=3.0), track(speed, n=30, length_m=4.0, width_m=3.0)
+    front["x_m"] = front["x_m"] + 6.0 + gap
+    rear["x_m"] = rear["x_m"] + closing * np.arange(30) / 10.0
+    rear["vx_mps"] = rear["vx_mps"] + closing
+    return {"front": front, "rear": rear}
+
+
+@pytest.mark.parametrize(
+    ("gap", "closing", "speed", "one"),
+    [(1.5, 0.8, 8.0, True), (1.5, 0.3, 8.0, False), (3.0, 1.4, 8.0, False), (1.5, 0.8, 3.0, False)],
+)
+def test_who_is_nearer_than_anybody_follows_and_sinks_in_is_one_body(
+    tmp_path: Path, *, gap: float, closing: float, speed: float, one: bool
+) -> None:
+    found = doubts(drive(tmp_path, **in_line(gap, closing, speed)))
+    assert (("rear", "identity", "same_body") in found) is one
+
+
 def test_a_track_that_begins_elsewhere(tmp_path: Path) -> None:
     ghost = track(8.0)
     ghost["x_m"][0] -= 2.5

@@ -53,8 +53,8 @@ class Result(NamedTuple):
             return [dict(zip(names, row, strict=True)) for row in answer.fetchall()]
 
 
-def results(folder: Path) -> list[Result]:
-    """Judge the logs that were not judged yet, and return the results of all."""
+def results(folder: Path, *, copies: bool = True) -> list[Result]:
+    """Judge the logs that were not judged yet, and return the results of all. `copies`: also those with recording errors."""
     judged = []
     for log, source in LOGS.items():
         out = folder / "results" / "".join(letter if letter.isalnum() else "-" for letter in log)
@@ -63,6 +63,7 @@ def results(folder: Path) -> list[Result]:
             print(f"judging {log}", file=sys.stderr, flush=True)
             command = [sys.executable, "-m", "drivelint", "check", str(path), "--ego", "all", "--rules", "status:stable"]
             command += ["--fail-on", "never", "--no-annotate", "--keep-db", "--quiet", "--out", str(out)]
+            command += [] if copies else ["--no-robustness"]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if not (out / "findings.parquet").exists():
                 print(f"{log}: exit {done.returncode}: {done.stderr.strip()[-300:]}", file=sys.stderr)
@@ -74,9 +75,9 @@ def results(folder: Path) -> list[Result]:
     return judged
 
 
-def draw(folder: Path, seed: int, count: int) -> int:
+def draw(folder: Path, seed: int, count: int, *, copies: bool = True) -> int:
     """Draw findings by lot, write their sheets and the key, and return how many."""
-    lots = [(result, row) for result in results(folder) for row in _findings(result)]
+    lots = [(result, row) for result in results(folder, copies=copies) for row in _findings(result)]
     lots.sort(key=lambda lot: (lot[0].log, lot[1]["finding_id"]))
     taken = random.Random(seed).sample(lots, min(count, len(lots)))  # noqa: S311
     sheets = folder / "sheets"

@@ -82,7 +82,7 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
             continue
         colour = EGO if track is ego else OBJECT if track is other else MOVING if track.moved() > 1.5 else PARKED
         corners = np.asarray(track.boxes([k])[0].exterior.coords).T
-        known = track in (ego, other)
+        known = track is ego or track is other
         axis.fill(*seen(*corners), fc=colour if known else "none", ec=colour, alpha=0.75 if known else 1, lw=1.2, zorder=6)
         nose = seen(track.x[k] + np.cos(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]),
                     track.y[k] + np.sin(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]))  # fmt: skip

@@ -4,7 +4,8 @@ What is doubted stays as it is recorded; the table `doubt` says of whom, of what
 order, with their velocities completed.
 
 A tracker may keep a second track of a long vehicle, and a data set may have a rider and the bicycle. Two boxes that lie deep in each
-other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before.
+other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before. So are two that
+drive bumper to bumper, nearer than anybody follows, and sink into each other without an impact.
 """
 
 from __future__ import annotations
@@ -33,6 +34,14 @@ LONGEST_JOLT: Final = 2
 """A jolt of so many samples is one of the recording: central differences make two of one wrong position."""
 LEAST_JOLT_MPS: Final = 1.0
 """Smaller ones are within the accuracy of a tracker's velocities."""
+COMMON_LEAST: Final = 4
+"""So many moving actors whose speeds dip or rise alike at one moment show an error of the recorder's clock or places, not their driving."""
+COMMON_CHANGE: Final = 0.12
+COMMON_SPREAD: Final = 0.08
+"""Their speeds change by more than this share of what they are around it, and at most by so much more or less than the median."""
+AROUND_NS: Final = 300_000_000
+COMMON_NS: Final = 500_000_000
+"""What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
 LEAST_STEP_M: Final = 0.5
 STEP_SHARE: Final = 0.15
 """A single step of the positions differs from the velocities' way by noise and their error: more is a step of the recording."""
@@ -62,6 +71,8 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
         "velocity jumps there and back as no tyre can in {n} of {of} states ({ids})",
         quantity="velocity",
     )
+    text = "velocities of most actors change alike at once, and back, in {n} of {of} states ({ids}): the times or places of the log do"
+    findings += states.findings(_common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
     if not derived:
         aside = _displaced(states, step)
         text = "position steps aside, which the velocity does not, in {n} of {of} states ({ids})"
@@ -97,6 +108,40 @@ def _jolts(states: States, step: Steps) -> Mask:
         for i in range(1, width + 1):
             jolt[first + i] = True
     return jolt
+
+
+def _common_jolts(states: States, step: Steps) -> Mask:
+    """Return the samples near a moment at which most moving actors' speeds change by one share and back: of those actors."""
+    n, width = len(states), max(2, round(AROUND_NS / max(step.period_ns, 1)))
+    near = np.zeros(n, np.bool_)
+    if step.period_ns <= 0 or n <= 2 * width:
+        return near
+    speed = np.hypot(*states.velocity)
+    holes = np.r_[0, np.cumsum(~step.continuous)]
+    middle = np.arange(width, n - width)
+    before, after = speed[middle - width], speed[middle + width]
+    around = (before + after) / 2.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = speed[middle] / around
+        # a speed that itself changes much around the moment tells nothing
+        usable = (around > LEAST_JOLT_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
+    middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
+    times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
+    if not len(times):
+        return near
+    order = np.lexsort((share, moment))
+    median = share[order][np.r_[0, np.cumsum(count)[:-1]] + count // 2]
+    alike = abs(share - median[moment]) <= COMMON_SPREAD
+    shared = np.bincount(moment[alike], minlength=len(times)) >= COMMON_SHARE * count
+    common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
+    at = middle[common[moment] & alike]
+    since = states.t_ns - states.t_ns.min()
+    key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * COMMON_NS)
+    edges = np.zeros(n + 1, np.int64)
+    np.add.at(edges, np.searchsorted(key, key[at] - COMMON_NS), 1)
+    np.add.at(edges, np.searchsorted(key, key[at] + COMMON_NS, side="right"), -1)
+    near[:] = np.cumsum(edges[:-1]) > 0
+    return near
 
 
 def _displaced(states: States, step: Steps) -> Mask:
@@ -183,6 +228,15 @@ ENTRY_LEAST_MPS: Final = 5.0
 """A first step that differs less from the next one is noise of the first detections."""
 
 
+COUPLED_M: Final = 2.0
+COUPLED_ASIDE_M: Final = 1.0
+COUPLED_MPS: Final = 5.0
+COUPLED_LEAST: Final = 10
+SUNK_M: Final = 0.3
+"""In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the end:
+one body. Nobody follows so near for a second."""
+
+
 class _Boxes(NamedTuple):
     """Boxes (n): middle (2, n), unit vector along the box (2, n), half length and half width, velocity (2, n)."""
 
@@ -202,7 +256,9 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
         one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
         deep = _deep(one, other)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
-            continue
+            if not _coupled(one, other):
+                continue
+            deep = np.ones(len(deep), np.bool_)
         if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
             continue
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, int(starts[i] - ends[i]), states.ids[i]))
@@ -233,7 +289,7 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
 
 
 def _begin_upon(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[int, int]]:
-    """Yield pairs of tracks of which one has its first sample deep in the other's box."""
+    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it."""
     order = np.argsort(states.t_ns, kind="stable")
     t_ns = states.t_ns[order]
     for number, first in enumerate(starts):
@@ -246,7 +302,8 @@ def _begin_upon(states: States, actors: Actors, starts: Indices) -> Iterator[tup
         ]
         if len(others):
             mine = _boxes(states, actors, np.full(len(others), first))
-            for row in others[_deep(mine, _boxes(states, actors, others))]:
+            theirs = _boxes(states, actors, others)
+            for row in others[_deep(mine, theirs) | _in_line(mine, theirs)]:
                 yield number, int(states.actor[row])
 
 
@@ -264,13 +321,37 @@ def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
     return _Boxes(states.place[:, rows], np.stack([np.cos(yaw), np.sin(yaw)]), half, states.velocity[:, rows])
 
 
-def _deep(one: _Boxes, other: _Boxes) -> Floats:
+def _deep(one: _Boxes, other: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
+    overlap, reach = _overlap(one, other)
+    deep: Mask = (overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach)).all(axis=0)
+    return deep
+
+
+def _in_line(one: _Boxes, other: _Boxes) -> Mask:
+    """Say of each pair of boxes (n) whether they are close behind each other, one heading and one track; NaN: no."""
+    overlap, reach = _overlap(one, other)
+    aside = one.half[1] + reach[1] - overlap[1]
+    ahead = one.half[0] + reach[0] - overlap[0]
+    line: Mask = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
+    return line & ((one.along * other.along).sum(axis=0) > 0.95)
+
+
+def _coupled(one: _Boxes, other: _Boxes) -> bool:
+    """Say whether two tracks keep close in line at speed in all that both have, and sink into each other without an impact."""
+    line = _in_line(one, other)
+    if len(line) < COUPLED_LEAST or not line.all():
+        return False
+    sunk = _overlap(one, other)[0][0] >= SUNK_M
+    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (one, other)])
+    return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
+
+
+def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
+    """Return by how much pairs of boxes (n) overlap along the first and across it, negative: are apart, and the other's half extents so."""
     apart = other.place - one.place
     cos, sin = (one.along * other.along).sum(axis=0), one.along[0] * other.along[1] - one.along[1] * other.along[0]
     length, width = other.half
     reach = np.stack([length * abs(cos) + width * abs(sin), length * abs(sin) + width * abs(cos)])
     offset = np.stack([(apart * one.along).sum(axis=0), one.along[0] * apart[1] - one.along[1] * apart[0]])
-    overlap = one.half + reach - np.abs(offset)
-    deep: Floats = (overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach)).all(axis=0)
-    return deep
+    return one.half + reach - np.abs(offset), reach
