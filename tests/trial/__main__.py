@@ -22,12 +22,16 @@ def main() -> int:
     drawing = commands.add_parser("draw")
     drawing.add_argument("--seed", type=int, default=1)
     drawing.add_argument("--count", type=int, default=100)
-    drawing.add_argument("--no-copies", action="store_true", help="in a third of the time: sure and possible are not told apart")
+    drawing.add_argument(
+        "--no-copies", action="store_true", help="in a third of the time: sure and possible are not told apart"
+    )
     for command in (drawing, commands.add_parser("score"), commands.add_parser("misses")):
         command.add_argument("folder", type=Path)
     asked = parser.parse_args()
     if asked.command == "draw":
-        print(f"{lots.draw(asked.folder, asked.seed, asked.count, copies=not asked.no_copies)} sheets in {asked.folder / 'sheets'}")
+        print(
+            f"{lots.draw(asked.folder, asked.seed, asked.count, copies=not asked.no_copies)} sheets in {asked.folder / 'sheets'}"
+        )
         return 0
     if asked.command == "score":
         print("\n".join(score.table(asked.folder)))

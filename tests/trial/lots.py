@@ -61,7 +61,17 @@ def results(folder: Path, *, copies: bool = True) -> list[Result]:
         path = _source(log, folder / "logs")
         if not (out / "findings.parquet").exists():
             print(f"judging {log}", file=sys.stderr, flush=True)
-            command = [sys.executable, "-m", "drivelint", "check", str(path), "--ego", "all", "--rules", "status:stable"]
+            command = [
+                sys.executable,
+                "-m",
+                "drivelint",
+                "check",
+                str(path),
+                "--ego",
+                "all",
+                "--rules",
+                "status:stable",
+            ]
             command += ["--fail-on", "never", "--no-annotate", "--keep-db", "--quiet", "--out", str(out)]
             command += [] if copies else ["--no-robustness"]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -104,13 +114,13 @@ def _findings(result: Result) -> list[dict[str, Any]]:
     """Return the findings of a log whose ego moves or recorded it, with what the rule says."""
     recorders = _recorders(result)
     found = result.rows(
-        f"""
+        """
         SELECT f.* EXCLUDE (geom), r.title, r.clause, r.hypothesis, r.observes,
             greatest(list_max(t.x) - list_min(t.x), list_max(t.y) - list_min(t.y)) AS moved_m
-        FROM {{findings}} AS f
-        JOIN {{rules}} AS r USING (rule_id)
+        FROM {findings} AS f
+        JOIN {rules} AS r USING (rule_id)
         LEFT JOIN (
-            SELECT drive_id, actor_id, flatten(list(x_m)) AS x, flatten(list(y_m)) AS y FROM {{tracks}} GROUP BY ALL
+            SELECT drive_id, actor_id, flatten(list(x_m)) AS x, flatten(list(y_m)) AS y FROM {tracks} GROUP BY ALL
         ) AS t ON t.drive_id = f.drive_id AND t.actor_id = f.ego_id
         WHERE r.status = 'stable'
         """

@@ -22,7 +22,9 @@ def unnoticed(result: Result) -> list[str]:
     tracks = recording(result.folder).tracks
     egos = [row["ego_id"] for row in result.rows("SELECT DISTINCT ego_id FROM {verdicts} ORDER BY 1")]
     found = result.rows("SELECT ego_id, object_id, rule_id, t_start_s - 1 AS t0, t_end_s + 1 AS t1 FROM {findings}")
-    doubted = result.rows("SELECT DISTINCT ego_id, object_id FROM {verdicts} WHERE verdict = 'unknown' AND rule_id = 'ukhc.no-collision'")
+    doubted = result.rows(
+        "SELECT DISTINCT ego_id, object_id FROM {verdicts} WHERE verdict = 'unknown' AND rule_id = 'ukhc.no-collision'"
+    )
     unknown = {(row["ego_id"], row["object_id"]) for row in doubted}
     lines = []
     for ego_id in egos:
@@ -35,7 +37,11 @@ def unnoticed(result: Result) -> list[str]:
                 continue
             t, distance, relative = near
             rules = sorted(
-                {row["rule_id"] for row in found if row["ego_id"] == ego_id and row["object_id"] == name and row["t0"] <= t <= row["t1"]}
+                {
+                    row["rule_id"]
+                    for row in found
+                    if row["ego_id"] == ego_id and row["object_id"] == name and row["t0"] <= t <= row["t1"]
+                }
             )
             if not rules:
                 says = "unknown" if {(ego_id, name), (ego_id, None)} & unknown else "MISSED"
@@ -54,7 +60,10 @@ def _near(ego: Track, other: Track) -> tuple[float, float, float] | None:
         return None
     t, distance, _, _ = apart(ego, other)
     i, j = (np.clip(np.searchsorted(track.t, t - 0.06), 0, len(track.t) - 1) for track in (ego, other))
-    velocity = [np.stack([np.gradient(track.x, track.t), np.gradient(track.y, track.t)], axis=1)[k] for track, k in ((ego, i), (other, j))]
+    velocity = [
+        np.stack([np.gradient(track.x, track.t), np.gradient(track.y, track.t)], axis=1)[k]
+        for track, k in ((ego, i), (other, j))
+    ]
     relative = np.hypot(*(velocity[0] - velocity[1]).T)
     sound = np.ones(len(t), dtype=bool)
     for track, k in ((ego, i), (other, j)):

@@ -97,7 +97,9 @@ def recording(folder: Path) -> Recording:
     tracks = {row[0]: _track(*row[1:]) for row in states}
     shapes = [_shape(lane) for lane in rows if lane["drivable"] and min(map(len, _edges(lane))) > 1]
     tree = shapely.STRtree([shape.area for shape in shapes])
-    return Recording(tracks, rows, shapes, tree, [shapely.get_coordinates(shapely.from_wkb(bytes(wkb))) for (wkb,) in stops])
+    return Recording(
+        tracks, rows, shapes, tree, [shapely.get_coordinates(shapely.from_wkb(bytes(wkb))) for (wkb,) in stops]
+    )
 
 
 def _edges(lane: dict[str, Any]) -> tuple[list[tuple[float, float]], ...]:

@@ -22,11 +22,13 @@ def table(folder: Path) -> list[str]:
     with (folder / "answers.csv").open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
             if row["answer"] not in {"T", "F", "?"} or row["number"] not in sheets:
-                raise ValueError(f"answers.csv: sheet {row['number']}, answer {row['answer']!r}: give T, F or ? to a sheet")
+                raise ValueError(
+                    f"answers.csv: sheet {row['number']}, answer {row['answer']!r}: give T, F or ? to a sheet"
+                )
             answers.append({**sheets[row["number"]], **row})
     certainty = {True: "sure", False: "possible", None: "copies not judged"}
     parts: dict[str, Callable[[dict[str, Any]], str]] = {
-        "all": lambda row: "all",
+        "all": lambda row: "all" if row else "",
         "severity": lambda row: "minor" if row["severity"] == "minor" else "critical and major",
         "certainty": lambda row: certainty[row["sure"]],
         "ego": lambda row: "recorder" if row["recorder"] else "others",
@@ -37,6 +39,8 @@ def table(folder: Path) -> list[str]:
     for part, name in parts.items():
         true = Counter(name(row) for row in answers if row["answer"] == "T")
         all_of = Counter(map(name, answers))
-        lines += [f"{part}: {value}: {true[value]} of {n} true, {true[value] / n:.2f}" for value, n in sorted(all_of.items())]
+        lines += [
+            f"{part}: {value}: {true[value]} of {n} true, {true[value] / n:.2f}" for value, n in sorted(all_of.items())
+        ]
     faults = Counter(row["fault"] for row in answers if row["answer"] != "T")
     return [*lines, *(f"fault: {fault}: {n}" for fault, n in faults.most_common())]

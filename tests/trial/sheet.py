@@ -35,7 +35,9 @@ def drawn(result: Result, row: dict[str, Any], number: int, path: Path) -> None:
     for axis, name in zip(axes, ("start", "worst", "end"), strict=True):
         _from_above(axis, log, row, row[f"t_{name}_s"])
         axis.set_title(f"{name}: {row[f't_{name}_s']:.2f} s", fontsize=10)
-    _series([figure.add_subplot(grid[1 + i // 2, 6 * (i % 2) : 6 * (i % 2) + 6]) for i in range(4)], row, ego, other, log)
+    _series(
+        [figure.add_subplot(grid[1 + i // 2, 6 * (i % 2) : 6 * (i % 2) + 6]) for i in range(4)], row, ego, other, log
+    )
     figure.savefig(path)
     plt.close(figure)
 
@@ -83,7 +85,9 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
         colour = EGO if track is ego else OBJECT if track is other else MOVING if track.moved() > 1.5 else PARKED
         corners = np.asarray(track.boxes([k])[0].exterior.coords).T
         known = track is ego or track is other
-        axis.fill(*seen(*corners), fc=colour if known else "none", ec=colour, alpha=0.75 if known else 1, lw=1.2, zorder=6)
+        axis.fill(
+            *seen(*corners), fc=colour if known else "none", ec=colour, alpha=0.75 if known else 1, lw=1.2, zorder=6
+        )
         nose = seen(track.x[k] + np.cos(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]),
                     track.y[k] + np.sin(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]))  # fmt: skip
         axis.plot(*nose, color="k" if known else colour, lw=1.5, zorder=7)
@@ -93,7 +97,9 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
             axis.plot(*seen(track.x[future], track.y[future]), ":", color=colour, lw=1.3, zorder=5)
         label = seen(track.x[k], track.y[k])
         if np.abs(label - middle).max() < half:
-            axis.text(*label, f"{name[-4:]} {track.actor_class[:4]} {track.speed[k]:.1f}", fontsize=7, zorder=8, clip_on=True)
+            axis.text(
+                *label, f"{name[-4:]} {track.actor_class[:4]} {track.speed[k]:.1f}", fontsize=7, zorder=8, clip_on=True
+            )
     axis.set_xlim(middle[0] - half, middle[0] + half)
     axis.set_ylim(middle[1] - half, middle[1] + half)
     axis.set_aspect("equal")
@@ -143,14 +149,20 @@ def _series(axes: list[Any], row: dict[str, Any], ego: Track, other: Track | Non
         t, distance, ahead, left = apart(ego, other)
         w = (t >= first) & (t <= last)
         distances.plot(t[w], distance[w], "k.-", ms=3, label="distance between boxes, m")
-        distances.plot(t[w], np.clip(ahead[w], -10, None), color="tab:green", label="object's rear ahead of ego's front, m")
-        places.plot(t[w], left[w], color="tab:red", label=f"object left of ego, m (widths {ego.width:.1f}, {other.width:.1f})")
+        distances.plot(
+            t[w], np.clip(ahead[w], -10, None), color="tab:green", label="object's rear ahead of ego's front, m"
+        )
+        places.plot(
+            t[w], left[w], color="tab:red", label=f"object left of ego, m (widths {ego.width:.1f}, {other.width:.1f})"
+        )
         if w.any():
             distances.set_ylim(-3, min(float(np.nanmax(distance[w])) + 2, 60))
             places.set_ylim(max(float(np.nanmin(left[w])) - 1, -12), min(float(np.nanmax(left[w])) + 1, 12))
     w = (ego.t >= first) & (ego.t <= last)
     if other is None and w.sum() > 2:
-        distances.plot(ego.t[w], np.gradient(ego.speed[w], ego.t[w]), color=EGO, label="acceleration of ego (from speed), m/s2")
+        distances.plot(
+            ego.t[w], np.gradient(ego.speed[w], ego.t[w]), color=EGO, label="acceleration of ego (from speed), m/s2"
+        )
     inside = _edges(log, ego, np.flatnonzero(w))
     places.plot(ego.t[w], inside[0], color="0.3", ls="--", label="ego's left side to left edge of its lane, m")
     places.plot(ego.t[w], inside[1], color="0.6", ls="-.", label="ego's right side to right edge, m")
