@@ -25,13 +25,13 @@ def main() -> int:
     drawing.add_argument(
         "--no-copies", action="store_true", help="in a third of the time: sure and possible are not told apart"
     )
+    drawing.add_argument("--without", nargs="*", default=[], metavar="RULE", help="rules that are left out")
     for command in (drawing, commands.add_parser("score"), commands.add_parser("misses")):
         command.add_argument("folder", type=Path)
     asked = parser.parse_args()
     if asked.command == "draw":
-        print(
-            f"{lots.draw(asked.folder, asked.seed, asked.count, copies=not asked.no_copies)} sheets in {asked.folder / 'sheets'}"
-        )
+        drawn = lots.draw(asked.folder, asked.seed, asked.count, copies=not asked.no_copies, without=asked.without)
+        print(f"{drawn} sheets in {asked.folder / 'sheets'}")
         return 0
     if asked.command == "score":
         print("\n".join(score.table(asked.folder)))

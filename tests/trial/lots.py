@@ -7,7 +7,7 @@ import random
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import duckdb
 
@@ -16,6 +16,9 @@ from tests.shared_data import DATA
 from tests.waymo_json import write
 
 from .sheet import drawn
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
 
 LOGS = {
     "av2/adcf7d18": "argoverse",
@@ -85,9 +88,10 @@ def results(folder: Path, *, copies: bool = True) -> list[Result]:
     return judged
 
 
-def draw(folder: Path, seed: int, count: int, *, copies: bool = True) -> int:
-    """Draw findings by lot, write their sheets and the key, and return how many."""
+def draw(folder: Path, seed: int, count: int, *, copies: bool = True, without: Collection[str] = ()) -> int:
+    """Draw findings by lot, write their sheets and the key, and return how many. `without`: ids of rules that are left out."""
     lots = [(result, row) for result in results(folder, copies=copies) for row in _findings(result)]
+    lots = [lot for lot in lots if lot[1]["rule_id"] not in without]
     lots.sort(key=lambda lot: (lot[0].log, lot[1]["finding_id"]))
     taken = random.Random(seed).sample(lots, min(count, len(lots)))  # noqa: S311
     sheets = folder / "sheets"
