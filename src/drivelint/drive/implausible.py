@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from drivelint.drive.order import integral_per_step, known_motion, track_starts, wrapped
+from drivelint.drive.outliers import common_jolts
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.drive.velocity import Tracklets, sample_noise
 from drivelint.phrases import listed
@@ -34,14 +35,6 @@ LONGEST_JOLT: Final = 2
 """A jolt of so many samples is one of the recording: central differences make two of one wrong position."""
 LEAST_JOLT_MPS: Final = 1.0
 """Smaller ones are within the accuracy of a tracker's velocities."""
-COMMON_LEAST: Final = 4
-"""So many moving actors whose speeds dip or rise alike at one moment show an error of the recorder's clock or places, not their driving."""
-COMMON_CHANGE: Final = 0.12
-COMMON_SPREAD: Final = 0.08
-"""Their speeds change by more than this share of what they are around it, and at most by so much more or less than the median."""
-AROUND_NS: Final = 300_000_000
-COMMON_NS: Final = 500_000_000
-"""What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
 LEAST_STEP_M: Final = 0.5
 STEP_SHARE: Final = 0.15
 """A single step of the positions differs from the velocities' way by noise and their error: more is a step of the recording."""
@@ -72,7 +65,7 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
         quantity="velocity",
     )
     text = "velocities of most actors change alike at once, and back, in {n} of {of} states ({ids}): the times or places of the log do"
-    findings += states.findings(_common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
+    findings += states.findings(common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
     if not derived:
         aside = _displaced(states, step)
         text = "position steps aside, which the velocity does not, in {n} of {of} states ({ids})"
@@ -108,40 +101,6 @@ def _jolts(states: States, step: Steps) -> Mask:
         for i in range(1, width + 1):
             jolt[first + i] = True
     return jolt
-
-
-def _common_jolts(states: States, step: Steps) -> Mask:
-    """Return the samples near a moment at which most moving actors' speeds change by one share and back: of those actors."""
-    n, width = len(states), max(2, round(AROUND_NS / max(step.period_ns, 1)))
-    near = np.zeros(n, np.bool_)
-    if step.period_ns <= 0 or n <= 2 * width:
-        return near
-    speed = np.hypot(*states.velocity)
-    holes = np.r_[0, np.cumsum(~step.continuous)]
-    middle = np.arange(width, n - width)
-    before, after = speed[middle - width], speed[middle + width]
-    around = (before + after) / 2.0
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = speed[middle] / around
-        # a speed that itself changes much around the moment tells nothing
-        usable = (around > LEAST_JOLT_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
-    middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
-    times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
-    if not len(times):
-        return near
-    order = np.lexsort((share, moment))
-    median = share[order][np.r_[0, np.cumsum(count)[:-1]] + count // 2]
-    alike = abs(share - median[moment]) <= COMMON_SPREAD
-    shared = np.bincount(moment[alike], minlength=len(times)) >= COMMON_SHARE * count
-    common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
-    at = middle[common[moment] & alike]
-    since = states.t_ns - states.t_ns.min()
-    key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * COMMON_NS)
-    edges = np.zeros(n + 1, np.int64)
-    np.add.at(edges, np.searchsorted(key, key[at] - COMMON_NS), 1)
-    np.add.at(edges, np.searchsorted(key, key[at] + COMMON_NS, side="right"), -1)
-    near[:] = np.cumsum(edges[:-1]) > 0
-    return near
 
 
 def _displaced(states: States, step: Steps) -> Mask:
@@ -233,8 +192,8 @@ COUPLED_ASIDE_M: Final = 1.0
 COUPLED_MPS: Final = 5.0
 COUPLED_LEAST: Final = 10
 SUNK_M: Final = 0.3
-"""In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the end:
-one body. Nobody follows so near for a second."""
+"""In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the
+end: one body. Nobody follows so near for a second."""
 
 
 class _Boxes(NamedTuple):
@@ -246,17 +205,30 @@ class _Boxes(NamedTuple):
     velocity: Floats
 
 
+BEGIN_M: Final = 0.3
+BEGIN_MPS: Final = 2.0
+"""Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
+HIT_MPS: Final = 1.5
+"""A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
+HELD_NS: Final = 2_000_000_000
+ARRIVAL_NS: Final = 1_000_000_000
+LEAVING_MPS2: Final = 4.0
+"""Whoever stands as its track ends can have gone from there with this, and is not where another one is at once: it was not there before."""
+
+
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
     """Return a finding on the tracks that are another one's body; of two, the ego's, else the longer one, is believed."""
     starts = track_starts(states.actor)
     ends = np.r_[starts[1:], len(states)]
-    rows, pairs = np.zeros(len(states), np.bool_), []
+    rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     for a, b in _begin_upon(states, actors, starts):
         rows_a, rows_b = _common(states, slice(starts[a], ends[a]), slice(starts[b], ends[b]))
         one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
         deep = _deep(one, other)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
             if not _coupled(one, other):
+                together = _overlap_at_begin(one, other)
+                begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
         if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
@@ -266,7 +238,9 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
         rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
         pairs.append(f"{left} is the same body as {kept}")
     text = f"{listed(pairs)}, in {{n}} of {{of}} states: it is not believed" if pairs else ""
-    return states.findings(rows, "same_body", "warning", text, quantity="identity")
+    findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
+    text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their places are not exact"
+    return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
 def false_entries(states: States, step: Steps) -> list[QualityFinding]:
@@ -288,6 +262,46 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
+def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
+    """Return a finding on the end of tracks that are held: standing, where another vehicle then is, sooner than they can have left."""
+    starts, order = track_starts(states.actor), np.argsort(states.t_ns, kind="stable")
+    t_ns, rows = states.t_ns[order], np.zeros(len(states), np.bool_)
+    vehicle = np.isin(np.array(actors.classes, dtype=object), list(MOTOR_VEHICLES))
+    index = {name: i for i, name in enumerate(actors.ids)}
+    motor = vehicle[np.array([index[name] for name in states.ids])]
+    lasts = np.r_[starts[1:], len(states)] - 1
+    with np.errstate(invalid="ignore"):
+        stands = np.hypot(*states.velocity[:, lasts]) < SPIN_MPS / 2.0
+    for first, last in zip(starts[stands], lasts[stands], strict=True):
+        now, after, end = np.searchsorted(
+            t_ns, [states.t_ns[last], states.t_ns[last] + 1, states.t_ns[last] + ARRIVAL_NS]
+        )
+        # who touches it then, or brakes hard from then on, may have run into it
+        before = order[now:after]
+        clear = (
+            _overlap(_boxes(states, actors, np.full(len(before), last)), _boxes(states, actors, before))[0].min(axis=0)
+            < 0.0
+        )
+        speed = dict(
+            zip(states.actor[before[clear]].tolist(), np.hypot(*states.velocity[:, before[clear]]), strict=True)
+        )
+        others = order[after:end]
+        others = others[motor[states.actor[others]]]
+        were = np.array([speed.get(number, np.nan) for number in states.actor[others].tolist()])
+        others = others[np.hypot(*states.velocity[:, others]) > np.maximum(were - HIT_MPS, SPIN_MPS)]
+        if not len(others):
+            continue
+        since_s = (states.t_ns[others] - states.t_ns[last]) * 1e-9
+        mine = _boxes(states, actors, np.full(len(others), last))
+        depth = _overlap(mine, _boxes(states, actors, others))[0].min(axis=0)
+        if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
+            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
+    text = (
+        "tracks stand at their end where another vehicle goes on at once, in {n} of {of} states ({ids}): they are held"
+    )
+    return states.findings(rows, "held_track", "warning", text, quantity="existence")
+
+
 def _begin_upon(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it."""
     order = np.argsort(states.t_ns, kind="stable")
@@ -303,7 +317,9 @@ def _begin_upon(states: States, actors: Actors, starts: Indices) -> Iterator[tup
         if len(others):
             mine = _boxes(states, actors, np.full(len(others), first))
             theirs = _boxes(states, actors, others)
-            for row in others[_deep(mine, theirs) | _in_line(mine, theirs)]:
+            for row in others[
+                _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
+            ]:
                 yield number, int(states.actor[row])
 
 
@@ -345,6 +361,17 @@ def _coupled(one: _Boxes, other: _Boxes) -> bool:
     sunk = _overlap(one, other)[0][0] >= SUNK_M
     speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (one, other)])
     return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
+
+
+def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
+    """Say in which of their first samples (n) two tracks that move overlap, deep at once, and part again with no sign of an impact."""
+    depth, speeds = _overlap(one, other)[0].min(axis=0), np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
+    together: Mask = np.logical_and.accumulate(depth >= 0.0)
+    if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
+        return np.zeros(len(together), np.bool_)
+    until = int(together.sum()) + 1
+    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
+    return together & ~np.any(hit)
 
 
 def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
