@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -11,9 +11,6 @@ from drivelint.catalogue import check
 from drivelint.catalogue.check import Query, check_query
 from drivelint.errors import RuleError
 from drivelint.memo import Memo
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SQL = "SELECT t_ns, speed_mps > $limit AS condition FROM ego_state"
 
@@ -51,7 +48,7 @@ def test_other_code_finds_its_own(home: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_the_code_and_the_declarations_count() -> None:
     whole = memo.foundation(memo.SQL_CODE)
     assert whole != memo.foundation(memo.SQL_CODE[1:])
-    files = {file.name for pattern in memo.SQL_CODE for file in (memo.Path(memo.__file__).parent).glob(pattern)}
+    files = {file.name for pattern in memo.SQL_CODE for file in Path(memo.__file__).parent.glob(pattern)}
     assert {"syntax.py", "check.py", "allowed.py", "derivations.py", "memo.py"} <= files
 
 

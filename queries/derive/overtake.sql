@@ -126,7 +126,9 @@ path_angle AS (
 SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
-    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed, k.is_placed::INTEGER + k.passed::INTEGER + (k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns())::INTEGER >= 2 AS sure, k.begin_seen,
+    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed, -- Who was not passed may have been followed only: on the ego's own side of the road the ego changes lane, or sways, behind it.
+    CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns()
+        ELSE k.is_placed AND k.begin_seen AND k.centre_over AND coalesce(k.over_against, false) END AS sure, k.begin_seen,
     k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'

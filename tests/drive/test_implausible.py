@@ -159,3 +159,33 @@ def test_a_speedometers_error_is_none(tmp_path: Path, share: float) -> None:
     car = track(15.6)
     car["vx_mps"] = share * car["vx_mps"]
     assert "velocity_derived" not in checks(drive(tmp_path, car=car))
+
+
+def dipping(speeds: tuple[float, ...], share: float, *, of: int) -> dict[str, dict[str, Any]]:
+    """Return cars of these speeds beside each other, the first `of` of which go `share` of their way in the two steps after 5.0 s."""
+    cars = {}
+    for i, speed in enumerate(speeds):
+        car = track(speed)
+        way = np.full(99, speed / 10.0)
+        way[50:52] *= share if i < of else 1.0
+        car["x_m"] = np.r_[0.0, np.cumsum(way)]
+        car["y_m"] = car["y_m"] + 6.0 * i
+        cars[f"c{i}"] = car | {"vx_mps": np.full(100, np.nan), "vy_mps": np.full(100, np.nan)}
+    return cars
+
+
+def common(trace: Trace) -> set[str]:
+    return {name for name, quantity, code in doubts(trace) if code == "common_jolt" and quantity == "velocity"}
+
+
+def test_when_all_but_the_recorder_go_half_as_far_the_log_does(tmp_path: Path) -> None:
+    trace = drive(tmp_path, **dipping((2.0, 4.0, 7.0, 9.0), 0.5, of=4))
+    assert common(trace) == {"c0", "c1", "c2", "c3"}
+    (row, *_) = (row for row in trace.tables["doubt"].to_pylist() if row["code"] == "common_jolt")
+    assert row["t_from_ns"] <= 4_700_000_000
+    assert row["t_to_ns"] >= 5_500_000_000
+
+
+@pytest.mark.parametrize(("share", "of"), [(0.5, 2), (0.95, 4)])
+def test_some_who_brake_or_a_little_less_is_their_driving(tmp_path: Path, share: float, of: int) -> None:
+    assert not common(drive(tmp_path, **dipping((2.0, 4.0, 7.0, 9.0), share, of=of)))

@@ -59,6 +59,84 @@ def test_who_collides_and_is_pushed_along_is_another(tmp_path: Path) -> None:
     assert not {row for row in doubts(drive(tmp_path, front=front, rear=rear)) if row[2] == "same_body"}
 
 
+def in_line(gap: float, closing: float, speed: float = 8.0) -> dict[str, dict[str, Any]]:
+    """Return a lorry's cab and its trailer, behind it by `gap` at first, 3 s long."""
+    front, rear = track(speed, n=30, length_m=8.0, width_m=3.0), track(speed, n=30, length_m=4.0, width_m=3.0)
+    front["x_m"] = front["x_m"] + 6.0 + gap
+    rear["x_m"] = rear["x_m"] + closing * np.arange(30) / 10.0
+    rear["vx_mps"] = rear["vx_mps"] + closing
+    return {"front": front, "rear": rear}
+
+
+@pytest.mark.parametrize(
+    ("gap", "closing", "speed", "one"),
+    [(1.5, 0.8, 8.0, True), (1.5, 0.3, 8.0, False), (3.0, 1.4, 8.0, False), (1.5, 0.8, 3.0, False)],
+)
+def test_who_is_nearer_than_anybody_follows_and_sinks_in_is_one_body(
+    tmp_path: Path, *, gap: float, closing: float, speed: float, one: bool
+) -> None:
+    found = doubts(drive(tmp_path, **in_line(gap, closing, speed)))
+    assert (("rear", "identity", "same_body") in found) is one
+
+
+def begun(depth: float, *, closing: float = -1.5, hit: float = 0.0, speed: float = 8.0) -> dict[str, dict[str, Any]]:
+    """Return two cars of which the rear one lies `depth` in the front one at first; `hit`: it loses so much speed after 0.3 s."""
+    front, rear = track(speed), track(speed + closing)
+    front["x_m"] = front["x_m"] + 4.5 - depth
+    rear["vx_mps"][4:] -= hit
+    rear["x_m"] = np.r_[0.0, np.cumsum((rear["vx_mps"][1:] + rear["vx_mps"][:-1]) / 20.0)]
+    rear["y_m"] = rear["y_m"] + 0.4
+    return {"front": front, "rear": rear}
+
+
+@pytest.mark.parametrize(
+    ("depth", "more", "doubted"),
+    [
+        (0.7, {}, {"front", "rear"}),
+        (0.2, {}, set()),
+        (0.7, {"hit": 4.0}, set()),
+        (0.7, {"closing": 0.0}, set()),
+        (0.7, {"speed": 3.0}, set()),
+    ],
+)
+def test_boxes_that_begin_in_each_other_are_not_exact(
+    tmp_path: Path, *, depth: float, more: dict[str, float], doubted: set[str]
+) -> None:
+    trace = drive(tmp_path, **begun(depth, **more))
+    rows = [row for row in trace.tables["doubt"].to_pylist() if row["code"] == "begin_overlap"]
+    assert {row["actor_id"] for row in rows} == doubted
+    # 0.7 m at 1.5 m/s: until 0.4 s
+    assert {(row["quantity"], row["t_from_ns"], row["t_to_ns"]) for row in rows} <= {("position", 0, 499_999_999)}
+
+
+def test_who_collides_after_the_begin_is_not_doubted(tmp_path: Path) -> None:
+    cars = begun(-1.0, closing=2.0)
+    assert not {row for row in doubts(drive(tmp_path, **cars)) if row[2] == "begin_overlap"}
+
+
+@pytest.mark.parametrize(
+    ("until", "arrives", "brakes", "held"),
+    [
+        (50, 51, False, True),
+        (50, 66, False, False),
+        (100, 51, False, False),
+        (50, 48, False, False),
+        (50, 51, True, False),
+    ],
+)
+def test_who_stands_at_its_end_where_another_one_is_at_once_was_gone(
+    tmp_path: Path, *, until: int, arrives: int, brakes: bool, held: bool
+) -> None:
+    stands = track(0.0) | {"x_m": np.full(100, 60.0)}
+    goes = track(6.0)
+    goes["x_m"] = goes["x_m"] + 60.0 - 4.5 - 0.6 * (arrives - 1)
+    goes["vx_mps"][51:] = 3.0 if brakes else 6.0
+    goes["x_m"][51:] = goes["x_m"][50] + np.arange(1, 50) * goes["vx_mps"][-1] / 10.0
+    trace = drive(tmp_path, stands=moved(stands, rows=slice(0, until)), goes=goes)
+    found = {row for row in doubts(trace) if row[2] == "held_track"}
+    assert found == ({("stands", "existence", "held_track")} if held else set())
+
+
 def test_a_track_that_begins_elsewhere(tmp_path: Path) -> None:
     ghost = track(8.0)
     ghost["x_m"][0] -= 2.5

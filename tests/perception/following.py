@@ -40,7 +40,9 @@ def swept(way: Floats, k: int, half_m: float, box: Floats) -> float:
         return float("inf")
     unit = chord / length[:, None]
     station = np.concatenate([[0.0], np.cumsum(length)[:-1]])
-    sides = np.concatenate([box + (np.roll(box, -1, axis=0) - box) * share for share in np.linspace(0, 1, 8, endpoint=False)])
+    sides = np.concatenate(
+        [box + (np.roll(box, -1, axis=0) - box) * share for share in np.linspace(0, 1, 8, endpoint=False)]
+    )
     away = sides[:, None] - start
     along, aside = (away * unit).sum(axis=2), np.abs(away[..., 1] * unit[:, 0] - away[..., 0] * unit[:, 1])
     met = (along >= 0) & (along <= length) & (aside <= half_m)
@@ -73,7 +75,11 @@ def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, in
             if k is None:
                 continue
             v = float(ego["speed_mps"][k])
-            gap = swept(way, k, float(ego["width_m"][k]) / 2, corners(*box)) - float(ego["length_m"][k]) / 2 if v > SLOWEST_MPS else np.inf
+            gap = (
+                swept(way, k, float(ego["width_m"][k]) / 2, corners(*box)) - float(ego["length_m"][k]) / 2
+                if v > SLOWEST_MPS
+                else np.inf
+            )
             if object_id != of or (run and k != run[-1] + 1) or not 0 <= gap <= HEADWAY_S * v:
                 if len(run) >= LEAST_STEPS:
                     yield drive_id, ego_id, of, int(ego["t_ns"][run[0]]), int(ego["t_ns"][run[-1]])
@@ -88,7 +94,7 @@ def outcome(verdicts: list[dict[str, Any]], object_id: str, start: int, end: int
     """Return `unknown`, `fail`, `pass` or `not_applicable`: the worst of a rule's verdicts about the object, or nobody in particular, then."""
     at_that_time = {
         row["verdict"] for row in verdicts
-        if row["object_id"] in (None, object_id) and (row["t_start_ns"] is None or row["t_start_ns"] <= end and row["t_end_ns"] >= start)
+        if row["object_id"] in (None, object_id) and (row["t_start_ns"] is None or (row["t_start_ns"] <= end and row["t_end_ns"] >= start))
     }  # fmt: skip
     return next((word for word in ("unknown", "fail", "pass") if word in at_that_time), "not_applicable")
 
@@ -109,7 +115,9 @@ def main(folders: list[str]) -> int:
     for rule, counts in sums.items():
         n = counts.total()
         share = f"{(n - counts['unknown']) / n:.0%}" if n else "-"
-        print(f"{rule:26}{n:>9}{counts['pass']:>6}{counts['fail']:>6}{counts['not_applicable']:>6}{counts['unknown']:>9}{share:>9}")
+        print(
+            f"{rule:26}{n:>9}{counts['pass']:>6}{counts['fail']:>6}{counts['not_applicable']:>6}{counts['unknown']:>9}{share:>9}"
+        )
     return 0
 
 

@@ -7,8 +7,16 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["step", "stop_line_crossing"]
+-- reads = ["ego_state", "step", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
+--
+-- [params.line_m]
+-- default = 1.0
+-- unit = "m"
+-- why = "our default: maps, boxes and places together do not tell more exactly whether a vehicle that stands at the line stands behind it"
+--
+-- [reasons.stands_at_line]
+-- says = "the light was {state}, and the ego stood no more than {line_m:g} m further on: whether behind the line is not known so exactly"
 --
 -- [reasons.line_crossing_unseen]
 -- says = "the log does not show when the ego crossed the stop line"
@@ -21,7 +29,12 @@
 
 -- @reference
 SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.state, c.state_before,
-    c.t_state_ns > c.t_ns - s.dt_ns AS changed
+    c.t_state_ns > c.t_ns - s.dt_ns AS changed,
+    EXISTS (
+        FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + $line_m
+            AND e.speed_mps <= standstill_mps()
+    ) AS stands
 FROM stop_line_crossing c
 JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
 WHERE c.control = 'traffic_light'
@@ -30,10 +43,12 @@ WHERE c.control = 'traffic_light'
 -- The ego crosses the line between two steps: if the light changed between them, too, both states must agree. No light goes off after red:
 -- either the light or its recording failed.
 SELECT drive_id, ego_id, t_ns, ref_id,
-    CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state)) THEN NOT forbids(state) END AS holds,
+    CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state))
+        AND NOT (stands AND coalesce(forbids(state), false)) THEN NOT forbids(state) END AS holds,
     CASE WHEN NOT begin_seen THEN why('line_crossing_unseen')
         WHEN state IS NULL THEN why('light_state_unknown')
         WHEN state = 'off' AND forbids(state_before) THEN why('red_then_off')
         WHEN changed THEN why('light_turned', {'state': state})
+        WHEN stands AND forbids(state) THEN why('stands_at_line', {'state': state, 'line_m': $line_m})
         ELSE why('light_was', {'state': state}) END AS reason
 FROM reference

@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["crossing_passage", "lane_occupancy", "passing", "road_user", "state_dynamics", "step"]
+-- reads = ["crossing_passage", "ego_state", "lane_occupancy", "passing", "road_user", "state_dynamics", "step"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.zigzag_m]
@@ -18,6 +18,9 @@
 -- [reasons.crossing_kind_unknown]
 -- says = "the map does not say whether crossing {crossing_id} is a zebra, has lights, or neither"
 -- advice = "give one that does"
+--
+-- [reasons.zigzags_at_junction]
+-- says = "crossing {crossing_id} has lights and lies at a junction, where a crossing of the junction's own lights has no zig-zags"
 --
 -- [reasons.passed_before_crossing]
 -- says = "passed {object_ids} before crossing {crossing_id}"
@@ -40,7 +43,16 @@ FROM crossing_passage
 
 -- @condition
 -- A crossing that is neither a zebra nor signalled has no zig-zags. Whom the ego passed before the log began is not known.
-WITH passed_object AS (
+WITH junction_crossing AS (
+    SELECT DISTINCT r.ref_id
+    FROM reference r
+    JOIN step a ON a.drive_id = r.drive_id AND a.ego_id = r.ego_id AND a.t_ns = r.t_ns
+    JOIN step b ON b.drive_id = r.drive_id AND b.ego_id = r.ego_id AND b.t_ns = r.t_out_ns
+    JOIN step n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.travel_m BETWEEN a.travel_m - $zigzag_m AND b.travel_m + $zigzag_m
+    JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
+    WHERE r.kind = 'signalled' AND e.in_junction
+),
+passed_object AS (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.t_ns, coalesce(p.t_unseen_ns, p.t_ns) AS t_first_ns, s.travel_m,
         p.ego_passes AND p.t_unseen_ns IS NULL AND coalesce(is_vehicle(p.actor_class) AND NOT is_bicycle(p.actor_class, a.length_m), false) AS is_seen,
@@ -67,8 +79,9 @@ pass_before_crossing AS (
     JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= st.travel_m - $zigzag_m
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
-    CASE WHEN bool_or(b.is_seen AND b.counts) THEN false WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
+    CASE WHEN bool_or(b.is_seen AND b.counts) THEN CASE WHEN bool_or(j.ref_id IS NULL) THEN false END WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
     CASE WHEN r.kind IS NULL THEN why('crossing_kind_unknown', {'crossing_id': r.crossing_id})
+        WHEN bool_or(b.is_seen AND b.counts AND j.ref_id IS NOT NULL) THEN why('zigzags_at_junction', {'crossing_id': r.crossing_id})
         WHEN bool_or(b.is_seen AND b.counts) THEN why('passed_before_crossing', {
             'object_ids': string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts), 'crossing_id': r.crossing_id
         })
@@ -80,4 +93,5 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
 FROM reference r
 JOIN step st USING (drive_id, ego_id, t_ns)
 LEFT JOIN pass_before_crossing b USING (ref_id)
+LEFT JOIN junction_crossing j USING (ref_id)
 GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind, r.crossing_id, st.travel_m

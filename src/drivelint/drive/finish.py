@@ -14,7 +14,8 @@ from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
 from drivelint.drive.clock_restart import unknown_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
-from drivelint.drive.implausible import false_entries, implausible_motion, same_bodies
+from drivelint.drive.implausible.bodies import false_entries, held_tracks, same_bodies
+from drivelint.drive.implausible.motion import implausible_motion
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
@@ -88,7 +89,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     if not assumed:
         findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
         findings += implausible_motion(states, step, actors, derived=derived)
-        findings += [*same_bodies(states, actors, egos), *false_entries(states, step)]
+        findings += [*same_bodies(states, actors, egos), *false_entries(states, step), *held_tracks(states, actors)]
     findings += _lights(states, egos)
     missed = [each for each in missed if each.ego_id in egos]
     states = absence.with_absent_states(states, missed, recording.frames_ns)

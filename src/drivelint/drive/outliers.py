@@ -1,7 +1,8 @@
 """Finds single samples beside their track, and small steps of a track, that no motion explains.
 
 `contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its own
-would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions.
+would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions. A jolt that most actors
+have at one moment is the log's.
 """
 
 from __future__ import annotations
@@ -26,6 +27,17 @@ TYRE_MPS2: Final = 12.0
 """Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
 SAME_SPEED_SHARE: Final = 0.25
 """A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
+COMMON_LEAST: Final = 4
+"""So many moving actors whose speeds dip or rise alike at one moment show an error of the recorder's clock or places, not their driving."""
+ALIKE_SHARE: Final = 0.8
+COMMON_CHANGE: Final = 0.12
+COMMON_SPREAD: Final = 0.08
+"""Their speeds change by more than this share of what they are around it, and at most by so much more or less than the median."""
+AROUND_NS: Final = 300_000_000
+COMMON_NS: Final = 500_000_000
+"""What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
+LEAST_COMMON_MPS: Final = 1.0
+"""Whoever is slower tells nothing by the share of a change."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
 LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
@@ -138,3 +150,37 @@ def _can(one: Floats, other: Floats, time_s: Floats, error_mps: Floats) -> Mask:
 def _least_m(dt_s: Floats) -> Floats:
     least: Floats = np.clip(2.0 * TYRE_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_VELOCITY_M)
     return least
+
+
+def common_jolts(states: States, step: Steps) -> Mask:
+    """Return the samples near a moment at which most moving actors' speeds change by one share and back: of those actors."""
+    n, width = len(states), max(2, round(AROUND_NS / max(step.period_ns, 1)))
+    near = np.zeros(n, np.bool_)
+    if step.period_ns <= 0 or n <= 2 * width:
+        return near
+    speed = np.hypot(*states.velocity)
+    holes = np.r_[0, np.cumsum(~step.continuous)]
+    middle = np.arange(width, n - width)
+    before, after = speed[middle - width], speed[middle + width]
+    around = (before + after) / 2.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = speed[middle] / around
+        # a speed that itself changes much around the moment tells nothing
+        usable = (around > LEAST_COMMON_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
+    middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
+    times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
+    if not len(times):
+        return near
+    order = np.lexsort((share, moment))
+    median = share[order][np.r_[0, np.cumsum(count)[:-1]] + count // 2]
+    alike = abs(share - median[moment]) <= COMMON_SPREAD
+    shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
+    common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
+    at = middle[common[moment] & alike]
+    since = states.t_ns - states.t_ns.min()
+    key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * COMMON_NS)
+    edges = np.zeros(n + 1, np.int64)
+    np.add.at(edges, np.searchsorted(key, key[at] - COMMON_NS), 1)
+    np.add.at(edges, np.searchsorted(key, key[at] + COMMON_NS, side="right"), -1)
+    near[:] = np.cumsum(edges[:-1]) > 0
+    return near

@@ -68,11 +68,11 @@ ASIDE_OF_LANE = "aside_of_lane"
 EGO_ABSENT = "ego_absent"
 """The check of a log that goes on while its ego has no place in it."""
 FOUND_ANEW = frozenset({
-    "acceleration_not_recorded", "aligned", "class_implausible", "clock_restart", "duplicate_state", EGO_ABSENT, "false_entry",
-    "gap", "heading_spin", "heading_turned", "heading_unknown", "jumps_onto", "length_below_width", "motion_unknown",
-    "no_position", "no_size", "no_yaw", "position_step", "removed", "same_body", "size_implausible", "teleport", "too_fast",
-    "track_gap", "track_parted", "velocity_derived", "velocity_end_derived", "velocity_filtered", "velocity_jolt",
-    "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
+    "acceleration_not_recorded", "aligned", "begin_overlap", "class_implausible", "clock_restart", "common_jolt",
+    "duplicate_state", EGO_ABSENT, "false_entry", "gap", "heading_spin", "heading_turned", "heading_unknown", "held_track",
+    "jumps_onto", "length_below_width", "motion_unknown", "no_position", "no_size", "no_yaw", "position_step", "removed",
+    "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
+    "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
 })  # fmt: skip
 """Checks of the states: a log that was converted as it was recorded says what they found, and whoever reads it finds that anew."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
-from drivelint.memo import Memo
 from drivelint.resources import folder
 from drivelint.sql import words
+from drivelint.sql.kept_schemas import kept_schemas
 from drivelint.sql.statements import texts
 from drivelint.temporary import temporary_folder
 
@@ -272,20 +272,7 @@ def arrow_schemas() -> dict[str, pa.Schema]:
 
     Geometries are left out: the database makes them of the other columns.
     """
-    import pyarrow as pa
-
-    written = _SCHEMAS.of("", _written_schemas)
-    return {name: pa.ipc.read_schema(pa.py_buffer(content)) for name, content in written.items()}
-
-
-_SCHEMAS: Final = Memo[dict[str, bytes]]("schemas", dict[str, bytes])
-
-
-def _written_schemas() -> dict[str, bytes]:
-    with duckdb.connect() as con:
-        create_tables(con)
-        empty = {name: f"SELECT COLUMNS(lambda c: c <> 'geom') FROM {name} LIMIT 0" for name in column_comments()}
-        return {name: con.execute(sql).to_arrow_table().schema.serialize().to_pybytes() for name, sql in empty.items()}
+    return kept_schemas(create_tables, column_comments())
 
 
 def owned_table(

@@ -1,0 +1,1 @@
+"""Doubts what no road user does, and tracks that are no body of their own."""

@@ -1,0 +1,256 @@
+"""Doubts tracks that are no body of their own: one body in two tracks, a track that begins elsewhere, one that is held at its end.
+
+A tracker may keep a second track of a long vehicle, and a data set may have a rider and the bicycle. Two boxes that lie deep in each
+other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before. So are two that
+drive bumper to bumper, nearer than anybody follows, and sink into each other without an impact.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.implausible.motion import SPIN_MPS, TYRE_MPS2
+from drivelint.drive.order import track_starts
+from drivelint.drive.trace import MOTOR_VEHICLES
+from drivelint.phrases import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from drivelint.arrays import Floats, Indices, Mask
+    from drivelint.drive.actors import Actors
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import QualityFinding, States
+
+DEEP_SHARE: Final = 0.5
+"""Two boxes lie deep in each other if they overlap by this share of the smaller one, along it and across it."""
+SAME_MPS: Final = 2.0
+"""Tracks of one body differ in velocity by no more than this, as the median."""
+COMMON_SHARE: Final = 0.8
+"""They lie in each other in at least this share of the samples that both have,"""
+LEAST_COMMON: Final = 3
+"""and have at least so many in common."""
+FARTHEST_REACH_M: Final = 100.0
+"""No two middles of bodies that lie in each other are further apart."""
+FARTHEST_CELL: Final = 10**10
+"""Cells of places that cannot be are one: their number times that of the times is a whole number of 64 bits."""
+PAIRS_PER_PART: Final = 1_000_000
+"""So many pairs of boxes are held in memory at once."""
+ENTRY_SAMPLES: Final = 3
+"""A track that begins somewhere else comes to its place within so many samples."""
+ENTRY_LEAST_MPS: Final = 5.0
+"""A first step that differs less from the next one is noise of the first detections."""
+
+
+COUPLED_M: Final = 2.0
+COUPLED_ASIDE_M: Final = 1.0
+COUPLED_MPS: Final = 5.0
+COUPLED_LEAST: Final = 10
+SUNK_M: Final = 0.3
+"""In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the
+end: one body. Nobody follows so near for a second."""
+
+
+class _Boxes(NamedTuple):
+    """Boxes (n): middle (2, n), unit vector along the box (2, n), half length and half width, velocity (2, n)."""
+
+    place: Floats
+    along: Floats
+    half: Floats
+    velocity: Floats
+
+
+BEGIN_M: Final = 0.3
+BEGIN_MPS: Final = 2.0
+"""Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
+HIT_MPS: Final = 1.5
+"""A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
+HELD_NS: Final = 2_000_000_000
+ARRIVAL_NS: Final = 1_000_000_000
+LEAVING_MPS2: Final = 4.0
+"""Whoever stands as its track ends can have gone from there with this, and is not where another one is at once: it was not there before."""
+
+
+def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
+    """Return a finding on the tracks that are another one's body; of two, the ego's, else the longer one, is believed."""
+    rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
+    for a, b in _begin_upon(states, actors):
+        track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
+        rows_a, rows_b = _common(states, track_a, track_b)
+        one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
+        deep = _deep(one, other)
+        if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
+            if not _coupled(one, other):
+                together = _overlap_at_begin(one, other)
+                begun[rows_a[together]] = begun[rows_b[together]] = True
+                continue
+            deep = np.ones(len(deep), np.bool_)
+        if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
+            continue
+        length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
+        order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
+        kept, left = (states.ids[i] for i in order)
+        rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
+        pairs.append(f"{left} is the same body as {kept}")
+    text = f"{listed(pairs)}, in {{n}} of {{of}} states: it is not believed" if pairs else ""
+    findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
+    text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their places are not exact"
+    return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
+
+
+def false_entries(states: States, step: Steps) -> list[QualityFinding]:
+    """Return a finding on the first samples of tracks that come to their place by a step that nobody makes."""
+    n = len(states)
+    rows = np.zeros(n, np.bool_)
+    starts = track_starts(states.actor)
+    ends = np.r_[starts[1:], n]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        moved = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
+    for k in range(ENTRY_SAMPLES):
+        first = starts[ends - starts > ENTRY_SAMPLES + 2] + k
+        change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
+        hard = change > ENTRY_LEAST_MPS + TYRE_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
+        faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
+        for at in first[hard & faster]:
+            rows[at - k : at + 1] = True
+    text = "tracks begin elsewhere than they go on, as no motion explains, in {n} of {of} states ({ids})"
+    return states.findings(rows, "false_entry", "warning", text, quantity="existence")
+
+
+def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
+    """Return a finding on the end of tracks that are held: standing, where another vehicle then is, sooner than they can have left."""
+    starts, order = track_starts(states.actor), np.argsort(states.t_ns, kind="stable")
+    t_ns, rows = states.t_ns[order], np.zeros(len(states), np.bool_)
+    vehicle = np.isin(np.array(actors.classes, dtype=object), list(MOTOR_VEHICLES))
+    index = {name: i for i, name in enumerate(actors.ids)}
+    motor = vehicle[np.array([index[name] for name in states.ids])]
+    lasts, speeds = np.r_[starts[1:], len(states)] - 1, np.hypot(*states.velocity)
+    with np.errstate(invalid="ignore"):
+        stands = (speeds[lasts] < SPIN_MPS / 2.0) & (states.t_ns[lasts] < t_ns[-1])
+    for first, last in zip(starts[stands], lasts[stands], strict=True):
+        now, after, end = np.searchsorted(
+            t_ns, [states.t_ns[last], states.t_ns[last] + 1, states.t_ns[last] + ARRIVAL_NS]
+        )
+        # who touches it then, or brakes hard from then on, may have run into it
+        before = order[now:after]
+        clear = (
+            _overlap(_boxes(states, actors, np.full(len(before), last)), _boxes(states, actors, before))[0].min(axis=0)
+            < 0.0
+        )
+        speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
+        others = order[after:end]
+        others = others[motor[states.actor[others]]]
+        were = np.array([speed.get(number, np.nan) for number in states.actor[others].tolist()])
+        others = others[speeds[others] > np.maximum(were - HIT_MPS, SPIN_MPS)]
+        if not len(others):
+            continue
+        since_s = (states.t_ns[others] - states.t_ns[last]) * 1e-9
+        mine = _boxes(states, actors, np.full(len(others), last))
+        depth = _overlap(mine, _boxes(states, actors, others))[0].min(axis=0)
+        if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
+            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
+    text = (
+        "tracks stand at their end where another vehicle goes on at once, in {n} of {of} states ({ids}): they are held"
+    )
+    return states.findings(rows, "held_track", "warning", text, quantity="existence")
+
+
+def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
+    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it."""
+    starts = track_starts(states.actor)
+    number = np.full(len(states), -1)
+    number[starts] = np.arange(len(starts))
+    for first, other in _neighbours(states, actors, starts):
+        # of two that begin together each is met once
+        once = (states.actor[first] != states.actor[other]) & ((number[other] < 0) | (number[other] > number[first]))
+        first, other = first[once], other[once]  # noqa: PLW2901  the rest is of no use
+        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, other)
+        near = _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
+        yield from zip(states.actor[first[near]].tolist(), states.actor[other[near]].tolist(), strict=True)
+
+
+def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Yield, in parts, the rows that begin a track beside the rows of the same time whose box may reach so far along x."""
+    half_m = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2.0
+    reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + COUPLED_M, FARTHEST_REACH_M)
+    x = states.numbers["x_m"]
+    rows, starts = np.flatnonzero(np.isfinite(x)), starts[np.isfinite(x[starts])]
+    if not len(starts):
+        return
+    cell = np.floor(x[rows] / reach_m).clip(-FARTHEST_CELL, FARTHEST_CELL).astype(np.int64)
+    # one whole number for time and cell, so that no neighbour of a cell is one of another time
+    time = np.unique(states.t_ns[rows], return_inverse=True)[1].astype(np.int64)
+    key = time * int(np.ptp(cell) + 3) + cell - cell.min()
+    at = key[np.searchsorted(rows, starts)]
+    order = np.argsort(key, kind="stable")
+    rows, key = rows[order], key[order]
+    low, high = np.searchsorted(key, at - 1), np.searchsorted(key, at + 1, side="right")
+    part = np.cumsum(high - low) // PAIRS_PER_PART
+    for k in np.unique(part):
+        n, begin = (high - low)[part == k], low[part == k]
+        nth = np.arange(int(n.sum())) - np.repeat(np.cumsum(n) - n, n)
+        yield np.repeat(starts[part == k], n), rows[np.repeat(begin, n) + nth]
+
+
+def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
+    """Return the rows of two tracks at the times that both have."""
+    _, in_a, in_b = np.intersect1d(states.t_ns[a], states.t_ns[b], assume_unique=True, return_indices=True)
+    return in_a + a.start, in_b + b.start
+
+
+def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
+    index = {name: i for i, name in enumerate(actors.ids)}
+    who = np.array([index[name] for name in states.ids])[states.actor[rows]]
+    x, y, yaw, vx, vy = (states.numbers[name][rows] for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"))
+    half = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
+    return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), half, np.stack([vx, vy]))
+
+
+def _deep(one: _Boxes, other: _Boxes) -> Mask:
+    """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
+    overlap, reach = _overlap(one, other)
+    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach), axis=0)
+    return deep
+
+
+def _in_line(one: _Boxes, other: _Boxes) -> Mask:
+    """Say of each pair of boxes (n) whether they are close behind each other, one heading and one track; NaN: no."""
+    overlap, reach = _overlap(one, other)
+    aside = one.half[1] + reach[1] - overlap[1]
+    ahead = one.half[0] + reach[0] - overlap[0]
+    near = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
+    line: Mask = near & ((one.along * other.along).sum(axis=0) > 0.95)
+    return line
+
+
+def _coupled(one: _Boxes, other: _Boxes) -> bool:
+    """Say whether two tracks keep close in line at speed in all that both have, and sink into each other without an impact."""
+    line = _in_line(one, other)
+    if len(line) < COUPLED_LEAST or not line.all():
+        return False
+    sunk = _overlap(one, other)[0][0] >= SUNK_M
+    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (one, other)])
+    return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
+
+
+def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
+    """Say in which of their first samples (n) two tracks that move overlap, deep at once, and part again with no sign of an impact."""
+    depth, speeds = _overlap(one, other)[0].min(axis=0), np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
+    together: Mask = np.logical_and.accumulate(depth >= 0.0)
+    if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
+        return np.zeros(len(together), np.bool_)
+    until = int(together.sum()) + 1
+    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
+    return together & ~np.any(hit)
+
+
+def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
+    """Return by how much pairs of boxes (n) overlap along the first and across it, negative: are apart, and the other's half extents so."""
+    apart = other.place - one.place
+    cos, sin = (one.along * other.along).sum(axis=0), one.along[0] * other.along[1] - one.along[1] * other.along[0]
+    length, width = other.half
+    reach = np.stack([length * abs(cos) + width * abs(sin), length * abs(sin) + width * abs(cos)])
+    offset = np.stack([(apart * one.along).sum(axis=0), one.along[0] * apart[1] - one.along[1] * apart[0]])
+    return one.half + reach - np.abs(offset), reach

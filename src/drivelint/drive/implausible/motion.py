@@ -1,0 +1,166 @@
+"""Doubts what no road user does: a jolt there and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
+
+What is doubted stays as it is recorded; the table `doubt` says of whom, of what and when, and no verdict rests on it. `states` are in
+order, with their velocities completed.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.drive.order import integral_per_step, known_motion, wrapped
+from drivelint.drive.outliers import common_jolts
+from drivelint.drive.trace import MOTOR_VEHICLES
+from drivelint.drive.velocity import Tracklets, sample_noise
+
+if TYPE_CHECKING:
+    from drivelint.arrays import Floats, Mask
+    from drivelint.drive.actors import Actors
+    from drivelint.drive.order import Steps
+    from drivelint.drive.trace import QualityFinding, States
+
+TYRE_MPS2: Final = 12.0
+"""No tyre changes a velocity faster, and an impact does not change it back (see `ukhc.contact-signature`)."""
+LONGEST_JOLT: Final = 2
+"""A jolt of so many samples is one of the recording: central differences make two of one wrong position."""
+LEAST_JOLT_MPS: Final = 1.0
+"""Smaller ones are within the accuracy of a tracker's velocities."""
+LEAST_STEP_M: Final = 0.5
+STEP_SHARE: Final = 0.15
+"""A single step of the positions differs from the velocities' way by noise and their error: more is a step of the recording."""
+STEP_SIGMAS: Final = 6.0
+BACK_SHARE: Final = 0.3
+BACK_NS: Final = 3_000_000_000
+"""A step aside is taken back by one that differs from its opposite by no more than this share, within this time."""
+SPIN_LEAST_RAD: Final = np.deg2rad(12.0)
+SPIN_RADIUS_M: Final = 3.0
+SPIN_WINDOW_S: Final = 1.0
+SPIN_MPS: Final = 1.0
+"""A vehicle turns by no more than its way within a second divided by 3 m, which no turning circle undercuts, and a detector's noise."""
+FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
+"""Class -> the fastest that anybody of it is: a sprinter's record, a galloping horse, a descent of racers."""
+LEAST_FAST_SAMPLES: Final = 3
+
+
+def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
+    """Return findings, with their doubts, on what nobody does. `derived`: velocities come from the positions and do not contradict them."""
+    if len(states) < 3:
+        return []
+    jolt = _jolts(states, step)
+    findings = states.findings(
+        jolt,
+        "velocity_jolt",
+        "warning",
+        "velocity jumps there and back as no tyre can in {n} of {of} states ({ids})",
+        quantity="velocity",
+    )
+    text = "velocities of most actors change alike at once, and back, in {n} of {of} states ({ids}): the times or places of the log do"
+    findings += states.findings(common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
+    if not derived:
+        aside = _displaced(states, step)
+        text = "position steps aside, which the velocity does not, in {n} of {of} states ({ids})"
+        findings += states.findings(aside, "position_step", "warning", text, quantity="position")
+    spin = _spins(states, step, actors)
+    text = "heading turns on the spot, as no vehicle can, in {n} of {of} states ({ids})"
+    findings += states.findings(spin, "heading_spin", "warning", text, quantity="heading")
+    fast = _too_fast(states, actors)
+    return findings + states.findings(
+        fast, "class_implausible", "warning", "faster than anybody of their class: {ids}", quantity="class"
+    )
+
+
+def _jolts(states: States, step: Steps) -> Mask:
+    """Return the samples between two changes of velocity, against each other, of which no tyre makes either."""
+    v = states.velocity
+    jolt = np.zeros(len(states), np.bool_)
+    change = np.diff(v)
+    with np.errstate(invalid="ignore"):
+        hard = step.continuous & (np.hypot(*change) > np.maximum(TYRE_MPS2 * step.dt_s, LEAST_JOLT_MPS))
+    if not hard.any():
+        return jolt
+    for width in range(1, LONGEST_JOLT + 1):
+        to, away = slice(0, -width), slice(width, None)
+        whole = np.ones(len(change[0]) - width, np.bool_)
+        for i in range(width + 1):
+            whole &= step.continuous[i : len(step.continuous) - width + i]
+        against = np.sum(change[:, to] * change[:, away], axis=0) < 0.0
+        # what is left of both changes is what somebody can have done meanwhile
+        span_s = sum(step.dt_s[i : len(step.dt_s) - width + i] for i in range(width + 1))
+        goes_on = np.hypot(*(v[:, width + 1 :] - v[:, : -width - 1])) <= TYRE_MPS2 * span_s
+        first = np.flatnonzero(hard[to] & hard[away] & whole & against & goes_on)
+        for i in range(1, width + 1):
+            jolt[first + i] = True
+    return jolt
+
+
+def _displaced(states: States, step: Steps) -> Mask:
+    """Return the samples beside single steps of the positions that the velocities do not have, and those until a step is taken back."""
+    aside = np.zeros(len(states), np.bool_)
+    known = known_motion(states, step)
+    off = np.where(known, np.diff(states.place) - integral_per_step(states.velocity, step, known), 0.0)
+    size = np.hypot(*off)
+    way = np.where(known, np.hypot(*np.diff(states.place)), 0.0)
+    turn = np.where(known, np.hypot(*np.diff(states.velocity)) * step.dt_s / 2.0, 0.0)
+    limit = LEAST_STEP_M + STEP_SHARE * way + turn
+    if not (size > limit).any():
+        return aside
+    sigma = sample_noise(
+        states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor, unknown=0.0
+    )
+    limit = np.maximum(limit, STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
+    # a step stands alone: where the steps beside it are off alike, it is the velocity that is wrong
+    alone = size > 2.0 * np.maximum(_shifted(off, size, 1), _shifted(off, size, -1))
+    # an impact moves whom it hits, and changes its velocity
+    hit = np.hypot(*np.diff(states.velocity)) > TYRE_MPS2 * step.dt_s
+    at = np.flatnonzero((size > limit) & alone & ~hit)
+    aside[at] = aside[at + 1] = True
+    for a, b in pairwise(at):
+        same = states.actor[a] == states.actor[b] and states.t_ns[b] - states.t_ns[a] <= BACK_NS
+        if same and np.hypot(*(off[:, a] + off[:, b])) <= BACK_SHARE * size[a]:
+            aside[a + 1 : b + 1] = True
+    return aside
+
+
+def _shifted(off: Floats, size: Floats, by: int) -> Floats:
+    """Return how far the neighbouring step is off the same way as each step (n - 1)."""
+    neighbour = np.roll(off, by, axis=1)
+    neighbour[:, 0 if by > 0 else -1] = 0.0
+    along: Floats = np.sum(neighbour * off, axis=0) / np.where(size > 0.0, size, 1.0)
+    return along
+
+
+def _spins(states: States, step: Steps, actors: Actors) -> Mask:
+    """Return the samples within a second in which a vehicle that hardly moves turns further than its way allows."""
+    spin, n = np.zeros(len(states), np.bool_), len(states)
+    k = max(1, round(SPIN_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else n
+    if n <= k:
+        return spin
+    kinds = dict(zip(actors.ids, actors.classes, strict=True))
+    vehicle = np.array([kinds.get(name) in MOTOR_VEHICLES for name in states.ids], np.bool_)[states.actor]
+    yaw, place = states.numbers["yaw_rad"], states.place
+    same = (
+        vehicle[k:]
+        & (states.actor[k:] == states.actor[:-k])
+        & (states.t_ns[k:] - states.t_ns[:-k] <= 2.0e9 * SPIN_WINDOW_S)
+    )
+    turn = np.abs(wrapped(yaw[k:] - yaw[:-k]))
+    way = np.hypot(*(place[:, k:] - place[:, :-k]))
+    slow = np.hypot(*states.velocity) < SPIN_MPS
+    at = np.flatnonzero(same & slow[k:] & slow[:-k] & (turn > SPIN_LEAST_RAD + way / SPIN_RADIUS_M))
+    edges = np.zeros(n + 1, np.int64)
+    np.add.at(edges, at, 1)
+    np.add.at(edges, at + k + 1, -1)
+    spin[:] = (np.cumsum(edges[:-1]) > 0) & slow
+    return spin
+
+
+def _too_fast(states: States, actors: Actors) -> Mask:
+    """Return all samples of the actors that are faster than anybody of their class in at least three samples."""
+    kinds = dict(zip(actors.ids, actors.classes, strict=True))
+    limits = np.array([FASTEST_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
+    over = np.hypot(*states.velocity) > limits[states.actor]
+    many = np.bincount(states.actor[over], minlength=len(states.ids)) >= LEAST_FAST_SAMPLES
+    return many[states.actor]

@@ -1,0 +1,75 @@
+"""Looks for contacts and near contacts of moving egos by itself: which of them does no stable rule fail?"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .lots import MOVED_M, Result
+from .recording import Track, apart, recording
+
+NEAR_M = 0.3
+RELATIVE_MPS = 2.0
+STEP_MPS = 3.0
+"""Speeds that the positions give and that the recording gives differ by less, and the length of a sound track is longer."""
+SOUND_S = 1.0
+
+
+def unnoticed(result: Result) -> list[str]:
+    """Return a line for each near contact at speed, between two sound tracks, of which nothing is said within a second.
+
+    One without a finding and without an unknown verdict on the pair is a miss; the line says which it is.
+    """
+    tracks = recording(result.folder).tracks
+    egos = [row["ego_id"] for row in result.rows("SELECT DISTINCT ego_id FROM {verdicts} ORDER BY 1")]
+    found = result.rows("SELECT ego_id, object_id, rule_id, t_start_s - 1 AS t0, t_end_s + 1 AS t1 FROM {findings}")
+    doubted = result.rows(
+        "SELECT DISTINCT ego_id, object_id FROM {verdicts} WHERE verdict = 'unknown' AND rule_id = 'ukhc.no-collision'"
+    )
+    unknown = {(row["ego_id"], row["object_id"]) for row in doubted}
+    lines = []
+    for ego_id in egos:
+        ego = tracks.get(ego_id)
+        if ego is None or ego.moved() < MOVED_M or not ego.sized:
+            continue
+        for name, other in tracks.items():
+            near = None if other is ego or not other.sized else _near(ego, other)
+            if near is None:
+                continue
+            t, distance, relative = near
+            rules = sorted(
+                {
+                    row["rule_id"]
+                    for row in found
+                    if row["ego_id"] == ego_id and row["object_id"] == name and row["t0"] <= t <= row["t1"]
+                }
+            )
+            if not rules:
+                says = "unknown" if {(ego_id, name), (ego_id, None)} & unknown else "MISSED"
+                lines.append(
+                    f"{says}: {result.log}: {t:.1f} s, ego {ego_id} and {other.actor_class} {name}: {distance:.2f} m, {relative:.1f} m/s"
+                )
+    return lines
+
+
+def _near(ego: Track, other: Track) -> tuple[float, float, float] | None:
+    """Return time, distance and relative speed of the nearest sound moment of a near contact; None: there is none."""
+    reach = (ego.length + other.length) / 2 + NEAR_M
+    if min(len(ego.t), len(other.t)) < 3 or min(np.ptp(ego.t), np.ptp(other.t)) < SOUND_S:
+        return None
+    if (ego.x.min() > other.x.max() + reach) or (other.x.min() > ego.x.max() + reach):
+        return None
+    t, distance, _, _ = apart(ego, other)
+    i, j = (np.clip(np.searchsorted(track.t, t - 0.06), 0, len(track.t) - 1) for track in (ego, other))
+    velocity = [
+        np.stack([np.gradient(track.x, track.t), np.gradient(track.y, track.t)], axis=1)[k]
+        for track, k in ((ego, i), (other, j))
+    ]
+    relative = np.hypot(*(velocity[0] - velocity[1]).T)
+    sound = np.ones(len(t), dtype=bool)
+    for track, k in ((ego, i), (other, j)):
+        sound &= ~(np.abs(track.derived_speed()[k] - track.speed[k]) > STEP_MPS)
+    moments = np.flatnonzero(sound & (distance < NEAR_M) & (relative > RELATIVE_MPS))
+    if not len(moments):
+        return None
+    best = moments[np.argmin(distance[moments])]
+    return float(t[best]), float(distance[best]), float(relative[best])
