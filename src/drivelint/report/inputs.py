@@ -26,6 +26,7 @@ _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
 """Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
 _NAMED: Final = 2
+_NEVER_MOVES: Final = "ego_never_moves"
 _NO_MAP: Final = "missing_map"
 _EGO: Final = ["drive_id", "ego_id"]
 
@@ -47,6 +48,7 @@ def input_notes(result: Result) -> list[InputNote]:
         _map(drives),
         _log(drives),
         *_unrecorded(result),
+        *_parked(result),
         _not_judged(result, result.drives.num_rows - len(drives)),
     ]
 
@@ -126,6 +128,14 @@ def _unrecorded(result: Result) -> list[InputNote]:
     """Return the rules that ask nothing of these logs, as they have nothing of a signal that few logs have."""
     rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     return [InputNote("not in the log", _by_signal(result, rows), is_warning=True)] if rows else []
+
+
+def _parked(result: Result) -> list[InputNote]:
+    """Return how many egos never move: of two thirds of the vehicles of a perception log, moving rules ask nothing."""
+    parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES))
+    n, of = (len(counts.distinct_rows(verdicts, _EGO)) for verdicts in (parked, result.verdicts))
+    words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: rules about standing alone hold"
+    return [InputNote("parked", words, is_warning=False)] if n else []
 
 
 def _by_signal(result: Result, rows: Sequence[Row]) -> str:
