@@ -2,8 +2,8 @@
 # asammdf 8.8.28: `MDF.cut` of a measurement whose speed has samples that the recorder marked as invalid (invalidation bits of MDF 4).
 #
 # Expected: the cut file begins at the cut; its first sample is a valid one that was recorded, or one that is marked as invalid.
-# Seen: at the cut, `cut` adds a sample that nobody recorded: the mean of the last valid value and of the invalid one behind it (with 327.67, what
-# a 16 bit signal says for "not available", 169.835 m/s). It is marked as valid, also after the file was written and read again.
+# Seen: at the cut, `cut` adds a sample that nobody recorded: the mean of the last valid value and of the invalid one behind it (with 327.67, as
+# a signal of 16 bits has it for "not available", 169.835 m/s). It is marked as valid, also after the file was written and read again.
 # `to_dataframe` fills the invalid rows on a line, and goes on with the last value behind a signal's end.
 # Why it matters: vehicle measurements are cut to scenes before anybody looks at them. A drive at 12 m/s then begins with 169.8 m/s.
 set -euo pipefail

@@ -3,7 +3,8 @@
 #
 # Expected: the same rows.
 # Seen: where two poses are equally near, polars takes the later one and pandas the earlier one.
-# Why it matters: ties are no rare case: two sensors of 10 Hz that are triggered half a period apart, or one at twice the other's rate, tie in every row.
+# Why it matters: ties are no rare case: two sensors of 10 Hz that are triggered half a period apart tie in every row, and detections at twice the poses'
+# rate in every second one.
 # At 20 m/s the two tables then lie 2 m apart, a constant shift along the way, and each alone looks right.
 set -euo pipefail
 folder=$(mktemp -d)

@@ -5,7 +5,7 @@
 # Seen: the poses are a Mercator map of a sphere, scaled at the first frame. At 49 degrees north 1000 m to the east are 998.09 m, and 1000 m
 # to the north are 1001.08 m; a drive back to the south is shorter than the drive there.
 # Why it matters: positions and speeds from poses are wrong by up to 1.9 m per kilometre, another way for each course (0.2 % less to the east,
-# 0.1 % more to the north): against a map in UTM the ego leaves its lane after two kilometres. kitti2mcap 0.1.1 writes these poses to /tf.
+# 0.1 % more to the north): after two kilometres to the east the ego is 3.8 m from where it was. kitti2mcap 0.1.1 writes these poses to /tf.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -11,7 +11,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 python3 -m venv venv
-# Only what the parser needs: torch, pygame and others are left out by --no-deps.
+# Only what the parser needs, by --no-deps: the whole is a gigabyte.
 venv/bin/python -m pip install -q --no-deps tactics2d==0.1.9 numpy==2.2.6 pandas==2.3.3 polars==1.44.1 polars-runtime-32==1.44.1 pyproj==3.7.1 \
   certifi==2026.10.19.post1 shapely==2.0.7 scikit-learn==1.6.1 scipy==1.15.3 joblib==1.5.3 threadpoolctl==3.8.0 tabulate==0.10.0 orjson==3.13.0 \
   geopandas==1.1.4 pyogrio==0.13.0 packaging==26.4 defusedxml==0.7.1 tfrecord==1.14.6 crc32c==2.9.post0 protobuf==6.33.4 \
