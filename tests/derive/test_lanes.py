@@ -233,7 +233,7 @@ def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_directio
     ],
 )
 @pytest.mark.parametrize("driving_s", [3.0, 9.0])
-def test_where_the_ego_stands_says_nothing_of_the_fit(  # noqa: PLR0917
+def test_where_the_ego_stands_says_nothing_of_the_fit(
     hand: str, standing_off_m: float, driving_off_m: float, ok: bool, driving_s: float
 ) -> None:
     way, t = road(hand=hand), times(30.0 + driving_s)

@@ -69,7 +69,9 @@ def test_without_a_map_of_the_place_a_drive_has_none_and_says_so(tmp_path: Path)
 def test_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     put(tmp_path, "b.xml", x=10.0)
-    with pytest.raises(MapError, match=r"a\.xml, b\.xml are all of the place of drive\.mcap: name its map in .*maps\.csv"):
+    with pytest.raises(
+        MapError, match=r"a\.xml, b\.xml are all of the place of drive\.mcap: name its map in .*maps\.csv"
+    ):
         found(tmp_path, x=12.0)
 
 
