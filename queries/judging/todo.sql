@@ -49,7 +49,8 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     GROUP BY ALL);
 
 -- What only few logs have, such as indicators or declared events: of a log that has nothing of it a rule asks nothing, if it is not asked for by
--- its id (`is_named`) and the log's mapping does not name the signal. A rule that something else forbids anyway is not among them.
+-- its id (`is_named`) and the log's mapping does not name the signal. A rule
+-- that does not apply anyway is not among them.
 CREATE OR REPLACE TEMP TABLE _unrecorded AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,
@@ -60,11 +61,9 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     WHERE n.may_be_unrecorded AND c.available IS DISTINCT FROM true AND NOT (n.signal = 'indicator' AND coalesce(l.names_indicator, false))
     GROUP BY ALL
 ) u
-ANTI JOIN _excluded e ON e.rule_no = u.rule_no AND e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.code <> 'outside_conditions';
+ANTI JOIN _excluded e ON e.rule_no = u.rule_no AND e.drive_id = u.drive_id AND e.ego_id = u.ego_id;
 DELETE FROM _gated g WHERE EXISTS (
     SELECT 1 FROM _unrecorded u WHERE u.rule_no = g.rule_no AND u.drive_id = g.drive_id AND u.ego_id = g.ego_id);
-DELETE FROM _excluded e WHERE EXISTS (
-    SELECT 1 FROM _unrecorded u WHERE u.rule_no = e.rule_no AND u.drive_id = e.drive_id AND u.ego_id = e.ego_id);
 
 -- A rule with all its signals is run, and says itself at which steps or occasions its conditions do not hold.
 DELETE FROM _excluded e WHERE code = 'outside_conditions' AND NOT EXISTS (

@@ -15,6 +15,7 @@ from drivelint.road.map_reader import MapSource
 from tests.engine.few_states import log_of, states
 from tests.formats.commonroad.scenario_text import lanelet, scenario, state
 from tests.formats.opendrive.xodr import road, xodr
+from tests.formats.osi import osi_log
 from tests.report.synthetic import drive, result, rule, verdict
 
 
@@ -49,6 +50,17 @@ def test_a_scenario_names_its_country_and_the_user_counts_more(
     path = tmp_path / "drive.xml"
     path.write_text(scenario(lanelet(1, 0.0), OBSTACLE, benchmark=benchmark))
     assert given(read_trace(path, DriveInput(ego="7", env=env).ingest_options())) == expected
+
+
+@pytest.mark.parametrize(("code", "nation"), [(276, "de"), (826, "gb"), (0, None), (999, None), (None, None)])
+def test_the_country_code_of_an_osi_trace(code: int | None, nation: str | None, tmp_path: Path) -> None:
+    frames = osi_log.drive(3)
+    for frame in frames:
+        if code is not None:
+            frame.country_code = code
+    path = osi_log.write(tmp_path / "drive.mcap", osi_log.truths(frames))
+    expected = [] if nation is None else [("nation", nation, "trace")]
+    assert given(read_trace(path, DriveInput().ingest_options())) == expected
 
 
 def test_the_map_tells_where_the_log_does_not(tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ MESSAGES: dict[str, list[tuple[str, int, str]]] = {
         ("host_vehicle_id", 3, "Identifier"),
         ("moving_object", 5, "[MovingObject]"),
         ("traffic_light", 7, "[TrafficLight]"),
+        ("country_code", 13, "uint32"),
     ],
     "SensorView": [
         ("timestamp", 2, "Timestamp"),

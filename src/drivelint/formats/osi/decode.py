@@ -24,6 +24,7 @@ from drivelint.formats.protobuf.descriptors import (
     parse_schema,
     struct_field,
 )
+from drivelint.road.countries import nation_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -160,7 +161,7 @@ class Decoder:
 class FirstMessage(NamedTuple):
     """What the first message alone says: lanes as a message of their own, the geo reference with its offset, lanes that have no width.
 
-    `lights`: see `osi_heads.light_by_bulb`.
+    `lights`: see `osi_heads.light_by_bulb`. `nation`: the country by its number in ISO 3166-1, as two letters.
     """
 
     lanes: bytes | None = None
@@ -168,6 +169,7 @@ class FirstMessage(NamedTuple):
     findings: tuple[QualityFinding, ...] = ()
     lights: Mapping[str, str] = MappingProxyType({})
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    nation: str | None = None
 
 
 def read_first_message(data: bytes, name: str) -> FirstMessage:
@@ -185,6 +187,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     lights = osi_heads.light_by_bulb(truth.traffic_light)
     frame = truth.proj_frame_offset
     head = FirstMessage(None, reference, (), lights, (frame.position.x, frame.position.y, frame.yaw))
+    head = head._replace(nation=nation_of(int(truth.country_code)))
     if not (truth.lane_boundary or truth.logical_lane_boundary):
         n = len(truth.lane) + len(truth.logical_lane)
         message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"

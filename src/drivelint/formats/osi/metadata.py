@@ -157,7 +157,7 @@ def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[Quali
 
 
 def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
-    recording.conditions = parse_conditions(path, said.conditions.items())
+    recording.conditions |= parse_conditions(path, said.conditions.items())
     if said.map_offset_m is not None:
         dx, dy = recording.map_offset = said.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")

@@ -271,6 +271,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         embedded_map=head.lanes,
         geo_reference=head.reference,
         geo_offset=head.geo_offset,
+        conditions={} if head.nation is None else {"nation": head.nation},
     )
 
 
