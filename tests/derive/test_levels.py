@@ -205,7 +205,10 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
 
 
 @HANDS
-@pytest.mark.parametrize(("ego_m", "over_m", "verdict"), [(0.75, 8.75, "pass"), (8.75, 0.75, "pass"), (0.75, 0.75, "unknown"), (0.0, 8.75, "unknown"), (0.75, 0.9, "fail")])
+@pytest.mark.parametrize(
+    ("ego_m", "over_m", "verdict"),
+    [(0.75, 8.75, "pass"), (8.75, 0.75, "pass"), (0.75, 0.75, "unknown"), (0.0, 8.75, "unknown"), (0.75, 0.9, "fail")],
+)
 def test_over_flat_ground_half_the_box_is_a_height(hand: str, ego_m: float, over_m: float, verdict: str) -> None:
     """Centres of boxes 1.5 m high: the one on the bridge is measured, so is the one on the ground; 0 may stand for none."""
 
