@@ -155,7 +155,7 @@ CREATE TABLE ego_road (
 CREATE TABLE lane_change (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order; from a lane to one beside it that is driven the same way
+    occurrence INTEGER NOT NULL,      -- 0.. in time order; from a lane to one beside it that is driven the same way; after those, the changes out of restricted ground
     t_start_ns BIGINT NOT NULL,       -- first step with a corner more than 0.05 m over the boundary {position}
     begin_seen BOOLEAN NOT NULL,      -- the step before it is there and inside the lane {position}
     t_cross_ns BIGINT,                -- first step with the centre over it; NULL: the log or a hole ends before (and half a metre was over it), or it crossed in a hole {position}

@@ -184,6 +184,30 @@ width_ratio AS (
     JOIN last_point p ON p.environment_id = c.environment_id AND p.lanelet_id = a.lanelet_id
     JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
 ),
+-- Restricted ground is on a level with the lanes, but has no chain. Of an ego that drives on it and comes from there into a lane, only the
+-- end of the change is known.
+restricted_step AS (
+    SELECT
+        st.drive_id, st.ego_id, st.k, st.t_ns, st.seg, e.lanelet_id, a.lanelet_id AS aside_id, e.speed_mps, x.d_m,
+        sum((a.lanelet_id IS NULL)::INTEGER) OVER (PARTITION BY st.drive_id, st.ego_id ORDER BY st.k) AS run_no
+    FROM step st
+    JOIN ego_state e USING (drive_id, ego_id, t_ns)
+    LEFT JOIN (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction) a USING (drive_id, ego_id, t_ns)
+    LEFT JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
+),
+restricted_stretch AS (
+    SELECT drive_id, ego_id, seg, max(k) AS k_last, min({'k': k, 'lanelet_id': aside_id}).lanelet_id AS from_lanelet_id
+    FROM restricted_step
+    WHERE aside_id IS NOT NULL
+    GROUP BY drive_id, ego_id, seg, run_no
+    HAVING max(t_ns) - min(t_ns) >= 2_000_000_000 AND min(speed_mps) > standing_mps()
+),
+change_from_restricted AS (
+    SELECT r.drive_id, r.ego_id, n.t_ns, CASE WHEN n.d_m < 0 THEN 'left' ELSE 'right' END AS side, r.from_lanelet_id, n.lanelet_id AS to_lanelet_id, n.speed_mps
+    FROM restricted_stretch r
+    JOIN restricted_step n ON n.drive_id = r.drive_id AND n.ego_id = r.ego_id AND n.k = r.k_last + 1 AND n.seg = r.seg
+    WHERE n.lanelet_id IS NOT NULL
+),
 uncertain_object AS (
     SELECT drive_id, ego_id, t_ns, min(least_m) AS near_m, min(least_m) FILTER (ahead IS DISTINCT FROM true) AS behind_m
     FROM (
@@ -218,3 +242,10 @@ LEFT JOIN chain_end f ON f.drive_id = c.drive_id AND f.ego_id = c.ego_id AND f.c
 LEFT JOIN chain_end t ON t.drive_id = c.drive_id AND t.ego_id = c.ego_id AND t.chain_id = c.to_chain_id
 LEFT JOIN lane_next a ON a.environment_id = c.environment_id AND a.lanelet_id = f.last_id
 LEFT JOIN uncertain_object d ON d.drive_id = c.drive_id AND d.ego_id = c.ego_id AND d.t_ns = c.t_start_ns
+UNION ALL BY NAME
+SELECT
+    r.drive_id, r.ego_id,
+    (coalesce(n.n_changes, 0) + row_number() OVER (PARTITION BY r.drive_id, r.ego_id ORDER BY r.t_ns) - 1)::INTEGER AS occurrence,
+    r.t_ns AS t_start_ns, false AS begin_seen, r.t_ns AS t_cross_ns, r.side, r.from_lanelet_id, r.to_lanelet_id, r.speed_mps AS ego_speed_mps, false AS known
+FROM change_from_restricted r
+LEFT JOIN (SELECT drive_id, ego_id, count(*) AS n_changes FROM change GROUP BY ALL) n USING (drive_id, ego_id)

@@ -4,7 +4,8 @@
 -- because a short drive may be little else. Its median distance from the centre line is at most 1.2 m (half a lane: with a map shifted by
 -- one lane, 100 % of the steps are still on a lane); the median is taken outside such an overtake if enough steps lie outside one. The map
 -- also fits if at least three quarters of the other vehicles drive with their lanes, and the ego was against its own lane for longer than an
--- overtake takes: then the ego is on the wrong side. The ego may be off the lanes or far from their middle for a while. The map still fits
+-- overtake takes: then the ego is on the wrong side. On a one-way road there is no overtaking in the opposing lane: there the ego is on the
+-- wrong way if the map states its hand and nobody else contradicts the map. The ego may be off the lanes or far from their middle for a while. The map still fits
 -- if the ego keeps to the middle of a lane before and after that time, on a road of the same direction or on two roads that cross: the map
 -- fits there, and a log is not shifted against its map for a while only.
 WITH opposing_step AS (
@@ -13,6 +14,8 @@ WITH opposing_step AS (
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns >= x.t0_ns AND st.t_ns <= x.t_end_ns
     WHERE x.over_against
 ),
+-- Lanes with a lane of the other direction beside them. On any other lane outside a junction nobody is on the opposing side: it is one-way.
+two_way_lane AS (SELECT DISTINCT environment_id, lanelet_id FROM lane_beside WHERE drivable AND against),
 ego_place AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, coalesce(e.lanelet_id, a.lanelet_id) AS lanelet_id, coalesce(e.with_traffic, a.with_direction) AS with_traffic,
@@ -30,6 +33,7 @@ step_count AS (
         count(*) FILTER (e.with_traffic IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
+        sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL AND n.drivable AND n.junction_id IS NULL AND w.lanelet_id IS NULL) AS against_one_way_ns,
         -- A short log may be half an overtake. The steps outside the overtake decide if they last at least 5 s and are at least a third of
         -- the log.
         coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
@@ -44,6 +48,9 @@ step_count AS (
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN ego_place e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
     LEFT JOIN opposing_step x ON x.drive_id = st.drive_id AND x.ego_id = st.ego_id AND x.t_ns = st.t_ns
+    LEFT JOIN data_log g ON g.drive_id = st.drive_id
+    LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
+    LEFT JOIN two_way_lane w ON w.environment_id = g.environment_id AND w.lanelet_id = e.lanelet_id
     GROUP BY ALL
 ),
 map_check AS (
@@ -57,10 +64,15 @@ map_check AS (
             WHEN n_with_direction < 0.6 * n_moving THEN why('often_against_lane', {'n_against': n_moving - n_with_direction, 'n_moving': n_moving})
             WHEN lateral_median_m > 1.2 THEN why('far_from_centre_line', {'lateral_m': lateral_median_m})
         END AS trouble,
+        -- Nobody overtakes in the opposing lane of a one-way road, and a map that states its hand states its directions.
+        coalesce(n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND lateral_median_m <= 1.2 AND m.handedness_source = 'attribute'
+            AND against_one_way_ns > one_way_ns() AND against_one_way_ns >= 0.8 * against_ns, false) AS is_against_one_way,
         -- If the ego is against its lane, the other vehicles can tell, unless the log began in the middle of an overtake. If it is off the
         -- lanes, the map may lack just its lane.
-        n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > longest_overtake_ns() AS is_against
-    FROM step_count c JOIN data_log g USING (drive_id)
+        n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against
+    FROM step_count c
+    JOIN data_log g USING (drive_id)
+    LEFT JOIN environment m ON m.environment_id = g.environment_id
 ),
 -- If the ego drives against its lane, the other vehicles tell whether the map or the ego is wrong.
 vehicle_place AS (
@@ -93,6 +105,13 @@ witness_count AS (
     WHERE j.is_against
     GROUP BY ALL
     HAVING n_fit > 0 AND n_fit >= 0.75 * n_witnesses
+),
+-- Other vehicles that do not keep to their lanes: if there are any, the map may be wrong about the one-way road, too.
+misfit AS (
+    SELECT DISTINCT j.drive_id, j.ego_id
+    FROM map_check j
+    JOIN other_vehicle o ON o.drive_id = j.drive_id AND o.actor_id <> j.ego_id
+    WHERE j.is_against_one_way AND NOT o.is_fitting
 ),
 -- At each step: whether the ego is well in its lane, whether it is elsewhere, and the direction of its road in twelfths of a half turn.
 ego_step AS (
@@ -134,11 +153,13 @@ fitting_ego AS (
     )
 )
 SELECT
-    j.drive_id, j.ego_id, n_steps, n_on_lane, n_moving, n_with_direction, lateral_median_m, is_aside, trouble IS NULL OR v.n_fit IS NOT NULL OR w.ego_id IS NOT NULL AS ok,
+    j.drive_id, j.ego_id, n_steps, n_on_lane, n_moving, n_with_direction, lateral_median_m, is_aside, trouble IS NULL OR v.n_fit IS NOT NULL OR w.ego_id IS NOT NULL OR is_against_one_way AND m.ego_id IS NULL AS ok,
     CASE WHEN v.n_fit IS NOT NULL THEN why('others_fit', {'trouble': trouble, 'n_fit': v.n_fit, 'n_witnesses': v.n_witnesses})
         WHEN trouble IS NOT NULL AND w.ego_id IS NOT NULL THEN why('fits_before_and_after', {'trouble': trouble})
+        WHEN is_against_one_way AND m.ego_id IS NULL THEN why('against_one_way', {'trouble': trouble})
         ELSE coalesce(trouble, why('on_lane', {'n_on_lane': n_on_lane, 'n_steps': n_steps, 'n_with_direction': n_with_direction, 'n_moving': n_moving}))
     END AS reason
 FROM map_check j
 LEFT JOIN witness_count v USING (drive_id, ego_id)
 LEFT JOIN fitting_ego w USING (drive_id, ego_id)
+LEFT JOIN misfit m USING (drive_id, ego_id)

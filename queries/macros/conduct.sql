@@ -161,6 +161,9 @@ CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
 -- the map may be moved against the log. (In the logs of the case study it is 0.04 to 0.26 m.)
 CREATE OR REPLACE MACRO aside_of_lane_m() AS 0.7;
 
+-- Our default: who is against a one-way road for longer than this drives there, and does not turn round.
+CREATE OR REPLACE MACRO one_way_ns() AS 5_000_000_000;
+
 -- Our default: an overtake on the opposing side takes no longer than this (those of the case study take 6 s at 5 m/s). An ego that has been
 -- against its lane for less than this, since the log began, may be in an overtake.
 CREATE OR REPLACE MACRO longest_overtake_ns() AS 15_000_000_000;

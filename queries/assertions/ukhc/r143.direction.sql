@@ -69,6 +69,10 @@
 -- says = "whether something closes its lane is not known"
 -- advice = "record what stands or walks there"
 --
+-- [reasons.on_restricted_lane]
+-- says = "the ego drives on restricted ground, which belongs to neither direction for certain"
+-- advice = "give its lanes another type than restricted, if vehicles may drive on them"
+--
 -- [reasons.with_lane]
 -- says = "{along_mps:.1f} m/s along its own heading, which is the direction of lane {lanelet_id}"
 --
@@ -195,11 +199,13 @@ junction_direction_check AS (
 SELECT e.drive_id, e.ego_id, e.t_ns,
     -- During a short excursion the ego may pass something that the log does not show: then it is not known whether the rule applies.
     (c.t_ns IS NULL OR CASE WHEN p.is_excused OR c.closed_lane THEN false WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed_lane END)
-        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway') AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(j.is_against, false))
+        -- Restricted ground is on a level with the lanes: who drives on it against its direction may be on the side of the others.
+        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway' OR CASE WHEN a.lane_type = 'restricted' THEN CASE WHEN a.with_direction THEN true END ELSE false END) AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(j.is_against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.is_against AND d.least_m > $manoeuvring_m THEN true
             -- If the ego drives in the direction of its lane, the kind of road does not matter.
             WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.is_against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
-    CASE WHEN c.t_ns IS NULL OR p.is_excused OR c.closed_lane THEN NULL
+    CASE WHEN e.lanelet_id IS NULL AND a.lane_type = 'restricted' THEN why('on_restricted_lane')
+        WHEN c.t_ns IS NULL OR p.is_excused OR c.closed_lane THEN NULL
         WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL THEN why('passing_unknown')
         WHEN x.t_ns IS NOT NULL THEN why('may_pass_unseen', {'within_s': $passing_s})
         WHEN c.closed_lane IS NULL THEN why('lane_closed_unknown') END AS reason
