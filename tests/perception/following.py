@@ -92,7 +92,7 @@ def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, in
 
 
 def outcome(verdicts: list[dict[str, Any]], object_id: str, start: int, end: int) -> str:
-    """Return `unknown`, `fail`, `pass` or `not_applicable`: the worst of a rule's verdicts about the object, or nobody in particular, then."""
+    """Return the worst of a rule's verdicts about the object, or nobody in particular, then: unknown, fail, pass or not_applicable."""
     mine = [row for row in verdicts if row["object_id"] in {None, object_id}]
     at_that_time = {
         row["verdict"]
