@@ -114,11 +114,12 @@ def test_where_it_cannot_be_told_who_is_ahead_somebody_may_have_come_in() -> Non
     t = times(14.0)
     ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 99.0))
     other = moving("x", way, t, 130 + 12 * t, offsets(way, t, 5.0, start=0.5, to=1.5))
-    for lost, at in ((t < 99, 0.0), (t > 3.95, 4.0), ((t > 1.95) & (t < 3.05), 2.0)):
+    # it was seen 0.85 m beside the lane: for 0.3 s after that it cannot be in
+    for lost, at in ((t < 99, 0.0), (t > 3.95, 4.3), ((t > 1.95) & (t < 4.05), 2.3)):
         found = cuts(way, ego, other.lost(lost))
         assert (found[0]["object_id"], found[0]["t_ns"] / 1e9, found[0]["begin_seen"]) == (None, at, False)
         assert (found[0]["gap_m"], found[0]["side"], found[0]["in_place_ns"]) == (None, None, None)
-        assert [row["object_id"] for row in found[1:]] == ["x"] * (at == 2.0)
+        assert [row["object_id"] for row in found[1:]] == ["x"] * (at == 2.3)
     (only,) = cuts(way, ego, other.lost((t > 1.95) & (t < 2.95)))
     assert only["object_id"] == "x"
     assert [row["object_id"] for row in cuts(way, ego.lost((t > 8) & (t < 10)), other)] == ["x", None]

@@ -173,12 +173,8 @@ def test_behind_somebody() -> None:
 def test_without_a_map() -> None:
     way = cross()["we"]
     row = only(drive([halting(way, 100.0)], None))
-    assert (row["junction_id"], row["junction_m"], row["lanelet_id"], row["ahead_known"]) == (
-        None,
-        None,
-        None,
-        True,
-    )  # nobody is ahead on its own way
+    assert (row["junction_id"], row["junction_m"], row["lanelet_id"]) == (None, None, None)
+    assert row["ahead_known"], "nobody is ahead on its own way"
 
 
 def test_each_ego_and_drive_for_itself() -> None:

@@ -36,8 +36,8 @@ def aside(way: Road, t: Floats, begin: float, lasts: float, share: float = 1.0) 
     """Return the offsets of an ego that moves by `share` metres to the middle of the road from `begin` on."""
     towards = -np.sign(way.own)
     u = np.clip((t - begin) / lasts, 0.0, 1.0)
-    offsets: Floats = way.own + towards * share * u * u * (3 - 2 * u)
-    return offsets
+    d: Floats = way.own + towards * share * u * u * (3 - 2 * u)
+    return d
 
 
 def parked(way: Road, t: Floats, s: float = 200.0, reaches_in: float = 1.1) -> Actor:
@@ -75,9 +75,7 @@ def test_swerved_round_at_the_last_moment_it_was_the_lead_or_may_have_been(hand:
 
 @HANDS
 @pytest.mark.parametrize("with_map", [True, False])
-def test_a_stopped_car_in_the_middle_of_the_lane_is_the_lead_whether_braked_for_or_swerved_round(
-    hand: str, with_map: bool
-) -> None:
+def test_stopped_in_the_lane_it_is_the_lead_braked_for_or_swerved_round(hand: str, with_map: bool) -> None:
     way = road(hand=hand)
     t = times(14.0)
     stopped = standing("x", way, t, 200, way.own)
@@ -129,13 +127,11 @@ def test_in_a_bend_the_lead_is_found_by_the_way_and_who_stands_straight_on_is_no
     way = road(hand=hand, pieces=((60.0, 0.0), (60.0, 1 / 40), (200.0, 0.0)))
     t = times(14.0)
     s = 10 + 8 * t
-    ego, x = (
-        moving("ego", way, t, s, way.own),
-        moving("x", way, t, s + 20, way.own),
-    )  # along the road's middle: the lane is longer or shorter
+    ego, x = moving("ego", way, t, s, way.own), moving("x", way, t, s + 20, way.own)
     straight_on = standing("p", way, t, 60.0, way.own)
     straight_on = replace(straight_on, x=straight_on.x + 35.0)
     found = leads(None, ego, x, straight_on)
+    # s is along the road's middle, and the lane is longer or shorter than that
     assert {row["object_id"] for row in found.values()} == {"x"}
     assert [row["gap_m"] for at, row in found.items() if at < 10] == pytest.approx([15.2] * 100, abs=1.0)
 

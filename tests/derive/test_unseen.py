@@ -176,7 +176,7 @@ def test_somebody_unseen_ahead_of_whom_is_seen_far_away_leaves_the_way_free_as_f
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_is_first_seen_far_beside_the_lane_was_not_the_lead_a_moment_before(hand: str) -> None:
-    """A car that stands 8 m beside the lane, 20 m ahead, is recorded from 3 s on: 0.5 s before it was not ahead of the vehicle that is seen.
+    """A car stands 8 m beside the lane, 20 m ahead, recorded from 3 s on: 0.5 s before it was not ahead of the vehicle that is seen.
 
     A second before, it might have come from there at 10 m/s2.
     """

@@ -1,8 +1,8 @@
-"""`python -m tests.perception.following DIR...`: how many following episodes the results of `check --keep-db` in these folders decide.
+"""`python -m tests.perception.following DIR...`: how many following episodes the results of `check --keep-db` there decide.
 
-An episode is a run of steps in which one object is in the strip that the ego's box really swept, at most 3 s ahead of its front. It is found
-here with numpy from the recorded boxes alone, not by the program's own tables of who is ahead. A rule decides it if its verdicts at that time
-are pass or fail, or if it does not apply, and none of them is unknown.
+An episode is a run of steps in which one object is in the strip that the ego's box really swept, at most 3 s ahead of its front.
+It is found here with numpy from the recorded boxes alone, not by the program's own tables of who is ahead. A rule decides it if
+its verdicts at that time are pass or fail, or if it does not apply, and none of them is unknown.
 """
 
 from __future__ import annotations
@@ -53,13 +53,17 @@ def corners(x: float, y: float, yaw: float, length: float, width: float) -> Floa
     """Return the corners (4, 2) of a box."""
     c, s = np.cos(yaw), np.sin(yaw)
     local = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]]) * [length / 2, width / 2]
-    return np.array([x, y]) + local @ np.array([[c, s], [-s, c]])
+    found: Floats = np.array([x, y]) + local @ np.array([[c, s], [-s, c]])
+    return found
 
 
 def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, int, int]]:
     """Yield drive, ego, object, first and last time of each episode."""
     for drive_id, ego_id in con.execute("SELECT DISTINCT drive_id, ego_id FROM step ORDER BY ALL").fetchall():
-        select = "SELECT t_ns, x_m, y_m, speed_mps, length_m, width_m FROM ego_state WHERE drive_id = ? AND ego_id = ? AND x_m IS NOT NULL ORDER BY t_ns"
+        select = """
+            SELECT t_ns, x_m, y_m, speed_mps, length_m, width_m FROM ego_state
+            WHERE drive_id = ? AND ego_id = ? AND x_m IS NOT NULL ORDER BY t_ns
+        """
         ego = con.execute(select, [drive_id, ego_id]).fetchnumpy()
         way = np.column_stack([ego["x_m"], ego["y_m"]]).astype(float)
         index = {int(t): k for k, t in enumerate(ego["t_ns"])}
@@ -75,11 +79,8 @@ def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, in
             if k is None:
                 continue
             v = float(ego["speed_mps"][k])
-            gap = (
-                swept(way, k, float(ego["width_m"][k]) / 2, corners(*box)) - float(ego["length_m"][k]) / 2
-                if v > SLOWEST_MPS
-                else np.inf
-            )
+            front, half = float(ego["length_m"][k]) / 2, float(ego["width_m"][k]) / 2
+            gap = swept(way, k, half, corners(*box)) - front if v > SLOWEST_MPS else np.inf
             if object_id != of or (run and k != run[-1] + 1) or not 0 <= gap <= HEADWAY_S * v:
                 if len(run) >= LEAST_STEPS:
                     yield drive_id, ego_id, of, int(ego["t_ns"][run[0]]), int(ego["t_ns"][run[-1]])
@@ -91,11 +92,13 @@ def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, in
 
 
 def outcome(verdicts: list[dict[str, Any]], object_id: str, start: int, end: int) -> str:
-    """Return `unknown`, `fail`, `pass` or `not_applicable`: the worst of a rule's verdicts about the object, or nobody in particular, then."""
+    """Return the worst of a rule's verdicts about the object, or nobody in particular, then: unknown, fail, pass or not_applicable."""
+    mine = [row for row in verdicts if row["object_id"] in {None, object_id}]
     at_that_time = {
-        row["verdict"] for row in verdicts
-        if row["object_id"] in (None, object_id) and (row["t_start_ns"] is None or (row["t_start_ns"] <= end and row["t_end_ns"] >= start))
-    }  # fmt: skip
+        row["verdict"]
+        for row in mine
+        if row["t_start_ns"] is None or (row["t_start_ns"] <= end and row["t_end_ns"] >= start)
+    }
     return next((word for word in ("unknown", "fail", "pass") if word in at_that_time), "not_applicable")
 
 
@@ -115,9 +118,8 @@ def main(folders: list[str]) -> int:
     for rule, counts in sums.items():
         n = counts.total()
         share = f"{(n - counts['unknown']) / n:.0%}" if n else "-"
-        print(
-            f"{rule:26}{n:>9}{counts['pass']:>6}{counts['fail']:>6}{counts['not_applicable']:>6}{counts['unknown']:>9}{share:>9}"
-        )
+        numbers = (counts[word] for word in ("pass", "fail", "not_applicable"))
+        print(f"{rule:26}{n:>9}" + "".join(f"{number:>6}" for number in numbers) + f"{counts['unknown']:>9}{share:>9}")
     return 0
 
 
