@@ -82,8 +82,8 @@ CREATE OR REPLACE MACRO graze_doubt(object_id) AS why('grazes', {'object_id': ob
 -- The reason if it cannot be told whether the ego overtook this vehicle.
 CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS CASE WHEN vbp_id IS NOT NULL THEN why('overtake_unsure', {'object_id': vbp_id}) END;
 
--- The log ends before it is sure that the ego overtakes: it may yet turn out to have only looked past the vehicle ahead.
-CREATE OR REPLACE MACRO may_be_no_overtake(status, sure) AS coalesce(status = 'truncated' AND NOT sure, false);
+-- It is not sure that the ego overtakes: it may have only looked past the vehicle ahead, or changed lane behind it.
+CREATE OR REPLACE MACRO may_be_no_overtake(status, sure) AS coalesce(status <> 'completed' AND NOT sure, false);
 
 -- An actor that cannot be placed may be beside the ego if it may be nearer than this.
 CREATE OR REPLACE MACRO may_be_beside_m() AS 10.0;

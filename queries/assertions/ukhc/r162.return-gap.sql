@@ -57,6 +57,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
     coalesce(h.gap_m IS NULL OR free_gap.unseen_m < h.gap_m, false) AND NOT too_small.is_known AS at_least,
     CASE
         WHEN NOT o.begin_seen THEN NULL
+        WHEN too_small.is_known AND may_be_no_overtake(o.status, o.sure) THEN NULL
         -- An ego that is not back yet may pass the vehicle ahead of the gap, too, and return ahead of that one.
         WHEN too_small.is_known AND o.status = 'truncated' THEN NULL
         -- Only a known vehicle makes the gap too small: an object nearer than that, of a class that is not known, may be no vehicle.
@@ -65,7 +66,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, required_gap.size_m AS required,
         WHEN h.gap_m IS NULL THEN CASE WHEN free_gap.seen_m IS NOT NULL THEN greatest(0.0, least(free_gap.seen_m, free_gap.unseen_m)) END
         WHEN h.gap_m >= required_gap.size_m THEN greatest(0.0, least(h.gap_m, free_gap.unseen_m))
     END AS observed,
-    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen')
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN too_small.is_known AND may_be_no_overtake(o.status, o.sure) THEN overtake_doubt(o.vbp_id)
         WHEN too_small.is_known THEN CASE WHEN o.status = 'truncated' THEN why('may_pass_next', {'gap_m': h.vehicle_gap_m}) END
         WHEN free_gap.unseen_m < required_gap.size_m THEN why('actor_may_be_there', {'object_id': d.o.object_id, 'lack': d.o.lack})
         WHEN h.gap_m < required_gap.size_m THEN why('class_there_unknown')

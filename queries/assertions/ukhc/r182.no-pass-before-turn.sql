@@ -42,7 +42,8 @@ JOIN reference r USING (ref_id)
 LEFT JOIN (
     SELECT drive_id, ego_id, t_ns, side, min(object_id) AS object_id
     FROM passing
-    WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true)
+    -- Who walks beside the road is not overtaken: rule h2.turn-pedestrian is about people on foot.
+    WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true) AND actor_class IS DISTINCT FROM 'pedestrian'
     GROUP BY drive_id, ego_id, t_ns, side
 ) p
     ON p.drive_id = rs.drive_id AND p.ego_id = rs.ego_id AND p.t_ns = rs.t_ns AND p.side = r.side

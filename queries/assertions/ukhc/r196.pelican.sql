@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["crossing_passage", "stop_line_crossing"]
+-- reads = ["crossing_passage", "ego_state", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [params.past_line_s]
@@ -31,12 +31,15 @@
 -- advice = "record the light's state at every step"
 
 -- @reference
--- If the crossing has a stop line, the ego must obey the light at that line. The later state of the light says whether it must give way.
+-- If the crossing has a stop line, the ego must obey the light at that line; if it stood between the two, that at the crossing.
+-- The later state of the light says whether it must give way.
 SELECT c.drive_id, c.ego_id, c.t_in_ns AS t_ns, c.occurrence, c.on_id AS object_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state,
-    count(l.t_ns) > 0 AS has_line, max({'t': l.t_ns, 'state': l.state}).state AS line_state
+    count(l.t_ns) > 0 AND count(e.t_ns) = 0 AS has_line, max({'t': l.t_ns, 'state': l.state}).state AS line_state
 FROM crossing_passage c
 LEFT JOIN stop_line_crossing l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id AND l.signal_id = c.signal_id
     AND l.t_ns <= c.t_in_ns AND l.t_ns >= c.t_in_ns - ($past_line_s * 1e9)::BIGINT
+LEFT JOIN (SELECT drive_id, ego_id, t_ns FROM ego_state WHERE speed_mps <= standstill_mps()) e
+    ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns > l.t_ns AND e.t_ns < c.t_in_ns
 WHERE coalesce(c.kind, 'signalled') = 'signalled'
 GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state
 
