@@ -126,9 +126,11 @@ path_angle AS (
 SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
-    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed, -- Who was not passed may have been followed only: on the ego's own side of the road the ego changes lane, or sways, behind it.
-    CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns()
-        ELSE k.is_placed AND k.begin_seen AND k.centre_over AND coalesce(k.over_against, false) END AS sure, k.begin_seen,
+    k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed,
+    -- Who was not passed may have been followed only: on the ego's own side of the road the ego changes lane, or sways, behind it.
+    CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
+        ELSE k.is_placed AND coalesce(k.over_against, false) AND (k.begin_seen AND k.centre_over OR w.stays_out)
+    END AS sure, k.begin_seen,
     k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'
@@ -143,6 +145,7 @@ SELECT
     o.n_unplaced, o.unplaced_reason, o.free_reason,
     a.pull_out_angle_rad, a.cut_in_angle_rad
 FROM overtaken_vehicle k
+CROSS JOIN LATERAL (SELECT coalesce(coalesce(k.t_turn_ns, k.t_end_ns) - k.t_out_ns >= stays_out_ns(), false) AS stays_out) w
 LEFT JOIN oncoming o ON o.drive_id = k.drive_id AND o.ego_id = k.ego_id AND o.t_ns = k.t0_ns
 LEFT JOIN path_angle a ON a.drive_id = k.drive_id AND a.ego_id = k.ego_id AND a.chain_id = k.chain_id AND a.t0_ns = k.t0_ns AND a.object_id = k.object_id
 LEFT JOIN later_gap t2 ON t2.moment = 't2' AND t2.drive_id = k.drive_id AND t2.ego_id = k.ego_id AND t2.chain_id = k.chain_id AND t2.t0_ns = k.t0_ns AND t2.object_id = k.object_id
