@@ -60,7 +60,7 @@ WITH _verdict_with_rule AS (
                 {'object_id': p.object_id})
         WHEN p.object_id IS NOT NULL AND p.actor_class IS NULL THEN why('object_class_unknown', {'object_id': p.object_id})
         WHEN n.nearest IS NOT NULL AND d.of_hidden THEN hidden_reason(n.nearest)
-        WHEN d.of_lanes AND (e.lanelet_id IS NULL AND g.environment_id IS NOT NULL OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
+        WHEN d.of_lanes AND (e.lanelet_id IS NULL AND (g.environment_id IS NOT NULL OR e.chain_id IS NULL) OR e.front_s_m IS NULL) THEN ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m)
         WHEN d.of_lanes AND p.object_id IS NOT NULL AND p.s_m IS NULL THEN why('object_off_lanes', {'object_id': p.object_id})
         WHEN d.of_hidden AND d.of_lanes AND d.object_id IS NULL AND f.object_id IS NOT NULL
             THEN why(CASE WHEN f.actor_class IS NULL THEN 'may_be_vehicle_ahead' ELSE 'no_vehicle_ahead' END, {'object_id': f.object_id})
