@@ -79,7 +79,7 @@ def test_the_jerk_does_not_depend_on_the_rate(seed: int) -> None:
     found = {}
     for period in (0.05, 0.1, 0.2):
         t = times(16.0, period=period)
-        speed = 20 + sum(a * np.sin(w * t + p) for a, w, p in parts)
+        speed = 20 + np.sum([a * np.sin(w * t + p) for a, w, p in parts], axis=0)
         found[period] = columns(free(t, speed, np.zeros(t.shape)))["jerk_mps3"][:: round(0.2 / period)]
     whole = np.isfinite(found[0.2])
     assert whole.sum() > 60
