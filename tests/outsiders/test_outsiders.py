@@ -22,9 +22,7 @@ KNOWN: Final = {
     "zebra_ignored_far_side ukhc.r195.zebra-on": "the map does not say whether an island parts the crossing",
     "left_turn_wide ukhc.r183.keep-in": "the ego left the junction over the wrong lane: the end of its turn is not known",
     "gb_exit_unsignalled_early ukhc.exit-sign-signal": "the ego was in the exit lane before the first sign",
-    "de_ghost_driver stvo.ri3": "nobody else is there: a map of the other hand looks the same",
     "gb_wrong_side ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
-    "de_wrong_way stvo.ri3": "against its lane for no longer than the log's 15 s, it may be overtaking since before",
     "gb_exit_properly ukhc.signal-then-leaves": "the slip road is marked as an exit lane too: the log ends before that does",
     "de_autobahn_150 stvo.rg3": "a map's `no limit` is read as none given: a sign may stand there that the map lacks",
     "de_alks_cut_in_avoided stvo.rg2": "it brakes with 3.5 m/s2 for a slower car that moves in, not yet too near by its source's formula",
@@ -50,7 +48,6 @@ KNOWN: Final = {
     "gb_ghost_driver_k rss.opposite": "the ego is against its lane: who of those that come is in the wrong one is not known",
     "gb_map_ends_soon_in_town_l ukhc.r124.speed-limit": "beyond the map for most of the time, the ego does not vouch for it",
     "gb_dual_astride_two_lanes_l ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
-    "gb_roundabout_wrong_way_round_l ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
     "gb_town_twenty_at_twenty_six_heading_turned_l ukhc.r124.speed-limit": "the ego's heading is turned round: the log is refused",
     "gb_wrong_way_m ukhc.r143.direction": "against its lane all the time, and the one other vehicle there does not keep to its own",
     "gb_ring_wrong_way_m ukhc.r143.direction": "the log ends on the ring: the ego vouches for the map before that only",
@@ -75,8 +72,6 @@ KNOWN: Final = {
     "mrm_no_lamp_t stvo.rg4": "the same",
     "accel_hard_t stvo.rg4": "the same",
     "shoulder_past_queue_t stvo.ri2": "on the hard shoulder the ego has no lane to the right of the one that it gets ahead of",
-    "ghost_driver_t stvo.ri3": "against its lane all the time: that one other vehicle keeps to the lanes does not vouch for the map",
-    "ghost_driver_t ukhc.r143.direction": "the same",
     "walk_stops_v ukhc.h2.turn-pedestrian": "whether somebody on foot stopped for the ego, nobody can tell",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
