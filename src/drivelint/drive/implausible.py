@@ -340,7 +340,7 @@ def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
 def _deep(one: _Boxes, other: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
     overlap, reach = _overlap(one, other)
-    deep: Mask = (overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach)).all(axis=0)
+    deep: Mask = np.logical_and.reduce(overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach))
     return deep
 
 
@@ -349,8 +349,9 @@ def _in_line(one: _Boxes, other: _Boxes) -> Mask:
     overlap, reach = _overlap(one, other)
     aside = one.half[1] + reach[1] - overlap[1]
     ahead = one.half[0] + reach[0] - overlap[0]
-    line: Mask = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
-    return line & ((one.along * other.along).sum(axis=0) > 0.95)
+    along = (one.along * other.along).sum(axis=0) > 0.95
+    line: Mask = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside) & along
+    return line
 
 
 def _coupled(one: _Boxes, other: _Boxes) -> bool:
