@@ -81,7 +81,10 @@ def test_the_law_of_another_nation_is_told_first() -> None:
 
 def test_outside_its_conditions_a_rule_does_not_apply_whatever_the_log_lacks() -> None:
     by_day, by_night = (said(saying(scene(), light=light), "ukhc")["r113.headlights"] for light in ("day", "night"))
-    assert (by_day, by_night) == (("not_applicable", "outside_conditions"), ("not_applicable", "unrecorded_mode_headlights"))
+    assert (by_day, by_night) == (
+        ("not_applicable", "outside_conditions"),
+        ("not_applicable", "unrecorded_mode_headlights"),
+    )
 
 
 def test_the_reason_says_what_the_log_lacks() -> None:
