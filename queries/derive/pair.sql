@@ -178,21 +178,19 @@ pair_over_road AS MATERIALIZED (
 ),
 -- An ego that stands has several samples at one station: the lowest height is taken.
 ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min({'z_m': z_m, 't_ns': t_ns}) AS lowest FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
--- Actors with a height, and whether it is that of a vehicle on a road. A simulator may let a vehicle fall through the ground. A height of
--- half the box is that of the box's centre over flat ground at 0, or says nothing: it counts against an actor whose height is measured.
+-- Actors with a height, and whether it is that of a vehicle on a road. A simulator may let a vehicle fall through the ground.
 actor_height AS (
     SELECT
         s.drive_id, s.actor_id, a.height_m,
         bool_or(is_measured_height(s.z_m, a.height_m))
-            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * from_picometres(sum(to_picometres(s.speed_mps))) / count(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured,
-        coalesce(bool_and(a.height_m > 0.1 AND abs(s.z_m - a.height_m / 2) <= 0.01), false) AS is_half_box
+            AND max(s.z_m) - min(s.z_m) <= level_m() + steepest() * from_picometres(sum(to_picometres(s.speed_mps))) / count(s.speed_mps) * (max(s.t_ns) - min(s.t_ns)) / 1e9 AS is_measured
     FROM state_dynamics s
     JOIN actor a USING (drive_id, actor_id)
     WHERE s.z_m IS NOT NULL
     GROUP BY ALL
 ),
 pair_with_height AS MATERIALIZED (
-    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.t_ns, a.z_m, a.ego_z_m, a.distance_m, p.s_m, level_gap_m(e.height_m, o.height_m) AS level_gap_m, (e.is_measured OR o.is_measured) AND (e.is_measured OR e.is_half_box) AND (o.is_measured OR o.is_half_box) AS is_measured
+    SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.t_ns, a.z_m, a.ego_z_m, a.distance_m, p.s_m, level_gap_m(e.height_m, o.height_m) AS level_gap_m, e.is_measured AND o.is_measured AS is_measured
     FROM pair_offset a
     JOIN actor_height e ON e.drive_id = a.drive_id AND e.actor_id = a.ego_id
     JOIN actor_height o ON o.drive_id = a.drive_id AND o.actor_id = a.object_id

@@ -202,19 +202,3 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
         if not any(first <= t_ns <= last for first, last in before.get(of, ()))
     ]
     assert new == []
-
-
-@HANDS
-@pytest.mark.parametrize(
-    ("ego_m", "over_m", "verdict"),
-    [(0.75, 8.75, "pass"), (8.75, 0.75, "pass"), (0.75, 0.75, "unknown"), (0.0, 8.75, "unknown"), (0.75, 0.9, "fail")],
-)
-def test_over_flat_ground_half_the_box_is_a_height(hand: str, ego_m: float, over_m: float, verdict: str) -> None:
-    """Centres of boxes 1.5 m high: the one on the bridge is measured, so is the one on the ground; 0 may stand for none."""
-
-    def high(actors: pa.Table) -> pa.Table:
-        at = actors.schema.get_field_index("height_m")
-        return actors.set_column(at, actors.schema.field(at), pa.array([1.5] * len(actors)))
-
-    scene = blinding.changed(crossing(hand, 0.0 if verdict == "fail" else None), "actor", high)
-    assert verdicts(lifted(scene, {"ego": ego_m, "over": over_m}), CRASH) == {verdict}

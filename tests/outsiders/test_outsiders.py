@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 
 KNOWN: Final = {
     "overtake_begun_and_given_up ukhc.r162.safe-distance-ahead": "given up, it has no course of its own to judge; as planned it had room",
+    "bridge ukhc.no-collision": "how far one level is above another is not measured: unknown while the boxes overlap in plan",
     "zebra_ignored_far_side ukhc.r195.zebra-on": "the map does not say whether an island parts the crossing",
     "left_turn_wide ukhc.r183.keep-in": "the ego left the junction over the wrong lane: the end of its turn is not known",
     "gb_exit_unsignalled_early ukhc.exit-sign-signal": "the ego was in the exit lane before the first sign",
     "gb_wrong_side ukhc.r143.direction": "nobody else is there: a map of the other hand looks the same",
     "gb_exit_properly ukhc.signal-then-leaves": "the slip road is marked as an exit lane too: the log ends before that does",
     "de_autobahn_150 stvo.rg3": "a map's `no limit` is read as none given: a sign may stand there that the map lacks",
+    "de_bridge ukhc.no-collision": "how far one level is above another is not measured: unknown while the boxes overlap in plan",
     "de_alks_cut_in_avoided stvo.rg2": "it brakes with 3.5 m/s2 for a slower car that moves in, not yet too near by its source's formula",
     "de_stops_on_motorway stvo.rg2": "it brakes with 3 m/s2: the rule's source asks for a reason from 2 m/s2 on",
     "gb_mway_astride_g ukhc.r131.keep-in-lane": "between two lanes for so long, the ego does not vouch for the map",
