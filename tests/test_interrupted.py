@@ -272,6 +272,11 @@ class Watcher(Silent):
     def __init__(self) -> None:
         self.told: list[str | int] = []
 
+    def stage(self, name: str, total: int | None = None) -> None:
+        """Note the stage of copies and how many findings it has."""
+        if "copies" in name:
+            self.told += [name, f"of {total}"]
+
     def doing(self, what: str) -> None:
         """Note what is done."""
         self.told.append(what)
@@ -287,7 +292,7 @@ def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.Monke
     check(replace(options(Path(), TRACES), rules_dirs=(), rules=("ukhc.r162.safe-distance-ahead",)), watcher)
     assert watcher.told == [
         "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "reading 3/3", "judging 2 drives", 2,
-        "judging copies of 2 drives",
+        "4 critical findings; judging copies", "of 2", 1, 1,
     ]  # fmt: skip
 
 

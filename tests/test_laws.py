@@ -90,7 +90,18 @@ def crowd() -> tuple[Drive, ...]:
         standing("x", halves, times(33.0), 150, halves.own),
     ]
     found.append(drive(actors, halves.environment, drive_id="halves"))
-    return (*found, rarely(), crashed(), *bridged(), *streets())
+    return (*found, rarely(), crashed(), passing(), *bridged(), *streets())
+
+
+def passing() -> Drive:
+    """Return a drive in which the ego moves aside in its lane and passes a car that is parked at the kerb."""
+    way = road()
+    t = times(12.0)
+    aside = np.clip((t - 4.0) / 2.5, 0.0, 1.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own - np.sign(way.own) * 0.92 * aside * aside * (3 - 2 * aside))
+    return drive(
+        [ego, standing("p", way, t, 200.0, np.sign(way.own) * (LANE - 0.2))], way.environment, drive_id="passing"
+    )
 
 
 def rarely() -> Drive:

@@ -57,4 +57,4 @@ beside_way AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id
 FROM beside_way b
 ANTI JOIN (FROM beside_way WHERE is_course_held) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
-ANTI JOIN (FROM excursion WHERE max_out_m > passes_beside_m()) x ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, x.t0_ns) AND x.t_end_ns >= b.t_ns
+ANTI JOIN (FROM excursion WHERE max_out_m > passes_beside_m()) x ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns

@@ -163,12 +163,12 @@ def test_the_time_to_collision_is_that_of_its_rule(out: Path, name: str) -> None
 
 
 def test_what_is_not_known_is_left_out(tmp_path: Path) -> None:
-    """Without a map nobody knows who is ahead in the lane, nor a speed limit."""
+    """Without a map nobody knows who comes the other way in which lane, nor a speed limit."""
     path = the(run(tmp_path, CASE / "collision.csv", map=None), "collision")
     said = content(messages(path, "measures"))
     assert len(said) > 100
     assert not {key for row in said for key in row} & {
-        "lead_id", "lead_gap_m", "ttc_s", "ttc_id", "oncoming_gap_m", "oncoming_required_m", "oncoming_id", "limit_mps"
+        "oncoming_gap_m", "oncoming_required_m", "oncoming_id", "limit_mps"
     }  # fmt: skip
     assert "accel_mps2" not in said[0], "the first step has none before it"
 

@@ -32,7 +32,9 @@ def street(hand: str, *, two_way: bool = False, stated: bool = True) -> Road:
     return Road(load_map(MapSource(f"street-{hand}-{two_way}-{stated}.xodr", text.encode())), ((600.0, 0.0),))
 
 
-def verdict(hand: str, *, seconds: float = 12.0, other: str | None = None, two_way: bool = False, stated: bool = True) -> str:
+def verdict(
+    hand: str, *, seconds: float = 12.0, other: str | None = None, two_way: bool = False, stated: bool = True
+) -> str:
     """Return the verdict on an ego against the direction at 10 m/s; `other`: with or against the direction in the lane beside."""
     way = street(hand, two_way=two_way, stated=stated)
     side = 1 if hand == "lht" else -1

@@ -93,9 +93,9 @@ def test_distance_along_a_bend_is_not_the_chord(curvature: float) -> None:
     """150 m of bend: bumper to bumper is the arc length of the ego's own lane, less both half lengths."""
     way = road(((50.0, 0.0), (250.0, curvature), (50.0, 0.0)))
     t = times(0.2)
-    ego, other = standing("ego", way, t, 60, way.own), standing("far", way, t, 210, way.other, turned=math.pi)
+    ego, other = standing("ego", way, t, 60, way.own), moving("far", way, t, 210 - 5 * t, way.other)
     con = derived(drive([ego, other], way.environment), tables=["pair", "oncoming"])
-    row = rows(con, "SELECT p.*, e.front_s_m AS ego_front_m FROM pair p JOIN ego_state e USING (t_ns)")[0]
+    row = rows(con, "SELECT p.*, e.front_s_m AS ego_front_m FROM pair p JOIN ego_state e USING (t_ns) ORDER BY t_ns")[0]
     arc = 150 * (1 - way.own * curvature)
     # a box's ends stick out along the tangent, so the corners' stations are a hair short of the half length
     assert row["rear_s_m"] - row["ego_front_m"] == pytest.approx(arc - 4.8, abs=0.1)
@@ -103,7 +103,7 @@ def test_distance_along_a_bend_is_not_the_chord(curvature: float) -> None:
     assert abs(row["heading_diff_rad"]) == pytest.approx(math.pi, abs=0.01)
     assert row["distance_m"] < arc - 15
     assert row["clearance_m"] <= row["distance_m"]
-    assert rows(con, "FROM oncoming")[0]["da_m"] == pytest.approx(arc - 4.8, abs=0.1)
+    assert rows(con, "FROM oncoming ORDER BY t_ns")[0]["da_m"] == pytest.approx(arc - 4.8, abs=0.1)
 
 
 def test_a_sample_of_another_time_is_moved_on_while_it_is_fresh() -> None:
@@ -174,13 +174,13 @@ def test_what_comes_the_other_way_round_a_ring_is_still_to_be_met() -> None:
     t = times(0.2)
     ego = standing("ego", way, t, 100, way.own)
     con = derived(
-        drive([ego, standing("ov", way, t, 600, way.other, turned=math.pi)], way.environment),
+        drive([ego, moving("ov", way, t, 600 - 5 * t, way.other)], way.environment),
         tables=["pair", "oncoming"],
     )
     stretch = 1 - way.own * 2 * math.pi / 800
-    assert rows(con, "FROM oncoming")[0]["da_m"] == pytest.approx(500 * stretch - 4.8, abs=0.3)
+    assert rows(con, "FROM oncoming ORDER BY t_ns")[0]["da_m"] == pytest.approx(500 * stretch - 4.8, abs=0.3)
     con = derived(drive([ego, standing("follower", way, t, 600, way.own)], way.environment), tables=["pair"])
-    row = rows(con, "SELECT p.s_m - e.s_m AS ahead_m FROM pair p JOIN ego_state e USING (t_ns)")[0]
+    row = rows(con, "SELECT p.s_m - e.s_m AS ahead_m FROM pair p JOIN ego_state e USING (t_ns) ORDER BY t_ns")[0]
     assert row["ahead_m"] == pytest.approx(-300 * stretch, abs=0.3)
 
 
@@ -204,7 +204,7 @@ def test_an_oncoming_vehicle_that_has_passed_is_behind(
         drive([ego, standing("ov", way, t, ov_m, way.other, turned=math.pi)], way.environment), tables=["pair"]
     )
     stretch = 1 - way.own * 2 * math.pi / length if ring else 1.0
-    row = rows(con, "SELECT p.s_m - e.s_m AS ahead_m FROM pair p JOIN ego_state e USING (t_ns)")[0]
+    row = rows(con, "SELECT p.s_m - e.s_m AS ahead_m FROM pair p JOIN ego_state e USING (t_ns) ORDER BY t_ns")[0]
     assert row["ahead_m"] == pytest.approx(expected_m * stretch, abs=0.5)
 
 
@@ -214,13 +214,13 @@ def test_the_other_leg_of_a_hairpin_is_not_beside_the_road() -> None:
     way = road(((100.0, 0.0), (turn, 1 / 5.5), (100.0, 0.0)))
     t = times(0.2)
     ego = standing("ego", way, t, 60, way.own)
-    ov = standing("ov", way, t, 100 + turn + 40, way.other, turned=math.pi)
+    ov = moving("ov", way, t, 100 + turn + 40 - 5 * t, way.other)
     con = derived(drive([ego, ov], way.environment), tables=["pair", "oncoming"])
-    row = rows(con, "SELECT p.* FROM pair p")[0]
+    row = rows(con, "SELECT p.* FROM pair p ORDER BY p.t_ns")[0]
     assert row["distance_m"] < 15
     assert row["d_m"] == pytest.approx(LANE, abs=0.05)
     along = 40 + turn + 40 - way.own * math.pi - 4.8  # the ego's lane is on the outside of the turn
-    assert rows(con, "FROM oncoming")[0]["da_m"] == pytest.approx(along, abs=0.5)
+    assert rows(con, "FROM oncoming ORDER BY t_ns")[0]["da_m"] == pytest.approx(along, abs=0.5)
 
 
 LEADS = [

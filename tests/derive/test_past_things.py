@@ -14,7 +14,9 @@ HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 LINE = "ukhc.r129.no-cross-solid"
 
 
-def past(hand: str, cones: list[float], *, share: float = 0.5, kind: str = "object", slow_mps: float | None = None) -> str:
+def past(
+    hand: str, cones: list[float], *, share: float = 0.5, kind: str = "object", slow_mps: float | None = None
+) -> str:
     """Return the verdict on an ego that goes over the solid middle line round cones at these places; `share` of the lane inwards.
 
     `slow_mps`: of a car that the ego overtakes there, too.

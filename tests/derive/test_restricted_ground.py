@@ -21,7 +21,8 @@ def roadway(hand: str, outer: str, kind: str) -> Road:
     """Return a road with two lanes and one of the type `outer` beside them in one direction, and one lane in the other."""
     side = 1 if hand == "lht" else -1
     lanes = [
-        linked(side * n, kind=outer if n == 3 else "driving").replace("</lane>", mark("broken") + "</lane>") for n in (1, 2, 3)
+        linked(side * n, kind=outer if n == 3 else "driving").replace("</lane>", mark("broken") + "</lane>")
+        for n in (1, 2, 3)
     ]
     others = [linked(-side)]
     section = xodr.section(0, *(lanes[::-1] + others if side > 0 else others + lanes))
@@ -37,7 +38,9 @@ def roadway(hand: str, outer: str, kind: str) -> Road:
     return Road(load_map(MapSource(f"restricted-{hand}-{outer}-{kind}.xodr", text.encode())), ((1500.0, 0.0),))
 
 
-def verdict(hand: str, rule: str, kind: str, *, outer: str = "restricted", back: bool = False, reverse: bool = False) -> str:
+def verdict(
+    hand: str, rule: str, kind: str, *, outer: str = "restricted", back: bool = False, reverse: bool = False
+) -> str:
     """Return the verdict on an ego that drives at 25 m/s on the outer lane, from 8 s on (until 20 s with `back`)."""
     way = roadway(hand, outer, kind)
     side = 1 if hand == "lht" else -1
