@@ -12,6 +12,7 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.engine import batch
 from drivelint.engine import session as judge
 from drivelint.engine.map_library import MapLibrary
+from drivelint.engine.robustness import judging as copies
 from drivelint.formats import read_trace
 from drivelint.report import html, junit, outputs
 from drivelint.report.progress import Silent
@@ -34,6 +35,9 @@ WATCHED = (
     (judge.JudgingSession, "_load", "tables filled"),
     (judge, "derive", "derive"),
     (judge, "evaluate", "rules"),
+    (copies, "derive", "copies"),  # but for their tables, which are filled as those of drives
+    (copies, "evaluate", "copies"),
+    (copies.Robustness, "judge", "copies"),
     (evidence, "gather", "report"),
     (html, "render", "report"),
     (junit, "render", "report"),
