@@ -1,6 +1,7 @@
 """ASAM's own reader, qc_baselib 1.1.0 (PyPI: asam-qc-baselib), reads our checker results and finds in them what we wrote.
 
-It refuses a whole file in which a checker has an issue of a rule that it does not address: so ours addresses every rule that it ran.
+It refuses a whole file in which a checker has an issue of a rule that it does not address, so ours addresses every rule that it ran. It
+looks bundles up by their names, so each drive's has its own.
 """
 
 from __future__ import annotations
@@ -50,15 +51,16 @@ def test_every_rule_is_addressed_by_its_checker() -> None:
 def test_asams_reader_finds_what_we_wrote(tmp_path: Path) -> None:
     found = read_back(xqar.render(run()), tmp_path)
     assert found.get_result_version() == "1.0.0"
-    assert found.get_checker_bundle_names() == ["drivelint", "drivelint"]
-    assert found.get_checker_ids("drivelint") == [SDA, OTHER]
-    assert [found.get_checker_status(each).value for each in (SDA, OTHER)] == ["completed", "skipped"]
+    assert found.get_checker_bundle_names() == ["drivelint d1", "drivelint d2"]
+    assert [found.get_checker_ids(bundle) for bundle in found.get_checker_bundle_names()] == [[SDA, OTHER]] * 2
+    statuses = [[each.status.value for each in bundle.checkers] for bundle in found.get_checker_bundle_results()]
+    assert statuses == [["completed", "skipped"], ["skipped", "skipped"]]
     issues = sorted(found.get_issues_by_rule_uid(UID), key=lambda issue: int(issue.issue_id))
     assert [(issue.issue_id, issue.level.value) for issue in issues] == [(0, 1), (1, 3)]
     (place,) = issues[0].locations
     assert place.inertial_location[0].x == 1.5
     assert place.time_location[0].time == 108.0
-    assert found.get_issue_count() == 2
+    assert found.get_issue_count() == 2, "of bundles of one name it would count the first one's twice"
 
 
 def test_asams_reader_refuses_an_issue_of_a_rule_that_is_not_addressed(tmp_path: Path) -> None:
