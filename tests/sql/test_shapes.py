@@ -166,7 +166,7 @@ def without_place(shape: str) -> str:
 @pytest.mark.parametrize("shape", WITHOUT_PLACE)
 @pytest.mark.parametrize("other", ["actor_box(50, 0, 0, 4, 2)", "ST_Point(50, 0)"])
 def test_to_a_shape_without_a_place_there_is_no_distance(shape: str, other: str) -> None:
-    """Nor does it meet another. ST_Distance says 0 of empty ones, and ST_Intersects raises an error at a corner that is NaN."""
+    """Nor does it meet another. In DuckDB 1.5.5 ST_Distance is 0 for empty ones, and ST_Intersects raises an error at a NaN corner."""
     a = without_place(shape)
     asked = (
         f"{macro}({pair})"
