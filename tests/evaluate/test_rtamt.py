@@ -148,7 +148,8 @@ def test_rtamt_counts_samples_whatever_their_times() -> None:
     slow = [2 * k * PERIOD_S for k in range(60)]
     assert value_at("always[0s,5s](x >= 0)", low, 0, slow) == value_at("always[0s,5s](x >= 0)", low, 0) == -1.0
     first, last = (float(each) for each in TIMES.split(" ")[0].split(".."))
-    assert (first, last, TIMES.split(" ")[2]) == (0.0, pytest.approx((STEPS - 1) * PERIOD_S), str(PERIOD_S))
+    assert (first, TIMES.split(" ")[2]) == (0.0, str(PERIOD_S))
+    assert last == pytest.approx((STEPS - 1) * PERIOD_S)
 
 
 def test_rtamt_judges_what_is_left_of_a_window_at_the_end() -> None:

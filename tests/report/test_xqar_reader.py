@@ -44,7 +44,7 @@ def test_every_rule_is_addressed_by_its_checker() -> None:
     assert [each.get("checkerId") for each in checkers] == [SDA, OTHER] * 2
     for checker in checkers:
         addressed = {each.get("ruleUID") for each in checker.iter("AddressedRule")}
-        assert addressed == {xqar.rule_uid(checker.get("checkerId"), "ukhc")}
+        assert addressed == {xqar.rule_uid(checker.get("checkerId", ""), "ukhc")}
         assert {each.get("ruleUID") for each in checker.iter("Issue")} <= addressed
 
 

@@ -14,7 +14,7 @@ import pytest
 import shapely
 from shapely import affinity
 
-from drivelint.audit.compact import TABLES
+from drivelint.audit.worker import TABLES
 from drivelint.report.outputs import write
 from drivelint.resources import folder as folder_of
 from drivelint.result.files import parquet_bytes

@@ -279,7 +279,8 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
     fits = (side == "left") == (lane_no > 0)
-    if lane_no == 0 or not (fits or _has_numbers_of_other_side(element.getparent().getparent())):
+    section = None if parent is None else parent.getparent()
+    if lane_no == 0 or not (fits or (section is not None and _has_numbers_of_other_side(section))):
         raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
     widths, borders = element.findall("width"), element.findall("border")
     if not widths and not borders:
