@@ -135,7 +135,7 @@ CREATE TABLE road_object (
     y_m DOUBLE NOT NULL,              -- where it stands
     outline_x_m DOUBLE[],             -- its outline, counter-clockwise; NULL: a point
     outline_y_m DOUBLE[],             -- its outline
-    geom GEOMETRY                     -- its outline as a polygon, or the point where it stands
+    geom GEOMETRY                     -- its outline as a polygon, or as a line where it has no area; or the point where it stands
 );
 
 -- lifetime: map

@@ -116,7 +116,7 @@ misfit AS (
 -- At each step: whether the ego is well in its lane, whether it is elsewhere, and the direction of its road in twelfths of a half turn.
 ego_step AS (
     SELECT
-        st.drive_id, st.ego_id, st.t_ns, st.k, st.seg, s.speed_mps, st.dt_ns, floor((s.yaw_rad - pi() * floor(s.yaw_rad / pi())) / (pi() / 12))::INTEGER % 12 AS direction_no,
+        st.drive_id, st.ego_id, st.t_ns, st.k, st.seg, s.speed_mps, st.dt_ns, (floor(s.yaw_rad / (pi() / 12))::INTEGER % 12 + 12) % 12 AS direction_no,
         CASE WHEN e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL THEN e.off_m END AS off_in_lane_m,
         x.t_ns IS NULL AND (e.lanelet_id IS NULL OR e.off_m > 1.2 OR NOT e.with_traffic) AS is_elsewhere
     FROM step st

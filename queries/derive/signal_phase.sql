@@ -29,7 +29,8 @@ known_state AS (
     SELECT s.drive_id, s.signal_id, s.t_ns + c.max_gap_ns + 1, NULL
     FROM sample_spacing s
     JOIN repeat_period c USING (drive_id, signal_id)
-    WHERE s.gap_ns IS NULL OR s.gap_ns > c.max_gap_ns
+    -- The sample after a gap that is longer by 1 ns stands at that very time.
+    WHERE s.gap_ns IS NULL OR s.gap_ns > c.max_gap_ns + 1
     UNION ALL
     -- A change may be in what the log has lost.
     SELECT DISTINCT s.drive_id, s.signal_id, l.t_from_ns + 1, NULL

@@ -1,5 +1,12 @@
 -- Shapes as geometries, for the candidates that remain after a check by cheap arithmetic, and for output. All are in metres of the map,
--- NULL if an argument is NULL. `ST_Intersects(danger_space(...), actor_box(...))` reads as the rule does.
+-- NULL if an argument is NULL. `shapes_meet(danger_space(...), actor_box(...))` reads as the rule does.
+
+-- Whether a shape has no place: it is empty, or a coordinate is no finite number. DuckDB 1.5.5 makes an empty point of two NaN, and says that
+-- the distance to an empty shape is 0.
+CREATE OR REPLACE MACRO has_no_place(shape) AS
+    -- The lambda lets the shape be made once.
+    list_transform([shape], lambda s: ST_IsEmpty(s) OR NOT isfinite(ST_Length(s) + ST_Perimeter(s))
+        OR NOT isfinite(ST_XMin(s) + ST_XMax(s) + ST_YMin(s) + ST_YMax(s)) OR NOT (ST_XMin(s) <= ST_XMax(s) AND ST_YMin(s) <= ST_YMax(s)))[1];
 
 -- The box of an actor: its centre, heading, length and width.
 CREATE OR REPLACE MACRO actor_box(x_m, y_m, yaw_rad, length_m, width_m) AS
@@ -12,12 +19,22 @@ CREATE OR REPLACE MACRO danger_space(x_m, y_m, yaw_rad, length_m, width_m, stopp
 
 -- The ground that a box covers on its way from one place to the next, if it goes straight on: the least convex shape around both.
 CREATE OR REPLACE MACRO swept_path(from_box, to_box) AS
-    CASE WHEN from_box IS NOT NULL AND to_box IS NOT NULL THEN ST_ConvexHull(ST_Collect([from_box, to_box])) END;
+    CASE WHEN NOT has_no_place(from_box) AND NOT has_no_place(to_box) THEN ST_ConvexHull(ST_Collect([from_box, to_box])) END;
 
--- The distance between two shapes, 0 if they touch. DuckDB 1.5.5 says 0 for the ST_Distance of two polygons that are apart, if a corner of
--- one lies level with an edge of the other, and ST_DWithin follows it. The distance of their boundaries is right.
+-- Whether two shapes have a point in common, NULL if one has no place.
+CREATE OR REPLACE MACRO shapes_meet(a, b) AS CASE WHEN has_no_place(a) OR has_no_place(b) THEN NULL ELSE ST_Intersects(a, b) END;
+
+-- The distance between two shapes, 0 if they touch, NULL if one has no place. DuckDB 1.5.5 says 0 for the ST_Distance of two polygons that
+-- are apart, if a corner of one lies level with an edge of the other, and ST_DWithin follows it. The distance of their boundaries is right.
 CREATE OR REPLACE MACRO apart_m(a, b) AS
-    CASE WHEN ST_Intersects(a, b) THEN 0.0 ELSE ST_Distance(CASE WHEN ST_Dimension(a) = 2 THEN ST_Boundary(a) ELSE a END, CASE WHEN ST_Dimension(b) = 2 THEN ST_Boundary(b) ELSE b END) END;
+    CASE
+        WHEN has_no_place(a) OR has_no_place(b) THEN NULL
+        WHEN ST_Intersects(a, b) THEN 0.0
+        ELSE ST_Distance(CASE WHEN ST_Dimension(a) = 2 THEN ST_Boundary(a) ELSE a END, CASE WHEN ST_Dimension(b) = 2 THEN ST_Boundary(b) ELSE b END)
+    END;
+
+-- The corners of an outline.
+CREATE OR REPLACE MACRO outline_points(outline_x_m, outline_y_m) AS list_transform(list_zip(outline_x_m, outline_y_m), lambda p: ST_Point(p[1], p[2]));
 
 -- The area between two bounds: along the points of one, and back along those of the other. Bounds that cross each other, as in a bend
 -- tighter than the lane is wide, make several areas.

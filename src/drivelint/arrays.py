@@ -38,6 +38,11 @@ def turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
     return x * cos - y * sin, x * sin + y * cos
 
 
+def wrapped(angle: Floats) -> Floats:
+    """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
+    return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))
+
+
 def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
     """Return a table with other values in some of its columns, of the types that these have; NaN as NULL."""
     import pyarrow as pa

@@ -178,7 +178,7 @@ def foxglove_cubes_in_a_moving_frame(tmp_path: Path) -> Trace:
 
 
 def sumo(tmp_path: Path) -> Trace:
-    """The middle of the front bumper, an angle clockwise from north."""
+    """SUMO 1.28: the middle of the front bumper, an angle clockwise from north."""
     rows = []
     for p in TRUTH:
         x, y = p.point(LENGTH / 2)

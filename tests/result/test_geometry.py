@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from typing import TYPE_CHECKING
 
 import geopandas
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 import shapely
 from shapely import affinity
 
+from drivelint.audit.worker import TABLES
 from drivelint.report.outputs import write
+from drivelint.resources import folder as folder_of
 from drivelint.result.files import parquet_bytes
 from drivelint.result.geometry import SHAPES, with_geometry
 from drivelint.result.load import load_result
 from drivelint.result.schemas import TABLE_OF_FILE, empty_table
 from drivelint.sql import store
+from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,6 +58,48 @@ def test_geopandas_and_duckdb_read_the_same_valid_geometry(folder: Path, stem: s
         wkb = [bytes(each) for (each,) in con.execute(f"SELECT ST_AsWKB(geom) FROM '{path}'").fetchall()]
     assert kind == [("GEOMETRY",)]
     assert wkb == [shapely.to_wkb(each, byte_order=1) for each in frame.geometry]
+
+
+def written_crs(path: Path) -> dict[str, object]:
+    """Return what a GeoParquet file says of its column `geom`."""
+    about: dict[str, object] = json.loads(pq.read_schema(path).metadata[b"geo"])["columns"]["geom"]
+    return about
+
+
+@pytest.mark.parametrize("stem", FILES)
+def test_the_metres_of_a_map_are_never_taken_for_longitude_and_latitude(folder: Path, stem: str) -> None:
+    """GeoParquet 1.1: without the key `crs`, coordinates are longitude and latitude (OGC:CRS84); with null, nothing is said of them."""
+    about = written_crs(folder / f"{stem}.parquet")
+    assert "crs" in about
+    assert about["crs"] is None
+
+
+def test_duckdb_forgets_that_there_is_no_reference(folder: Path, tmp_path: Path) -> None:
+    """DuckDB 1.5.5 writes a geometry without `crs`, also after ST_Transform from one that has it: no file of ours is written by its COPY.
+
+    If this fails, it may be. geopandas 1.2 takes such metres for degrees.
+    """
+    metres, moved = tmp_path / "metres.parquet", tmp_path / "moved.parquet"
+    with store.open_as_is() as con:
+        con.execute(f"COPY (SELECT geom FROM '{folder / 'tracks.parquet'}') TO '{metres}' (FORMAT parquet)")
+        place = "ST_SetCRS(ST_Point(8.4, 49.0), 'EPSG:4326')"
+        sql = f"SELECT ST_Transform({place}, 'EPSG:4326', 'EPSG:25832', always_xy := true) AS geom"
+        con.execute(f"COPY ({sql}) TO '{moved}' (FORMAT parquet)")
+    for path in (metres, moved):
+        assert "crs" not in written_crs(path)
+        assert geopandas.read_parquet(path).crs.equals("OGC:CRS84")
+
+
+def test_what_duckdb_writes_has_no_geometry() -> None:
+    """The files of an audit's batches, which DuckDB packs, have none; nor do statements take a geometry out of ST_Transform."""
+    for table in TABLES:
+        assert "geom" not in empty_table(TABLE_OF_FILE[table]).column_names
+    transforms = re.compile(r"\bST_Transform\(", re.IGNORECASE)
+    files = [*folder_of("queries").rglob("*.sql"), *(ROOT / "src").rglob("*.py")]
+    assert {path.name for path in files if transforms.search(path.read_text("utf-8"))} == {
+        "position.sql",
+        "geo_reference.py",
+    }
 
 
 @pytest.mark.parametrize("stem", FILES)

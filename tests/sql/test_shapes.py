@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,10 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from drivelint.catalogue import allowed
+from drivelint.resources import folder
 from drivelint.sql import store
+from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
     import duckdb
@@ -138,3 +142,58 @@ def test_a_swept_path_covers_the_box_on_its_way(box: Box, dx: float, dy: float, 
 )
 def test_what_is_not_known_has_no_shape(shape: str) -> None:
     assert database().execute(f"SELECT {shape}").fetchall() == [(None,)]
+
+
+WITHOUT_PLACE = (
+    *(
+        f"ST_GeomFromText('{kind} EMPTY')"
+        for kind in ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON", "GEOMETRYCOLLECTION")
+    ),
+    *(f"ST_Point({xy})" for xy in ("'nan', 'nan'", "1, 'nan'", "'nan', 1", "'inf', 1", "1, '-inf'")),
+    "ST_MakeLine(ST_Point(1, 1), ST_Point('nan', 2))",
+    *(
+        f"actor_box({box})"
+        for box in ("'nan', 0, 0, 4, 2", "0, 0, 'nan', 4, 2", "0, 0, 0, 'nan', 2", "'inf', 0, 0, 4, 2")
+    ),
+    "swept_path(actor_box('nan', 0, 0, 4, 2), actor_box(1, 0, 0, 4, 2))",
+)
+
+
+def without_place(shape: str) -> str:
+    return re.sub(r"'(-?(?:nan|inf))'", r"'\1'::DOUBLE", shape)
+
+
+@pytest.mark.parametrize("shape", WITHOUT_PLACE)
+@pytest.mark.parametrize("other", ["actor_box(50, 0, 0, 4, 2)", "ST_Point(50, 0)"])
+def test_to_a_shape_without_a_place_there_is_no_distance(shape: str, other: str) -> None:
+    """Nor does it meet another. In DuckDB 1.5.5 ST_Distance is 0 for empty ones, and ST_Intersects raises an error at a NaN corner."""
+    a = without_place(shape)
+    asked = (
+        f"{macro}({pair})"
+        for macro in ("apart_m", "shapes_meet")
+        for pair in (f"{a}, {other}", f"{other}, {a}", f"{a}, {a}")
+    )
+    assert database().execute(f"SELECT {', '.join(asked)}").fetchall() == [(None,) * 6]
+
+
+def test_the_distance_to_an_empty_shape_is_still_0_in_this_duckdb() -> None:
+    """If this fails, `has_no_place` may be superfluous."""
+    for empty in ("ST_GeomFromText('POLYGON EMPTY')", "ST_Point('nan'::DOUBLE, 'nan'::DOUBLE)"):
+        assert database().execute(f"SELECT ST_Distance({empty}, ST_Point(50, 0))").fetchall() == [(0.0,)]
+
+
+@given(pairs)
+@settings(max_examples=30, deadline=None)
+def test_shapes_meet_as_duckdb_says(found: list[tuple[Box, Box]]) -> None:
+    for meet, touching in about(found, "shapes_meet(a, b)", "ST_Intersects(a, b)"):
+        assert meet == touching
+
+
+def test_distances_of_shapes_are_measured_in_one_place() -> None:
+    """Nor may a rule measure them otherwise: it may call no function ST_."""
+    calls = re.compile(r"\bST_(?:Distance|DWithin|MaxDistance|HausdorffDistance|ShortestLine)\w*\(", re.IGNORECASE)
+    files = [*folder("queries").rglob("*.sql"), *(ROOT / "src").rglob("*.py")]
+    assert len(files) > 100
+    found = {path.name for path in files if calls.search(re.sub(r"--.*", "", path.read_text(encoding="utf-8")))}
+    assert found == {"shapes.sql"}
+    assert [name for name in allowed.functions() if name.startswith("st_")] == []

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import track_starts, wrapped
+from drivelint.arrays import wrapped
+from drivelint.drive.order import track_starts
 from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, Doubt, QualityFinding
 from drivelint.phrases import listed
 

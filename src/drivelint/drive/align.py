@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, sorted_states, wrapped
+from drivelint.arrays import wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, sorted_states
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 

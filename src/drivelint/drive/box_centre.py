@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.arrays import turned
-from drivelint.drive.order import steps, time_derivative, wrapped
+from drivelint.arrays import turned, wrapped
+from drivelint.drive.order import steps, time_derivative
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over, wrapped
+from drivelint.arrays import wrapped
+from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 

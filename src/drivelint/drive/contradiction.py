@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from drivelint.arrays import wrapped
 from drivelint.drive.jumps import COUNT_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
-from drivelint.drive.order import displacements, integral_per_step, known_motion, sums_until, wrapped
+from drivelint.drive.order import displacements, integral_per_step, known_motion, sums_until
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity import Tracklets, sample_noise
 from drivelint.phrases import listed

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import spelled
+from drivelint.arrays import spelled, wrapped
 from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
@@ -18,7 +18,7 @@ from drivelint.drive.implausible.bodies import false_entries, held_tracks, same_
 from drivelint.drive.implausible.motion import implausible_motion
 from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
-from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates, wrapped
+from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates
 from drivelint.drive.trace import (
     ASSUMED_MOTION,
     BRAKE_LIGHTS,

@@ -177,8 +177,3 @@ def track_starts(actor: NDArray[np.int32]) -> Indices:
 def extent(values: Floats, starts: Indices) -> Floats:
     """Return by how much the known values of each track spread (`starts`: first rows); NaN where none is known."""
     return np.fmax.reduceat(values, starts, axis=-1) - np.fmin.reduceat(values, starts, axis=-1)
-
-
-def wrapped(angle: Floats) -> Floats:
-    """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
-    return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import floats, turned, with_columns
+from drivelint.arrays import floats, turned, with_columns, wrapped
 from drivelint.drive.finish import with_quality_finding
-from drivelint.drive.order import wrapped
 from drivelint.drive.trace import QualityFinding
 from drivelint.engine.earth import frame_of_log, frame_of_map
 from drivelint.errors import MapError

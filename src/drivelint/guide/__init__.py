@@ -11,7 +11,7 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 TOPICS: Final = (
-    "traces", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain", "incident",
+    "traces", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain", "differences", "incident",
     "evidence-pack", "viewer",
     "columns", "python", "ci", "watching", "fleets", "fleet-results", "fleet-costs", "writing-a-rule", "rule-durations",
     "rule-reference", "adding-a-format", "architecture",

@@ -41,7 +41,8 @@ def render(result: Result) -> bytes:
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, held against the drive {drive['drive_id']}"
-        bundle = add(root, "CheckerBundle", build_date="", name="drivelint", version=__version__, description=about)
+        name = f"drivelint {drive['drive_id']}"  # ASAM's reader takes bundles of one name for one
+        bundle = add(root, "CheckerBundle", build_date="", name=name, version=__version__, description=about)
         add(bundle, "Param", name="InputFile", value=drive["file_name"])
         add(bundle, "Param", name="Sha256", value=drive["sha256"] or "unknown")
         add(bundle, "Param", name="MapFile", value=drive["map_name"] or "none")

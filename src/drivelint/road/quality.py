@@ -30,6 +30,7 @@ class MapQuality:
         self.rows: list[dict[str, Any]] = []
         self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _UNKNOWN_WORDS}
         self._stand_ins = 0
+        self._sides_by_number = 0
 
     def posted_limit(self, limit_mps: float) -> float | None:
         """Return a limit of the map in m/s; None, and counted, where it stands in for one that the map's source did not have."""
@@ -37,6 +38,10 @@ class MapQuality:
             return limit_mps
         self._stand_ins += 1
         return None
+
+    def side_by_number(self) -> None:
+        """Count a lane section of OpenDRIVE whose lanes all have numbers of the side under which they do not stand."""
+        self._sides_by_number += 1
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
         """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where it has none such."""
@@ -67,6 +72,9 @@ class MapQuality:
         if self._stand_ins:
             message = f"{_NETCONVERT_STAND_IN_MPS:g} m/s is what netconvert writes for a road without a limit: taken as unknown"
             rows.append(_row("invalid_speed", "warning", None, message, self._stand_ins))
+        if self._sides_by_number:
+            message = "lane sections have lanes with numbers of the other side than that under which they stand: the numbers count"
+            rows.append(_row("lane_side", "info", None, message, self._sides_by_number))
         return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 
 

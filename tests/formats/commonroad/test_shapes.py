@@ -1,7 +1,7 @@
 """Where the box of a CommonRoad obstacle lies against the place of its states.
 
 Figures of peers were read with commonroad-io 2026.1 (originXShift, truckShape) and 2024.3 (center, orientation): the centre of
-`occupancy_at_time(step)`, which is the box that the library looks for collisions with.
+`occupancy_at_time(step)`, which is the box that the library looks for collisions with. 2026.1 ignores center and orientation.
 """
 
 from __future__ import annotations
@@ -112,6 +112,19 @@ def test_a_centre_counts_where_it_need_not_turn(
     """By commonroad-io 2024.3: the origin is at (8, 0), and the obstacle drives straight to the east."""
     row = at(read(write(tmp_path, turning(shape, yaw_rate=0.0)), ego="1"), "1", 1.0)
     assert (row["x_m"], row["y_m"], row["yaw_rad"]) == pytest.approx(expected, abs=1e-9)
+
+
+def test_both_spellings_of_one_shape_are_one_place(tmp_path: Path) -> None:
+    """The middle is 1.4 m ahead by `originXShift` of 2026.1 and by `center` of 2024.3; where it is turned, the latter is doubtful."""
+    shapes = {"shift": REAR_AXLE, "centre": f"<rectangle>{SIZE}{centre(1.4, 0.0)}</rectangle>"}
+    for yaw, expected in (
+        (0.0, {"shift": 61.4, "centre": 61.4}),
+        (0.7, {"shift": 60.0 + 1.4 * math.cos(0.7), "centre": None}),
+    ):
+        for name, shape in shapes.items():
+            text = standing(shape).replace("<exact>1.0</exact>", f"<exact>{yaw}</exact>")
+            trace = read(write(tmp_path, turning(f"<rectangle>{SIZE}</rectangle>"), text), ego="1")
+            assert at(trace, "50", 0.0)["x_m"] == pytest.approx(expected[name]), name
 
 
 @pytest.mark.parametrize(

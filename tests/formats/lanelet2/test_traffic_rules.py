@@ -123,10 +123,11 @@ def test_a_crosswalk_that_is_a_lane_is_no_crossing() -> None:
     ("text", "kmh"),
     [
         ("50", 50.0), ("50.5", 50.5), ("50 km/h", 50.0), ("50kmh", 50.0), ("50 kmph", 50.0), ("30 mph", 48.28032), ("30mph", 48.28032),
-        ("13.9 m/s", 50.04), ("10mps", 36.0), (" 50 ", 50.0),
+        ("13.9 m/s", 50.04), ("10mps", 36.0), (" 50 ", 50.0), ("50 Km/h", 50.0), ("50 KM/H", 50.0), ("50 Kmh", 50.0), ("30 MPH", 48.28032),
     ],
 )  # fmt: skip
 def test_limits_that_can_be_read(text: str, kmh: float) -> None:
+    """Whatever the case of the unit: lanelet2 1.2.3 reads `50 Km/h` and `50 kmph` as miles, and `50 KM/H` as 0 (findings/)."""
     assert 3.6 * speed_mps(text) == pytest.approx(kmh)
     row = lane_with_tags(speed_limit=text)[1].tables["speed_limit"].to_pylist()[0]
     assert (3.6 * row["limit_mps"], row["source"]) == (pytest.approx(kmh), "sign")
@@ -172,6 +173,10 @@ def test_the_tag_for_vehicles_goes_before_that_for_all() -> None:
     [
         ("de274-30", "50", (30.0, "sign")),
         ("gb670", "50", (50.0, "sign")),
+        ("gb670", "50 Km/h", (50.0, "sign")),
+        ("de274-30", "50 Km/h", (30.0, "sign")),
+        ("gb670", "50;30", (None, "unread")),
+        ("gb670", "DE:urban", (None, "unread")),
         ("gb670", None, (None, "unread")),
         ("gb670", "none", (None, "unread")),
     ],

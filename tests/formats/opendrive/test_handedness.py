@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.formats.opendrive.xodr import checks, lane, lanelets, load, road, rows, section
+from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, points, road, rows, section
 
 WIDTH = '<width sOffset="0" a="3.5"/>'
 
@@ -126,3 +126,41 @@ def test_the_option_overrides_travel_directions_too() -> None:
     lanes = section(0, travelling(1, "backward"), travelling(-1, "forward"))
     along = {name: row["along_road"] for name, row in lanelets(load(road(lanes=lanes), handedness="lht")).items()}
     assert along == {"1.0.-1": -1, "1.0.1": 1}
+
+
+def test_the_left_hand_roads_of_netconvert_are_read_by_the_numbers_of_their_lanes() -> None:
+    """Those in junctions stand under `<left>` and have negative numbers, and no road says a rule (netconvert 1.28.0).
+
+    The way to the east through a junction: lane 0 of the net, the outer one, is at y = 4.8, and so is lane -1 of each road.
+    """
+    east = [(1, 0.0, 92.8), (2, 92.8, 14.4), (3, 107.2, 92.8)]
+    wide = '<width sOffset="0" a="3.2" b="0" c="0" d="0"/>'
+    parts = []
+    for number, x, length in east:
+        numbered = lane(-1, wide) + lane(-2, wide)
+        side = "left" if number == 2 else "right"
+        middle = '<center><lane id="0" type="none"/></center>'
+        both = f"<{side}>{numbered}</{side}>" + middle if side == "left" else middle + f"<{side}>{numbered}</{side}>"
+        line = geometry("<line/>", at=(x, 6.4, 0), length=length)
+        parts.append(
+            road(
+                str(number),
+                line,
+                f'<laneSection s="0">{both}</laneSection>',
+                length,
+                junction="9" if number == 2 else "-1",
+            )
+        )
+    found = load(*parts)
+    where = {name: {(p["left_y_m"] + p["right_y_m"]) / 2 for p in line} for name, line in points(found).items()}
+    assert {name: sorted(y) for name, y in where.items()} == {
+        f"{number}.0.{no}": [pytest.approx(y)] for number, *_ in east for no, y in ((-1, 4.8), (-2, 1.6))
+    }
+    assert "invalid_lane" not in checks(found)
+    assert checks(found)["lane_side"] == [None]
+
+
+def test_one_lane_under_the_wrong_side_is_left_out() -> None:
+    both = f'<left>{lane(-2)}{lane(1)}</left><center><lane id="0" type="none"/></center><right>{lane(-1)}</right>'
+    found = load(road(lanes=f'<laneSection s="0">{both}</laneSection>'))
+    assert (checks(found)["invalid_lane"], sorted(lanelets(found))) == (["1.0.-2"], ["1.0.-1", "1.0.1"])

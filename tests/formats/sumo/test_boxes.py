@@ -1,4 +1,4 @@
-"""Box centres behind SUMO's front bumpers: copies of types, types that change within a track, types that nobody knows."""
+"""Box centres behind the front bumpers of SUMO 1.28: copies of types (`BASE@ID`), changing types, types that nobody knows."""
 
 from __future__ import annotations
 

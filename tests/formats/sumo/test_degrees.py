@@ -1,4 +1,4 @@
-"""SUMO's logs in longitude and latitude and in the projection's coordinates: the same drive as the plain log, or refused."""
+"""Logs of SUMO 1.28 in longitude and latitude and in the projection's coordinates: the same drive as the plain log, or refused."""
 
 from __future__ import annotations
 

@@ -222,7 +222,7 @@ def test_a_types_file_without_types(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("form", ["csv", "parquet"])
 def test_a_step_at_which_nobody_is_there_is_no_loss(tmp_path: Path, form: str) -> None:
-    """SUMO writes a row with the time alone; a row with a place and no name is a loss."""
+    """SUMO 1.28 writes a row with the time alone; a row with a place and no name is a loss."""
     put(tmp_path / "r.rou.xml", TYPES)
 
     def written(**row: Any) -> str:

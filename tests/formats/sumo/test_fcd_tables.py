@@ -18,7 +18,7 @@ MORE = ("pos", "lane", "edge", "slope")
 
 
 def named(how: str) -> pa.Table:
-    """The columns as `--output.column-header` has them; two empty steps come first."""
+    """The columns as `--output.column-header` of SUMO 1.28 has them, or called after a person; two steps of nobody (NULL) come first."""
     names = table().schema.names
     full = table()
     for name in MORE:

@@ -68,7 +68,7 @@ def xml(of: list[Row]) -> str:
 
 
 def one_group(of: list[Row], first: str) -> pa.Table:
-    """A table as SUMO writes it: all columns are called after the element that came first."""
+    """A table as SUMO 1.28 writes it: all columns are called after the element that came first."""
     names = ["id", "x", "y", "angle", "type", "speed", "lane", "edge"]
     columns = {f"{first}_{name}": [row.get(name) for row in of] for name in names}
     return pa.table({"timestep_time": [row["time"] for row in of], **columns})

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import integral_per_step, known_motion, wrapped
+from drivelint.arrays import wrapped
+from drivelint.drive.order import integral_per_step, known_motion
 from drivelint.drive.outliers import common_jolts
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.drive.velocity import Tracklets, sample_noise

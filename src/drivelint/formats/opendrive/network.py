@@ -228,6 +228,8 @@ def _strips(element: etree._Element, length: float, quality: MapQuality) -> tupl
     strips = []
     ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
     for index, section in sections:
+        if _has_numbers_of_other_side(section):
+            quality.side_by_number()
         sides = [side for side in ("left", "right") if section in ends[side]]
         start = number(section, "s")
         marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start, quality))
@@ -260,6 +262,15 @@ def _lane(element: etree._Element, section_start: float, quality: MapQuality) ->
         return Lane(lane_no, kind, invalid=str(error))
 
 
+def _has_numbers_of_other_side(section: etree._Element) -> bool:
+    """Say whether all lanes of a section stand under one side and have numbers of the other.
+
+    netconvert 1.28.0 writes so the roads in junctions of its left-hand nets, and their lanes lie where the numbers say.
+    """
+    left, right = ([integer(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right"))
+    return bool(left) != bool(right) and all(no < 0 for no in left) and all(no > 0 for no in right)
+
+
 def _road_type(word: str, quality: MapQuality) -> str:
     return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
 
@@ -267,7 +278,9 @@ def _road_type(word: str, quality: MapQuality) -> str:
 def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
-    if (side == "left") != (lane_no > 0) or lane_no == 0:
+    fits = (side == "left") == (lane_no > 0)
+    section = None if parent is None else parent.getparent()
+    if lane_no == 0 or not (fits or (section is not None and _has_numbers_of_other_side(section))):
         raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
     widths, borders = element.findall("width"), element.findall("border")
     if not widths and not borders:

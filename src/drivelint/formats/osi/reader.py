@@ -28,6 +28,7 @@ from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
+from drivelint.formats.osi.heights import forget_copied_heights
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import listed
@@ -244,6 +245,8 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
+    if copied := forget_copied_heights(states):
+        findings.append(copied)
     bulbs = pa.concat_tables(
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
         for batch, offset in zip(batches, offsets, strict=False)

@@ -9,6 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from drivelint.arrays import wrapped
 from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 
 if TYPE_CHECKING:
@@ -60,5 +63,5 @@ def bulb_for_map(bulb: Any, names: Mapping[str, str]) -> Any:
 def _beside(a: Any, b: Any) -> bool:
     p, q = a.base.position, b.base.position
     apart = math.dist((p.x, p.y, p.z), (q.x, q.y, q.z))
-    turned = math.remainder(a.base.orientation.yaw - b.base.orientation.yaw, math.tau)
+    turned = float(wrapped(np.array(a.base.orientation.yaw - b.base.orientation.yaw)))
     return apart <= _BESIDE_M and abs(turned) <= _TURNED_RAD

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.arrays import wrapped
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
@@ -192,8 +193,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     tracks = Tracks(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
     boxes = boxes_of(tracks, types, options)
     xy, findings = net_positions(path, rows, actor, options.map)
-    yaw = np.pi / 2 - np.radians(angle)
-    yaw = np.arctan2(np.sin(yaw), np.cos(yaw))
+    yaw = wrapped(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)
     is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
     speed = rows.numbers("speed")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -18,6 +18,7 @@ import numpy as np
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.location import NO_PROJECTION, location_of
+from drivelint.formats.sumo.opendrive_import import opendrive_import
 from drivelint.formats.sumo.right_of_way import control_rows
 from drivelint.road.boundary_lanes import (
     BoundedLane,
@@ -26,6 +27,7 @@ from drivelint.road.boundary_lanes import (
     crossings,
     map_from_bounds,
 )
+from drivelint.road.driving_side import choose_side
 from drivelint.road.lane_geometry import FARTHEST_M
 from drivelint.road.quality import MapQuality
 
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from lxml import etree
 
     from drivelint.arrays import Floats
+    from drivelint.formats.sumo.opendrive_import import OpenDriveImport
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
@@ -81,13 +84,14 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     root = safe_xml.parse_map(source)
     quality = MapQuality()
     left = root.get("lefthand") in {"true", "1"}
-    net = _read(root, left=left, quality=quality)
+    imported = opendrive_import(source.content, root, quality)
+    net = _read(root, imported, left=left, quality=quality)
     _connect(root, net)
     lanes = build_lanes(net.lanes.values(), request.offset, quality)
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no <lane>")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    side = _handedness(request, "lht" if left else "rht", quality)
+    side = _handedness(request, "lht" if left else None if imported else "rht", quality)
     signals, stop_lines = control_rows(root, {lane.lanelet_id: lane for lane in lanes})
     furniture = {
         "traffic_signal": signals,
@@ -95,7 +99,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "crossing": crossings(net.walks, lanes, request.offset, quality),
     }
     geo = _geo_frame(root, quality)
-    return map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
+    tables = map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
+    # the lanes have their directions, whichever side is driven on: traffic against them is noticed
+    return replace(tables, lanes_source="attribute") if imported else tables
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
@@ -109,17 +115,15 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     return location.frame()
 
 
-def _handedness(request: MapOptions, said: str, quality: MapQuality) -> tuple[str, str]:
-    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right."""
-    if request.side is None:
-        return said, "attribute"
-    if request.side != said:
+def _handedness(request: MapOptions, said: str | None, quality: MapQuality) -> tuple[str, str]:
+    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right. `said` None: lost."""
+    if said is not None and request.side not in {None, said}:
         message = f"the option --handedness: {request.side}; the net: {said}; the option is taken"
         quality.add("handedness_disagrees", "warning", None, message)
-    return request.side, "option"
+    return choose_side([("option", request.side), ("attribute", None if request.side else said)], quality, "the net")
 
 
-def _read(root: etree._Element, *, left: bool, quality: MapQuality) -> _Net:
+def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool, quality: MapQuality) -> _Net:
     net = _Net()
     for edge in root.iterfind("edge"):
         name, function = edge.get("id", ""), edge.get("function", "normal")
@@ -128,7 +132,7 @@ def _read(root: etree._Element, *, left: bool, quality: MapQuality) -> _Net:
         made = []
         for element in edge.iterfind("lane"):
             try:
-                made.append((int(element.attrib["index"]), _lane(edge, element, quality)))
+                made.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
             except (ValueError, KeyError) as error:
                 lane = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
@@ -158,7 +162,9 @@ def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against
         lane.right_id, lane.right_against = beside, against
 
 
-def _lane(edge: etree._Element, element: etree._Element, quality: MapQuality) -> BoundedLane:
+def _lane(
+    edge: etree._Element, element: etree._Element, imported: OpenDriveImport | None, quality: MapQuality
+) -> BoundedLane:
     """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
     middle = _points(str(element.attrib["shape"]))
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
@@ -168,7 +174,8 @@ def _lane(edge: etree._Element, element: etree._Element, quality: MapQuality) ->
     kind = _kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
     # inside a junction the speed is what the bend allows, not a limit
-    posted = None if inside else quality.posted_limit(limit)
+    is_default = imported is not None and imported.is_default(element, edge, limit)
+    posted = None if inside or is_default else quality.posted_limit(limit)
     return BoundedLane(
         str(element.attrib["id"]), left=_beside(middle, half), right=_beside(middle, -half), kind=kind, drivable=kind in _DRIVABLE,
         road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
