@@ -181,7 +181,7 @@ pair_beyond_corridor AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m,
         box_half_diagonal_m(p.length_m, p.width_m) + box_half_diagonal_m(e.length_m, e.width_m) AS half_sizes_m,
-        -- Whoever stands or moves away does not come towards the ego.
+        -- An object that stands or moves away does not come towards the ego.
         coalesce(p.speed_mps <= standing_mps() OR (p.x_m - e.x_m) * cos(p.yaw_rad) + (p.y_m - e.y_m) * sin(p.yaw_rad) > 0, false) AS along
     FROM pair p
     SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = p.drive_id

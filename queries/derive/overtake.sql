@@ -127,7 +127,7 @@ SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
     k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed,
-    -- Who was not passed may have been followed only: on the ego's own side of the road the ego changes lane, or sways, behind it.
+    -- The ego may only have followed a vehicle that it did not pass: on the ego's own side of the road the ego changes lane, or sways, behind it.
     CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
         ELSE k.is_placed AND coalesce(k.over_against, false) AND (k.begin_seen AND k.centre_over OR w.stays_out)
     END AS sure, k.begin_seen,

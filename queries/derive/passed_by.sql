@@ -3,7 +3,7 @@
 -- way. Two kinds are listed: a vehicle that stands and leaves the middle of the lane free, and one that moves, not towards that way, is not
 -- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
 --
--- Who stands in the ego's way and is swerved round at the last moment is not listed at any step: the ego's lane and the bend that it
+-- A vehicle that stands in the ego's way, and that the ego swerves round at the last moment, is not listed at any step: the ego's lane and the bend that it
 -- drove, both held, led into that vehicle less than `late_s` before it. Nor is one for whom the ego leaves its lane. Beyond the end of what
 -- the ego drove, it is taken to hold its bend, and passes beside only whom it would pass if it bent otherwise.
 WITH candidate AS (
@@ -50,7 +50,7 @@ beside_way AS (
     FROM candidate c
     JOIN way_place w USING (drive_id, ego_id, t_ns, object_id)
     ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.seg = c.seg AND s.t_from_ns <= c.t_ns
-    -- Who moves towards the way may be in it soon.
+    -- A vehicle that moves towards the way may be in it soon.
     WHERE abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m)
         >= passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END
 )

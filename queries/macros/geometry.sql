@@ -166,5 +166,5 @@ CREATE OR REPLACE MACRO box_half_across_m(length_m, width_m, turn_rad) AS length
 CREATE OR REPLACE MACRO swept_in_bend_half_m(length_m, width_m, bend_per_m) AS width_m / 2 + length_m ** 2 / 8 * abs(bend_per_m);
 -- A box that the ego's own way passes at this distance or more is not in that way: places of standing vehicles are noisy by some 0.1 m.
 CREATE OR REPLACE MACRO passes_beside_m() AS 0.2;
--- Who still steers into a vehicle so shortly before it, and then round it, swerves: one second to see it and one to steer.
+-- An ego swerves if it steers round a vehicle that it would have hit within this time: one second to see it and one to steer.
 CREATE OR REPLACE MACRO late_s() AS 2.0;

@@ -22,7 +22,7 @@ def kept_schemas(
     """Return table -> Arrow schema, of the tables as they are created, without geometries."""
     import pyarrow as pa
 
-    def found() -> dict[str, bytes]:
+    def written_schemas() -> dict[str, bytes]:
         with duckdb.connect() as con:
             create_tables(con)
             empty = {name: f"SELECT COLUMNS(lambda c: c <> 'geom') FROM {name} LIMIT 0" for name in tables}
@@ -30,4 +30,6 @@ def kept_schemas(
                 name: con.execute(sql).to_arrow_table().schema.serialize().to_pybytes() for name, sql in empty.items()
             }
 
-    return {name: pa.ipc.read_schema(pa.py_buffer(content)) for name, content in _SCHEMAS.of("", found).items()}
+    return {
+        name: pa.ipc.read_schema(pa.py_buffer(content)) for name, content in _SCHEMAS.of("", written_schemas).items()
+    }

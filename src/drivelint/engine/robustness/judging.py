@@ -106,7 +106,7 @@ class Robustness:
 
     def _questions(self, drives: Iterable[str]) -> list[Question]:
         found = self._con.execute(statement("robustness/findings"), {"drives": list(drives)}).to_arrow_table()
-        return [Question(row, self._rules[row["rule_id"]]) for row in found.to_pylist()]
+        return [Question(row, self._rules[row["rule_id"]], ends_early=not self._of_all) for row in found.to_pylist()]
 
     def judge(self, advance: Callable[[int], None] | None = None) -> None:
         """Write `n_copies` and `n_stays` of the findings of the drives that wait, whose own tables are not needed any more.

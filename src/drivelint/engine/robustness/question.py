@@ -39,6 +39,8 @@ class Question:
     rule: Rule
     size: int = 0
     """Which size of window is tried."""
+    ends_early: bool = True
+    """It ends as soon as it is only possible; whoever gives a confidence of their own needs the share of all copies."""
     n_copies: int = 0
     n_stays: int = 0
     """How many of them keep it."""
@@ -80,7 +82,7 @@ class Question:
     def is_settled(self) -> bool:
         """Whether the copies suffice."""
         few, more, most = N_COPIES
-        if self.n_copies >= most or self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most:
+        if self.n_copies >= most or (self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most):
             return True
         if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
             return False
