@@ -39,7 +39,11 @@ CREATE TABLE ego_motion (
     accel_2s_mps2 DOUBLE,             -- mean acceleration over the 2 s that end at this step {velocity}
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step {velocity}
     accel_peak_mps2 DOUBLE NOT NULL,  -- the true longitudinal acceleration may be further from zero by so much (also when braking), as the filter flattens peaks {velocity}
-    lat_peak_mps2 DOUBLE NOT NULL     -- the same of the lateral acceleration {velocity}
+    lat_peak_mps2 DOUBLE NOT NULL,    -- the same of the lateral acceleration {velocity}
+    accel_error_mps2 DOUBLE,          -- the longitudinal acceleration may be off by so much: by the scatter of the speeds, or as the places contradict it; NULL: too few samples {velocity}
+    lat_error_mps2 DOUBLE,            -- the same of the lateral acceleration, by the scatter of the headings or the course {velocity}
+    jerk_error_mps3 DOUBLE,           -- the same of the jerk {velocity}
+    jerk_1s_error_mps3 DOUBLE         -- the same of the change of acceleration over 1 s {velocity}
 );
 
 -- lifetime: part

@@ -13,6 +13,10 @@
 -- A mean over half a second flattens a peak. The *_peak columns say by how much at most the true peak may be higher, where the value stands
 -- out over both of the values half a window away (see peak_rise).
 --
+-- The *_error columns say how far off a value may be: twice the standard error of the slope, by how far the samples lie off their line, and
+-- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
+-- by the course. They are NULL where there are too few samples to tell.
+--
 -- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
 -- in the table.
 WITH sample AS (
@@ -21,19 +25,27 @@ WITH sample AS (
         s.vx_mps * cos(s.yaw_rad) + s.vy_mps * sin(s.yaw_rad) AS v_long_mps,
         round(1e9 * (s.vx_mps * cos(s.yaw_rad) + s.vy_mps * sin(s.yaw_rad)))::HUGEINT AS v,
         round(1e9 * s.yaw_rad)::BIGINT AS yaw,
-        round(1e9 * wrap_rad(s.yaw_rad - lag(s.yaw_rad) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.t_ns)))::BIGINT AS turned,
+        round(1e9 * wrap_rad(s.yaw_rad - lag(s.yaw_rad) OVER w))::BIGINT AS turned,
+        round(1e18 * ((lead(s.x_m) OVER w - lag(s.x_m) OVER w) * cos(s.yaw_rad) + (lead(s.y_m) OVER w - lag(s.y_m) OVER w) * sin(s.yaw_rad)) / nullif(lead(s.t_ns) OVER w - lag(s.t_ns) OVER w, 0))::HUGEINT AS v_of_places,
+        round(1e9 * course.rad)::BIGINT AS course,
+        round(1e9 * wrap_rad(course.rad - lag(course.rad) OVER w))::BIGINT AS course_turned,
         st.t_ns - min(st.t_ns) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg) AS age_ns,
         CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns
     FROM step st
     JOIN clock c USING (drive_id, ego_id)
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered') q ON q.drive_id = st.drive_id AND q.actor_id = st.ego_id
+    -- Who hardly moves has no course.
+    CROSS JOIN LATERAL (SELECT CASE WHEN s.speed_mps > 2.0 THEN atan2(s.vy_mps, s.vx_mps) END AS rad) course
+    WINDOW w AS (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.t_ns)
 ),
 unwrapped_sample AS (
     SELECT
-        * EXCLUDE (yaw, turned),
-        CASE WHEN yaw IS NOT NULL THEN sum(coalesce(turned, 0)) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns ROWS UNBOUNDED PRECEDING) END AS yaw
+        * EXCLUDE (yaw, turned, course, course_turned),
+        CASE WHEN yaw IS NOT NULL THEN sum(coalesce(turned, 0)) OVER w END AS yaw,
+        CASE WHEN course IS NOT NULL THEN sum(coalesce(course_turned, 0)) OVER w END AS course
     FROM sample
+    WINDOW w AS (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns ROWS UNBOUNDED PRECEDING)
 ),
 slope_sample AS (
     SELECT
@@ -47,7 +59,11 @@ slope_sample AS (
             CASE WHEN count(yaw) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(yaw) OVER near, sum(age_ns * yaw) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
-        END AS yaw_rate_radps
+        END AS yaw_rate_radps,
+        line_through(count(v) OVER near, sum(age_ns::HUGEINT) FILTER (v IS NOT NULL) OVER near, sum(v) OVER near, sum(age_ns * v) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (v IS NOT NULL) OVER near, sum(v * v) OVER near) AS v_line,
+        line_through(count(yaw) OVER near, sum(age_ns::HUGEINT) FILTER (yaw IS NOT NULL) OVER near, sum(yaw) OVER near, sum(age_ns * yaw) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (yaw IS NOT NULL) OVER near, sum(yaw::HUGEINT * yaw) OVER near) AS yaw_line,
+        line_through(count(v_of_places) OVER near, sum(age_ns::HUGEINT) FILTER (v_of_places IS NOT NULL) OVER near, sum(v_of_places) OVER near, sum(age_ns * v_of_places) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (v_of_places IS NOT NULL) OVER near, sum(v_of_places * v_of_places) OVER near) AS place_line,
+        line_through(count(course) OVER near, sum(age_ns::HUGEINT) FILTER (course IS NOT NULL) OVER near, sum(course) OVER near, sum(age_ns * course) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (course IS NOT NULL) OVER near, sum(course::HUGEINT * course) OVER near) AS course_line
     FROM unwrapped_sample
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
@@ -61,11 +77,18 @@ jerk_sample AS (
             CASE WHEN count(a) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
-        END AS jerk_mps3
+        END AS jerk_mps3,
+        2 * line_through(count(a) OVER near, sum(age_ns::HUGEINT) FILTER (a IS NOT NULL) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (a IS NOT NULL) OVER near, sum(a * a) OVER near).error AS jerk_error_mps3,
+        -- Noise is noise of a stretch: by chance, the few samples of one window may lie on a line.
+        greatest(2 * max(v_line.error) OVER near_noise, contradiction(accel_mps2, place_line.slope, place_line.error)) AS accel_error_mps2,
+        abs(v_long_mps) * greatest(2 * max(yaw_line.error) OVER near_noise, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) AS lat_error_mps2
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
         RANGE BETWEEN jerk_half_ns() PRECEDING AND jerk_half_ns() FOLLOWING
+    ), near_noise AS (
+        PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
+        RANGE BETWEEN 500_000_000 PRECEDING AND 500_000_000 FOLLOWING
     )
 ),
 -- A mean acceleration is the change of speed divided by the time: samples between the two ends cannot alter it.
@@ -74,7 +97,7 @@ window_sample AS (
         *,
         v_long_mps * yaw_rate_radps AS lat_accel_mps2,
         first_value({'t_ns': t_ns, 'v': v_long_mps}) OVER (w RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS at_2s,
-        first_value({'t_ns': t_ns, 'a': accel_mps2}) OVER (w RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW) AS at_1s,
+        first_value({'t_ns': t_ns, 'a': accel_mps2, 'error': accel_error_mps2}) OVER (w RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW) AS at_1s,
         first_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND CURRENT ROW) AS half_window_before,
         last_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN CURRENT ROW AND coalesce(half_ns, 0) FOLLOWING) AS half_window_after
     FROM jerk_sample
@@ -85,5 +108,7 @@ SELECT
     CASE WHEN half_ns IS NOT NULL AND age_ns >= 2_000_000_000 THEN 1e9 * (v_long_mps - at_2s.v) / (t_ns - at_2s.t_ns) END AS accel_2s_mps2,
     CASE WHEN half_ns IS NOT NULL AND age_ns >= 1_000_000_000 THEN 1e9 * (accel_mps2 - at_1s.a) / (t_ns - at_1s.t_ns) END AS jerk_1s_mps3,
     0.7 * peak_rise(accel_mps2, half_window_before.accel, half_window_after.accel) AS accel_peak_mps2,
-    0.7 * peak_rise(lat_accel_mps2, half_window_before.lat, half_window_after.lat) AS lat_peak_mps2
+    0.7 * peak_rise(lat_accel_mps2, half_window_before.lat, half_window_after.lat) AS lat_peak_mps2,
+    accel_error_mps2, lat_error_mps2, jerk_error_mps3,
+    CASE WHEN age_ns >= 1_000_000_000 THEN 1e9 * (accel_error_mps2 + at_1s.error) / (t_ns - at_1s.t_ns) END AS jerk_1s_error_mps3
 FROM window_sample

@@ -4,7 +4,7 @@
 -- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
 --
 -- A vehicle that stands in the ego's way, and that the ego swerves round at the last moment, is not listed at any step: the ego's lane and the bend that it
--- drove, both held, led into that vehicle less than `late_s` before it. Nor is one for whom the ego leaves its lane. Beyond the end of what
+-- drove, both held, led into that vehicle less than `late_s` before it, and the ego got off that course faster than in a change of lane. Beyond the end of what
 -- the ego drove, it is taken to hold its bend, and passes beside only whom it would pass if it bent otherwise.
 WITH candidate AS (
     SELECT
@@ -15,7 +15,7 @@ WITH candidate AS (
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     WHERE p.s_m > e.s_m AND p.distance_m < lost_near_m() + 2 * drift_s() * e.speed_mps AND may_be_vehicle(p.actor_class) AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
-        AND CASE WHEN p.speed_mps <= standing_mps() THEN abs(p.d_m) > p.lat_half_m
+        AND CASE WHEN p.speed_mps <= standing_mps() THEN true
             ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m AND p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m END
 ),
 segment_cell AS (
@@ -42,14 +42,21 @@ way_place AS (
     )
     GROUP BY drive_id, ego_id, t_ns, object_id
 ),
+-- The most acceleration across its way with which the ego drove in the next two seconds.
+across_soon AS (
+    SELECT drive_id, ego_id, t_ns, max(abs(lat_accel_mps2)) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND 2_000_000_000 FOLLOWING) AS most_mps2
+    FROM ego_motion
+),
 beside_way AS (
     SELECT
         c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns,
-        c.across_m < 0 AND c.dx - (c.length_m + c.ego_length_m) / 2 < late_s() * c.ego_speed_mps
+        c.across_m < 0 AND (c.dx - (c.length_m + c.ego_length_m) / 2) / nullif(c.ego_speed_mps, 0) BETWEEN steering_s() AND late_s()
+            AND (m.most_mps2 >= swerves_from_mps2() OR 2 * abs(w.there.d_m - arc_offset_m(c.dx, c.dy, s.bend_per_m)) >= changes_lane_mps2() * (c.dx / nullif(c.ego_speed_mps, 0)) ** 2)
             AND abs(arc_offset_m(c.dx, c.dy, s.bend_per_m)) < c.ego_width_m / 2 + box_half_across_m(c.length_m, c.width_m, c.yaw_rad - c.ego_yaw_rad - s.bend_per_m * c.dx) AS is_course_held
     FROM candidate c
     JOIN way_place w USING (drive_id, ego_id, t_ns, object_id)
     ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.seg = c.seg AND s.t_from_ns <= c.t_ns
+    LEFT JOIN across_soon m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.t_ns = c.t_ns
     -- A vehicle that moves towards the way may be in it soon.
     WHERE abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m)
         >= passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END
@@ -57,4 +64,3 @@ beside_way AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id
 FROM beside_way b
 ANTI JOIN (FROM beside_way WHERE is_course_held) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
-ANTI JOIN (FROM excursion WHERE max_out_m > passes_beside_m()) x ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns

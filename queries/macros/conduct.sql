@@ -4,6 +4,15 @@
 CREATE OR REPLACE MACRO exact_slope(n, sum_t, sum_y, sum_ty, sum_tt) AS
     (n * sum_ty - sum_t * sum_y)::DOUBLE / nullif(n * sum_tt - sum_t * sum_t, 0)::DOUBLE;
 
+-- That slope with its standard error, by how far the samples lie off the line; the error is NULL for less than three samples.
+CREATE OR REPLACE MACRO line_through(n, sum_t, sum_y, sum_ty, sum_tt, sum_yy) AS {
+    'slope': exact_slope(n, sum_t, sum_y, sum_ty, sum_tt),
+    'error': sqrt(greatest(0.0, (n * sum_yy - sum_y * sum_y)::DOUBLE - (n * sum_ty - sum_t * sum_y)::DOUBLE ** 2 / nullif(n * sum_tt - sum_t * sum_t, 0)::DOUBLE)
+        / nullif(greatest(n - 2, 0), 0) / nullif(n * sum_tt - sum_t * sum_t, 0)::DOUBLE)
+};
+-- By how much two slopes of the same thing contradict each other: their difference beyond twice the error of the second.
+CREATE OR REPLACE MACRO contradiction(slope, other, other_error) AS greatest(0.0, abs(slope - other) - 2 * other_error);
+
 -- Half width of the window in which the ego's motion is filtered: 0.25 s, or 2.2 periods if that is more. NULL in logs with less than 5
 -- samples a second; a period of 200 ms may be recorded as 201 ms.
 CREATE OR REPLACE MACRO filter_half_ns(period_ns) AS

@@ -45,3 +45,7 @@ CREATE OR REPLACE MACRO limit_doubt(limit_source, lanelet_id) AS CASE limit_sour
 END;
 -- If the two directions of a road are farther apart than this, and the map has nothing between them, there may be a central reservation.
 CREATE OR REPLACE MACRO reservation_m() AS 1.0;
+
+-- The share of what is required by which a value may be off where the sensors of a recorder measured it: places and boxes of other
+-- vehicles are good to some 0.1 to 0.3 m, and their speeds to some 3 %.
+CREATE OR REPLACE MACRO measured_share() AS 0.05;

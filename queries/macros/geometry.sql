@@ -168,3 +168,9 @@ CREATE OR REPLACE MACRO swept_in_bend_half_m(length_m, width_m, bend_per_m) AS w
 CREATE OR REPLACE MACRO passes_beside_m() AS 0.2;
 -- An ego swerves if it steers round a vehicle that it would have hit within this time: one second to see it and one to steer.
 CREATE OR REPLACE MACRO late_s() AS 2.0;
+-- An ego that needs less acceleration across its course to get off it steers round a vehicle in its own time: UN R79 allows an automatic
+-- change of lane 1 m/s2 beside that of the bend. One that drives with more than 2.5 m/s2 across its way swerves, however little it needed.
+CREATE OR REPLACE MACRO changes_lane_mps2() AS 1.0;
+CREATE OR REPLACE MACRO swerves_from_mps2() AS 2.5;
+-- Nobody gets off a course in less time: what is nearer, and not hit, was passed by.
+CREATE OR REPLACE MACRO steering_s() AS 0.5;

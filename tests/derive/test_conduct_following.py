@@ -157,17 +157,17 @@ def test_a_car_offset_in_its_lane_is_followed(hand: str, aside: float, follows: 
 
 
 @HANDS
-def test_a_standing_car_is_followed_until_the_ego_steers_round_it(hand: str) -> None:
+def test_a_standing_car_is_followed_until_the_ego_swerves_round_it(hand: str) -> None:
     way = road(hand=hand)
     sign = 1 if hand == "rht" else -1
     t = times(6.0)
     parked = standing("x", way, t, 160, way.own)
     s = 100 + 10 * t
-    out = np.clip((s - 135) / 18, 0, 1) * 2.2 * sign
+    out = np.clip((s - 145) / 10, 0, 1) * 2.2 * sign
     found = following(way, moving("ego", way, t, s, way.own + out), parked)
-    # the front is 22.6 m from its rear when it begins to steer; the boxes overlap still
-    assert {row["follows"] for row in found if row["t_ns"] <= 3_300_000_000} == {True}
-    steers = [row for row in found if 3_700_000_000 <= row["t_ns"] <= 4_400_000_000]
+    # the front is 12.6 m from its rear when it begins to steer; the boxes overlap still
+    assert {row["follows"] for row in found if row["t_ns"] <= 4_300_000_000} == {True}
+    steers = [row for row in found if 4_700_000_000 <= row["t_ns"] <= 5_200_000_000]
     assert {(row["object_id"], row["follows"]) for row in steers} == {("x", False)}
     straight = following(way, moving("ego", way, t, s, way.own), parked)
     assert {row["follows"] for row in straight if row["t_ns"] <= 5_000_000_000} == {True}

@@ -36,12 +36,12 @@ def passing(*actors: Actor, way: Road = WAY) -> set[bool | None]:
 
 
 def aslant() -> tuple[Actor, Actor]:
-    """Return the ego that leaves its lane to the right, and one that stands to its left, both 40 degrees across the lane: side by side.
+    """Return the ego that leaves its lane to the right, and one that hardly moves to its left, both 40 degrees across the lane: side by side.
 
     Along and across the lane their outlines overlap; the boxes are 2.4 m apart. (Two vehicles in a junction of HRV_Pula-27_3.)
     """
     ego = heading("ego", 100.0, -2.0, -0.65, 1.9)
-    return ego, heading("x", 105.6, 0.6, 2.34, 0.0)
+    return ego, heading("x", 105.6, 0.6, 2.34, 0.8)
 
 
 def test_a_box_beside_another_across_the_lane_is_passed() -> None:

@@ -24,7 +24,7 @@ LOGS = {
     "av2/adcf7d18": "argoverse",
     "av2/3b3570b4": "argoverse",
     "av2_forecasting": "argoverse",
-    "d123/av2-sensor_val": "argoverse",
+    "d123/av2-sensor_val/adcf7d18-0510-35b0-a2fa-b4cea13a6d76": "argoverse",
     "scenarionet/sd_nuscenes_v1.0-mini_scene-0553.pkl": "nuscenes",
     "scenarionet/sd_nuscenes_v1.0-mini_scene-1077.pkl": "nuscenes",
     "scenarionet/sd_nuscenes_v1.0-mini_scene-1094.pkl": "nuscenes",

@@ -37,7 +37,7 @@
 
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion. A reversing ego accelerates when the speed along its heading falls.
-SELECT m.drive_id, m.ego_id, m.t_ns, peak_sure_at_most(bound.accel_mps2, m.accel_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, peak_sure_at_most(bound.accel_mps2, m.accel_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required, m.accel_error_mps2 AS error,
     is_judged(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN bound.accel_mps2 <= bound.limit_mps2 AND bound.accel_mps2 + m.accel_peak_mps2 > bound.limit_mps2 THEN why('peak_flattened') END AS reason
 FROM ego_motion m

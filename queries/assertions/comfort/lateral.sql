@@ -37,7 +37,7 @@
 -- @condition
 -- The heading is filtered before it is differentiated, see ego_motion. If the kind of the ego is not known, a value within both limits is a
 -- pass, and a value above both limits is a fail.
-SELECT m.drive_id, m.ego_id, m.t_ns, peak_sure_at_most(magnitude.lat_mps2, m.lat_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, peak_sure_at_most(magnitude.lat_mps2, m.lat_peak_mps2, bound.limit_mps2) AS observed, bound.limit_mps2 AS required, m.lat_error_mps2 AS error,
     is_judged(m.lat_accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN kind.is_heavy IS NULL AND bound.limit_mps2 IS NULL THEN why('heavy_vehicle_unknown')
         WHEN magnitude.lat_mps2 <= bound.limit_mps2 AND magnitude.lat_mps2 + m.lat_peak_mps2 > bound.limit_mps2 THEN why('peak_flattened') END AS reason

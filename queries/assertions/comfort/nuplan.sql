@@ -48,7 +48,7 @@
 
 -- @condition
 -- The motion is filtered before it is differentiated, see ego_motion.
-SELECT m.drive_id, m.ego_id, m.t_ns, decided.share AS observed, 1.0::DOUBLE AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, decided.share AS observed, 1.0::DOUBLE AS required, bound.largest_share - bound.least_share AS error,
     is_judged(coalesce(decided.share, m.accel_mps2 + m.lat_accel_mps2 + m.jerk_mps3), m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies,
     CASE WHEN bound.largest_share <= 1 AND bound.possible_share > 1 THEN why('peak_over_bound_flattened') END AS reason
 FROM ego_motion m
@@ -57,6 +57,8 @@ JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 -- greatest() ignores NULL: the known values can show that a bound was exceeded, but not that all bounds were kept.
 CROSS JOIN LATERAL (
     SELECT greatest(m.accel_mps2 / $accel_mps2, -m.accel_mps2 / $brake_mps2, abs(m.lat_accel_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS largest_share,
+        greatest((m.accel_mps2 - m.accel_error_mps2) / $accel_mps2, (-m.accel_mps2 - m.accel_error_mps2) / $brake_mps2,
+            (abs(m.lat_accel_mps2) - m.lat_error_mps2) / $lat_mps2, (abs(m.jerk_mps3) - m.jerk_error_mps3) / $jerk_mps3) AS least_share,
         greatest((abs(m.accel_mps2) + m.accel_peak_mps2) / CASE WHEN m.accel_mps2 > 0 THEN $accel_mps2 ELSE $brake_mps2 END,
             (abs(m.lat_accel_mps2) + m.lat_peak_mps2) / $lat_mps2, abs(m.jerk_mps3) / $jerk_mps3) AS possible_share
 ) bound

@@ -58,7 +58,7 @@
 
 -- @condition
 -- The filter of the acceleration flattens peaks: the true deceleration may be harder than the filtered one by accel_peak_mps2.
-SELECT m.drive_id, m.ego_id, m.t_ns, -peak_sure_at_most(-m.accel_mps2, m.accel_peak_mps2, $abrupt_mps2) AS observed, -$abrupt_mps2 AS required,
+SELECT m.drive_id, m.ego_id, m.t_ns, -peak_sure_at_most(-m.accel_mps2, m.accel_peak_mps2, $abrupt_mps2) AS observed, -$abrupt_mps2 AS required, m.accel_error_mps2 AS error,
     -- Braking has a reason if the vehicle ahead is too near, was too near a moment ago, or brakes itself, and also if anybody else is in
     -- the way (a person, an animal, a thing). At a step without a row in `lead`, there may be such a vehicle. Why hazard lights were on, or
     -- an emergency was declared, a person must judge.

@@ -30,7 +30,7 @@ _MARK = re.compile(r"^--\s*@(\S+)\s*$")
 _HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 """Characters that end a line unseen, steer a terminal or turn the order of what is read."""
 _KEYS = ("drive_id", "ego_id", "t_ns")
-_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least")
+_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
 _CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
 
 
@@ -307,7 +307,7 @@ def _check_columns(
 def _check_condition(header: Header, query: Query, where: str) -> None:
     """Check the condition against the header: its sense, its reference, its objects."""
     columns = query.columns or ()
-    wrong = {"observed", "required", "at_least"} if header.sense == "holds" else {"holds"}
+    wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
     if found := sorted(wrong & set(columns)):
         raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
     if ("ref_id" in columns) != bool(ENGINE_TABLES & query.tables):

@@ -48,6 +48,7 @@ class Evaluation:
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
     _has_doubts: bool = field(default=False, init=False)
+    _has_sensors: bool = field(default=False, init=False)
     _empty: set[str] = field(default_factory=set, init=False)
 
     def judge(self) -> None:
@@ -125,6 +126,7 @@ class Evaluation:
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
         self._empty = store.empty_tables(self.con)
         self._has_doubts = "doubt" not in self._empty
+        self._has_sensors = bool(self._count("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:
             temp_tables.create_doubts(self.con, self.bindings)
         quick = [b for b in self.bindings if self._is_quick(b)]
@@ -205,9 +207,11 @@ class Evaluation:
         self._leave(binding)
 
     def _doubt_steps(self, binding: Binding, whom: str) -> None:
-        """Take back what was judged by data in doubt; `whom`: the object of a step, in SQL."""
+        """Take back what was judged by data in doubt, or missed by less than a sensor can tell; `whom`: the object of a step, in SQL."""
         if self._has_doubts:
             self._execute(statement("judging/doubt_of_steps", object=whom), binding)
+        if self._has_sensors and binding.rule.sense != "holds":
+            self._execute(statement("judging/error_of_measuring"), binding)
 
     def _leave(self, binding: Binding) -> None:
         if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):

@@ -77,7 +77,7 @@ def condition_ctes(rule: Rule) -> str:
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
     (NULL: unknown),
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
-    NaN is NULL. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
+    NaN is NULL. What is missed by less than the `error` of the value is unknown. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
     has = rule.has_column
     measured = rule.sense != "holds"
@@ -93,6 +93,7 @@ def condition_ctes(rule: Rule) -> str:
         *(number.format(column) if measured else f"NULL::DOUBLE AS {column}" for column in ("observed", "required")),
         *(["holds::BOOLEAN AS holds"] if not measured else []),
         *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
+        *(["coalesce(error::DOUBLE, 0.0) AS error"] if has("error") else []),
         f"{'bounded_text(reason_code)' if has('reason_code') else 'NULL::VARCHAR'} AS code",
         f"{'bounded_text(reason)' if has('reason') else 'NULL::VARCHAR'} AS reason",
     ]  # fmt: skip
@@ -101,6 +102,9 @@ def condition_ctes(rule: Rule) -> str:
         holds = compare = f"(observed {rule.sense} required)"
         difference = "observed - required" if rule.sense[0] == ">" else "required - observed"
         gain = f"CASE WHEN isnan({difference}) THEN 0.0::DOUBLE ELSE {difference} END"
+        if has("error"):
+            holds = f"CASE WHEN {compare} OR abs({difference}) > error THEN {compare} END"
+            code = f"coalesce(code, CASE WHEN ({holds}) IS NULL AND {compare} IS NOT NULL THEN 'within_error' END)"
         if has("at_least"):
             proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"
             holds = f"CASE WHEN NOT at_least OR ({proven}) THEN {compare} END"
