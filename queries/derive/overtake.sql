@@ -10,6 +10,8 @@ WITH overtaking_excursion AS (
     -- Only excursions from the chain that is the running one at t0. From a chain that the ego enters later, it is outside all the time
     -- before, which is no excursion.
     WHERE x.overtaking AND e.chain_id = x.chain_id
+        -- An ego that reached over the boundary by less than that, and was back again, never left its lane.
+        AND (x.max_out_m >= surely_out_m() OR x.t_back_ns IS NULL)
 ),
 -- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.
 pair_in_excursion AS MATERIALIZED (

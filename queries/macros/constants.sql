@@ -2,6 +2,9 @@
 
 -- A corner that is over a boundary by more than this has left the lane (the registration noise of Harper et al. 2021 is smaller).
 CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
+-- A corner that is over a boundary by less than this may not have left the lane: boundaries without a marking are not surveyed, and boxes
+-- are estimates.
+CREATE OR REPLACE MACRO surely_out_m() AS 0.3;
 -- Half width of the strip in which the corridor gives positions, and how far the strip reaches ahead of and behind the ego's way.
 CREATE OR REPLACE MACRO strip_m() AS 15.0;
 CREATE OR REPLACE MACRO corridor_ahead_m() AS 1000.0;

@@ -1,6 +1,6 @@
 -- title = "Sufficient post-encroachment time (PET)"
 -- clause = "Allen, Shin, Cooper 1978: the time between one road user leaving the ground of a conflict and the other coming onto it"
--- hypothesis = "Where the ways of the ego and of another road user crossed at 45 degrees or more, was there at least 1.5 s between the two?"
+-- hypothesis = "Where the ways of the ego and of another road user crossed at 45 degrees or more, and did not become one way, was there at least 1.5 s between the two?"
 -- kind = "execution"
 -- derivation = "model"
 -- severity = "minor"
@@ -10,7 +10,7 @@
 -- unit = "s"
 -- observes = "post-encroachment time"
 -- near_margin = 0.5
--- reads = ["conflict", "ego_state", "lost_object", "pair"]
+-- reads = ["conflict", "ego_state", "lost_object", "pair", "state_dynamics"]
 -- requires = ["ego_size"]
 --
 -- [params.least_s]
@@ -43,9 +43,12 @@ SELECT drive_id, ego_id, min(t_ns), NULL, NULL, NULL FROM ego_state WHERE x_m IS
 
 -- @condition
 SELECT
-    r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least_s AS required, r.code AS reason_code, r.occurrence IS NULL OR abs(c.angle_rad) >= $crossing_rad AS applies,
+    r.drive_id, r.ego_id, r.t_ns, r.ref_id, $least_s AS required, r.code AS reason_code, r.occurrence IS NULL OR abs(c.angle_rad) >= $crossing_rad AND NOT coalesce(abs(wrap_rad(e.yaw_rad - o.yaw_rad)) < $crossing_rad, false) AS applies,
     -- An upper bound of the time can show that there was too little time, but not that there was enough.
     CASE WHEN c.pet_s < $least_s OR NOT c.pet_at_most THEN c.pet_s END AS observed,
     CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN why('pet_at_most', {'pet_s': c.pet_s}) END AS reason
 FROM reference r
 LEFT JOIN conflict c USING (drive_id, ego_id, occurrence)
+-- Who leave the ground in one direction have merged: one follows the other.
+LEFT JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_out_ns
+LEFT JOIN state_dynamics o ON o.drive_id = c.drive_id AND o.actor_id = c.object_id AND o.t_ns = c.t_object_out_ns

@@ -11,7 +11,7 @@
 -- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
 --
 -- [params.line_m]
--- default = 0.4
+-- default = 1.0
 -- unit = "m"
 -- why = "our default: maps, boxes and places together do not tell more exactly whether a vehicle that stands at the line stands behind it"
 --

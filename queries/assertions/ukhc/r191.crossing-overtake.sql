@@ -6,6 +6,7 @@
 -- severity = "critical"
 -- legal = "must"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = "holds"
 -- reads = ["crossing_passage", "ego_state", "lane_occupancy", "passing", "road_user", "state_dynamics", "step"]
 -- requires = ["map", "registration", "ego_size"]

@@ -6,6 +6,7 @@
 -- severity = "critical"
 -- legal = "must"
 -- status = "stable"
+-- law = ["gb"]
 -- sense = "holds"
 -- reads = ["crossing_passage", "ego_state", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
