@@ -10,8 +10,6 @@ WITH overtaking_excursion AS (
     -- Only excursions from the chain that is the running one at t0. From a chain that the ego enters later, it is outside all the time
     -- before, which is no excursion.
     WHERE x.overtaking AND e.chain_id = x.chain_id
-        -- An ego that reached over the boundary by less than that, and was back again, never left its lane.
-        AND (x.max_out_m >= surely_out_m() OR x.t_back_ns IS NULL)
 ),
 -- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.
 pair_in_excursion AS MATERIALIZED (
@@ -101,7 +99,10 @@ overtaken_vehicle AS (
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     CROSS JOIN LATERAL (SELECT coalesce(a.n_seen, 0) >= g.n_steps AS is_seen) n
     -- Beside the ego from t0 on and never passed: the ego is over the line beside it, as in a queue.
+    -- Who reaches over the boundary by a hand's breadth beside a parked car has not left its lane for it.
+    CROSS JOIN LATERAL (SELECT coalesce(c.speed_mps <= standing_mps() AND g.max_out_m < surely_out_m() AND g.t_back_ns IS NOT NULL, false) AS is_in_lane) l
     CROSS JOIN LATERAL (SELECT coalesce(NOT a.passed AND c.near_m < 0 AND n.is_seen, false) AND g.begin_seen AND NOT g.centre_over AS is_beside) w
+    WHERE NOT l.is_in_lane
     QUALIFY coalesce(a.passed, false)
         OR row_number() OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id, c.t0_ns ORDER BY w.is_beside, coalesce(c.near_m, 0.0), c.object_id) = 1
             AND NOT w.is_beside AND coalesce(c.near_m, 0.0) <= 100
