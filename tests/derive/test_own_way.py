@@ -92,6 +92,24 @@ def test_stopped_in_the_lane_it_is_the_lead_braked_for_or_swerved_round(hand: st
 
 @HANDS
 @pytest.mark.parametrize("with_map", [True, False])
+@pytest.mark.parametrize("hurry", [False, True])
+def test_gone_round_in_its_own_time_it_is_no_lead_also_where_the_ego_leaves_its_lane(
+    hand: str, with_map: bool, hurry: bool
+) -> None:
+    """A delivery van in the middle of the lane: the ego goes round it over the middle of the road, by 2.8 m in 3 s, or within 1.2 s of it."""
+    way = road(hand=hand)
+    t = times(14.0)
+    stopped = standing("x", way, t, 200, way.own)
+    begin, lasts = (8.3, 1.0) if hurry else (5.5, 3.0)
+    found = leads(
+        way if with_map else None, moving("ego", way, t, 100 + 10 * t, aside(way, t, begin, lasts, 2.8)), stopped
+    )
+    assert ("x" in ids(found)) == (hurry and with_map)
+    assert not [at for at, row in found.items() if at > 7.5 and row["object_id"] == "x"] or hurry
+
+
+@HANDS
+@pytest.mark.parametrize("with_map", [True, False])
 def test_a_queue_is_followed_until_the_end_of_the_log(hand: str, with_map: bool) -> None:
     """The ego drives on and stops 3 m behind the car that it follows: its own way ends there, and the car is beyond that end."""
     way = road(hand=hand)

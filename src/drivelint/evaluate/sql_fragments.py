@@ -103,7 +103,7 @@ def condition_ctes(rule: Rule) -> str:
         difference = "observed - required" if rule.sense[0] == ">" else "required - observed"
         gain = f"CASE WHEN isnan({difference}) THEN 0.0::DOUBLE ELSE {difference} END"
         if has("error"):
-            holds = f"CASE WHEN {compare} OR abs({difference}) > error THEN {compare} END"
+            holds = f"CASE WHEN {compare} OR error = 0 OR abs({difference}) > error THEN {compare} END"
             code = f"coalesce(code, CASE WHEN ({holds}) IS NULL AND {compare} IS NOT NULL THEN 'within_error' END)"
         if has("at_least"):
             proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"

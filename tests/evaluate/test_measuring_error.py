@@ -1,0 +1,80 @@
+"""What is missed by less than the error of a value, or than a recorder's sensors can tell, is unknown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, brief, verdicts, write
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SQL = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required{more} FROM ego_state"
+READS = {"reads": '["ego_state"]'}
+PASS, FAIL, UNKNOWN = ("pass", "kept"), ("fail", "violated"), ("unknown", "within_error")
+
+
+def scene(values: list[Any], sensors: float | None = None, **more: Any) -> dict[str, Any]:
+    times = [i / 10 for i in range(len(values))]
+    log = {"data_log": {"sensor_range_m": sensors, "sha256": "log"}} if sensors else {}
+    return {"ego_state": {"t_s": times, "speed_mps": values, **more}} | log
+
+
+@pytest.mark.parametrize(
+    ("sense", "value", "error", "expected"),
+    [
+        (">=", 9.0, 1.5, UNKNOWN),
+        (">=", 9.0, 1.0, UNKNOWN),
+        (">=", 9.0, 0.9, FAIL),
+        (">=", 9.0, None, FAIL),
+        (">=", 10.0, 5.0, PASS),
+        (">", 10.0, 0.0, FAIL),
+        ("<=", 11.0, 1.5, UNKNOWN),
+        ("<=", 11.0, 0.9, FAIL),
+        ("<=", 9.0, 5.0, PASS),
+    ],
+)
+def test_an_error_takes_back_a_miss_and_no_pass(
+    tmp_path: Path, sense: str, value: float, error: float | None, expected: tuple[str, str]
+) -> None:
+    sql = SQL.format(more=", limit_mps AS error")
+    rule = write(tmp_path, INVARIANT | {"sense": f'"{sense}"', "unit": '"m/s"'} | READS, {"condition": sql})
+    (row,) = verdicts(rule, scene([value] * 3, limit_mps=error))
+    assert brief([row]) == [expected]
+
+
+def test_a_worse_step_beside_it_still_fails(tmp_path: Path) -> None:
+    rule = write(tmp_path, INVARIANT | MEASURED | READS, {"condition": SQL.format(more=", 1.5 AS error")})
+    (row,) = verdicts(rule, scene([12, 9, 8, 9]))
+    assert brief([row]) == [FAIL]
+    assert (row["observed"], row["t_worst_s"]) == (8.0, 0.2)
+
+
+def test_the_sentence_has_both_numbers(tmp_path: Path) -> None:
+    rule = write(tmp_path, INVARIANT | MEASURED | READS, {"condition": SQL.format(more=", 1.5 AS error")})
+    (row,) = verdicts(rule, scene([12, 9]))
+    assert row["reason"].startswith("Missed by less than the measuring error at 0.100 s (9 m, required more than 10 m)")
+
+
+@pytest.mark.parametrize(("value", "seen", "known"), [(9.6, UNKNOWN, FAIL), (9.5, UNKNOWN, FAIL), (9.4, FAIL, FAIL)])
+def test_what_sensors_saw_is_known_to_five_per_cent(
+    tmp_path: Path, value: float, seen: tuple[str, str], known: tuple[str, str]
+) -> None:
+    """Ground truth is exact; a recorder that sees 50 m has measured."""
+    rule = write(tmp_path, INVARIANT | MEASURED | READS, {"condition": SQL.format(more="")})
+    assert brief(verdicts(rule, scene([value] * 3, sensors=50.0))) == [seen]
+    assert brief(verdicts(rule, scene([value] * 3))) == [known]
+    assert brief(verdicts(rule, scene([10.4] * 3, sensors=50.0))) == [PASS]
+
+
+def test_an_occasion_is_judged_so_too(tmp_path: Path) -> None:
+    sections = {
+        "reference": "SELECT drive_id, ego_id, t_ns FROM ego_state WHERE t_ns = 100000000",
+        "condition": "SELECT e.drive_id, e.ego_id, e.t_ns, r.ref_id, speed_mps AS observed, 10 AS required "
+        "FROM ego_state e JOIN reference r USING (drive_id, ego_id, t_ns)",
+    }
+    rule = write(tmp_path, EXECUTION | MEASURED | READS, sections)
+    assert brief(verdicts(rule, scene([12, 9.6, 12], sensors=50.0))) == [UNKNOWN]
+    assert brief(verdicts(rule, scene([12, 9.4, 12], sensors=50.0))) == [FAIL]
