@@ -236,14 +236,16 @@ def _coupled(one: _Boxes, other: _Boxes) -> bool:
 
 
 def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
-    """Say in which of their first samples (n) two tracks that move overlap, deep at once, and part again with no sign of an impact."""
+    """Say in which of their first samples (n) two tracks that move overlap, deep at once, and part again with no sign of an impact, or are hardly apart."""
     depth, speeds = _overlap(one, other)[0].min(axis=0), np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
-    return together & ~np.any(hit)
+    # places that are off by so much are not believed before the boxes are as far apart as they overlapped
+    near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
+    return near & ~np.any(hit)
 
 
 def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
