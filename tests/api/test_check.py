@@ -25,7 +25,7 @@ import typer
 import drivelint
 from drivelint import cli, demo
 from drivelint.pack import VerifyRequest, verify
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from tests.report import synthetic
 from tests.shared_data import ROOT
 

@@ -13,9 +13,9 @@ from drivelint import __version__
 from drivelint.drive.trace import DriveInput
 from drivelint.pack.bag import sha256_of
 from drivelint.pack.inputs import judged
-from drivelint.report.outputs import RESULT_FILES
 from drivelint.result import folder as folder_of_result
 from drivelint.result import request as run_request
+from drivelint.result.names import RESULT_FILES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

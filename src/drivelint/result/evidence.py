@@ -12,7 +12,8 @@ import pyarrow as pa
 import shapely
 
 from drivelint.reasons.reason_table import make_reason_table
-from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import conform, empty_table
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 

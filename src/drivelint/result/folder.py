@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import listed
-from drivelint.result.files import OutputError, prepare_folder, publish
+from drivelint.result.names import MANIFEST
+from drivelint.result.publishing import OutputError, prepare_folder, publish
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-MANIFEST: Final = "files.json"
 _KEY: Final = "written_by_drivelint"
 _HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"

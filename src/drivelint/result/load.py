@@ -13,7 +13,8 @@ from drivelint.result import gate as gates
 from drivelint.result.folder import changed, left_by_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
-from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
     from pathlib import Path
