@@ -45,11 +45,12 @@ def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Pat
             yield work
 
 
-def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> None:
+def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> tuple[str, ...]:
     """Write every result file of `check` into the folder `out`, in place of an earlier result.
 
     `work`: what `working_folder` gave, whose files are taken over. `summary.json` appears last, when the others are there.
-    Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
+    Same tables, same bytes. Return the names of the files that grew during the run.
+    Errors: `OutputError` when the folder cannot be written.
     """
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     # what lies beside the page is what this run made, not what an earlier one left
@@ -64,6 +65,7 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     if work is not None:
         moved |= _grown(work, result)
     folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+    return tuple(sorted(moved))
 
 
 def _grown(work: Path, result: Result) -> dict[str, Path]:

@@ -78,7 +78,8 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        return without_geometry(pq.read_table(path, page_checksum_verification=True))
+        with path.open("rb") as file:  # opened by Python, whose files a receipt knows
+            return without_geometry(pq.read_table(file, page_checksum_verification=True))
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
 
