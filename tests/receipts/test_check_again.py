@@ -127,7 +127,13 @@ def receipt(first: Ran) -> Iterator[Path]:
 
 def test_the_second_run_writes_and_prints_the_same(first: Ran, tmp_path: Path) -> None:
     expected = files(Path("../out"))
-    assert {"report.html", "margins.parquet", "gate.json", "files.json", "annotated/near-miss-e888ec04.mcap"} <= expected.keys()
+    assert {
+        "report.html",
+        "margins.parquet",
+        "gate.json",
+        "files.json",
+        "annotated/near-miss-e888ec04.mcap",
+    } <= expected.keys()
     for before in (lambda: None, lambda: shutil.rmtree("out"), lambda: Path("out/report.html").write_text("changed")):
         before()
         with pytest.MonkeyPatch.context() as patch:
@@ -136,7 +142,10 @@ def test_the_second_run_writes_and_prints_the_same(first: Ran, tmp_path: Path) -
         assert (again.exit_code, again.stdout) == (first.exit_code, first.stdout)
         assert files(Path("out")) == expected
         told = again.stderr.splitlines()
-        assert told[-1] == "drivelint: nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
+        assert (
+            told[-1]
+            == "drivelint: nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
+        )
         assert told[:-1] == first.stderr.splitlines()
     assert drivelint(*ARGUMENTS, "--quiet") == (first.exit_code, first.stdout, "")
 
@@ -261,14 +270,22 @@ def test_a_file_beside_the_inputs_does_not_count(first: Ran) -> None:
 
 def test_a_damaged_receipt_is_judged_anew(first: Ran, receipt: Path) -> None:
     whole = receipt.read_bytes()
-    for damaged in (b"", whole[:-1], whole[: len(whole) // 2], flip_last(whole), whole.replace(b"near-miss", b"near-Miss", 1)):
+    for damaged in (
+        b"",
+        whole[:-1],
+        whole[: len(whole) // 2],
+        flip_last(whole),
+        whole.replace(b"near-miss", b"near-Miss", 1),
+    ):
         receipt.write_bytes(damaged)
         assert is_judged_anew(*ARGUMENTS)
     receipt.write_bytes(whole)
     assert not is_judged_anew(*ARGUMENTS)
 
 
-def test_a_run_is_not_kept_that_its_inputs_do_not_tell(first: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_is_not_kept_that_its_inputs_do_not_tell(
+    first: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Of one log nothing is judged, so that the run has a refused one."""
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")
     with added("logs/empty.csv"):
@@ -280,7 +297,18 @@ def test_a_run_is_not_kept_that_its_inputs_do_not_tell(first: Ran, tmp_path: Pat
 def test_logs_beside_the_results_are_found(first: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The folder of results lies among the logs: what `check` writes there is no input, what somebody else does is one."""
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")
-    args = ("check", ".", "--map", "road.xodr", "--rules", "ukhc.no-collision", "--no-robustness", "--out", "results", "--cache")
+    args = (
+        "check",
+        ".",
+        "--map",
+        "road.xodr",
+        "--rules",
+        "ukhc.no-collision",
+        "--no-robustness",
+        "--out",
+        "results",
+        "--cache",
+    )
     monkeypatch.chdir(_copied(tmp_path / "beside"))
     once = drivelint(*args)
     assert once.exit_code in {0, 1}
@@ -309,7 +337,9 @@ def test_the_second_run_imports_nothing_heavy(first: Ran, tmp_path: Path) -> Non
     )
     env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     ran = [
-        subprocess.run([sys.executable, *more, *command], cwd=work, env=env, capture_output=True, text=True, check=False)
+        subprocess.run(
+            [sys.executable, *more, *command], cwd=work, env=env, capture_output=True, text=True, check=False
+        )
         for more in ((), ("-X", "importtime"))
     ]
     assert "nothing has changed" in ran[1].stderr

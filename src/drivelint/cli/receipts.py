@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 _WITHOUT_EFFECT: Final = frozenset({"cache", "quiet", "today"})
 """Options on which nothing depends that is kept; the day counts where there are waivers."""
+_UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
+"""What is read in the working folder without a name; the second by the database's library of projections, if it is there."""
 _SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER, f"{folder.EARLIER}/annotated"})
 _AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
 
@@ -106,7 +108,7 @@ class CheckReceipts:
         if self._key is None:
             yield
             return
-        with recording(self._is_output, [SETTINGS_FILE, *self._named]) as self._recorder:
+        with recording(self._is_output, [*_UNNAMED, *self._named]) as self._recorder:
             yield
 
     def keep(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 ENVIRONMENT: Final = (
     *("COLUMNS", "LINES", "TERM", "COLORTERM", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"),
     *("JUPYTER_COLUMNS", "JUPYTER_LINES", "UNICODE_VERSION", "TZ", "LANG", "LC_ALL", "LC_CTYPE"),
+    *("PROJ_DATA", "PROJ_LIB", "PROJ_NETWORK"),
 )
 """The variables that a result, or how it is shown, may depend on."""
 
