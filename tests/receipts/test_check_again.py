@@ -86,6 +86,21 @@ def is_judged_anew(*args: str) -> bool:
     return ran.exit_code == ExitCode.USAGE
 
 
+@contextmanager
+def _environment_readings() -> Iterator[set[str]]:
+    """Yield a set that gets the names of the variables that are looked at inside the block."""
+    names: set[str] = set()
+    get = os._Environ.__getitem__
+
+    def noted(self: os._Environ[str], name: str) -> str:
+        names.add(name)
+        return get(self, name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os._Environ, "__getitem__", noted)
+        yield names
+
+
 @pytest.fixture(scope="module")
 def first(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
     """Return the first run; its folder is the working folder, whatever it was given is there."""
@@ -108,7 +123,9 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
         before[before.index("out")] = "before"
         assert drivelint(*before, "--no-cache").exit_code == 0
         assert not (home / "cache").exists()
-        ran = drivelint(*ARGUMENTS)
+        with _environment_readings() as variables:
+            ran = drivelint(*ARGUMENTS)
+        (home / "variables.json").write_text(json.dumps(sorted(variables)))
         assert len(list((home / "cache" / "receipts").iterdir())) == 1
         shutil.copytree("out", home / "out")
         yield ran
@@ -258,6 +275,16 @@ def test_another_question_is_judged(first: Ran, more: tuple[str, ...]) -> None:
         shutil.rmtree("other", ignore_errors=True)
 
 
+def test_every_variable_of_the_environment_counts_that_a_run_looks_at(first: Ran) -> None:
+    """But those that say where files of the run itself lie, what counts as an option, and those of shells' completion."""
+    looked_at = set(json.loads(Path("../variables.json").read_text()))
+    assert {"COLUMNS", "TERM"} <= looked_at
+    of_folders = {"TMPDIR", "TEMP", "TMP", "HOME", "XDG_CACHE_HOME", "DRIVELINT_CACHE_DIR"}
+    answered = {"DRIVELINT_CHECK_CACHE", "DRIVELINT_DEAF_RULES"}
+    others = {name for name in looked_at if name.startswith(("DRIVELINT_TEST_", "PYTEST_")) or "_COMPLETE" in name}
+    assert looked_at - of_folders - answered - others <= set(program.ENVIRONMENT)
+
+
 def test_the_day_counts_only_where_there_are_waivers(first: Ran, receipt: Path) -> None:
     head = json.loads(receipt.read_bytes().partition(b"\n")[0])
     assert head["day"] == "2026-11-29"
@@ -289,7 +316,9 @@ def test_a_run_is_not_kept_that_its_inputs_do_not_tell(
     """Of one log nothing is judged, so that the run has a refused one."""
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")
     with added("logs/empty.csv"):
-        ran = drivelint(*ARGUMENTS)
+        with _environment_readings() as variables:
+            ran = drivelint(*ARGUMENTS)
+        (home / "variables.json").write_text(json.dumps(sorted(variables)))
     assert ran.exit_code == 4
     assert not (tmp_path / "cache").exists()
 
