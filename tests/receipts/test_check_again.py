@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,13 +17,21 @@ import pytest
 from drivelint import demo, run
 from drivelint.cli import main
 from drivelint.errors import ExitCode
+from drivelint.formats import expand_traces
 from drivelint.receipts import program, store
+from drivelint.receipts.events import machine_bound
+from drivelint.report.outputs import write
 from drivelint.resources import folder
+from drivelint.result.request import RunRequest
+from tests.report.synthetic import drive, result, verdict
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
+
+    from drivelint.engine.interruption import Interruption
+    from drivelint.result.model import Result
 
 RULE = "ukhc/r162.safe-distance-ahead.sql"
 WAIVER = '[[waiver]]\nrule = "{}"\nreason = "ticket 17"\nowner = "jo"\nexpires = 2099-03-31\n'
@@ -119,10 +128,7 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
         patch.setattr(store, "cache_folder", lambda: home / "cache")
         patch.setenv("DRIVELINT_TEST_STREAMS", str(home))
         patch.chdir(work)
-        before = [each for each in ARGUMENTS if each not in {"--baseline", "before"}]
-        before[before.index("out")] = "before"
-        assert drivelint(*before, "--no-cache").exit_code == 0
-        assert not (home / "cache").exists()
+        write(result([verdict("pass")]), Path("before"))
         with _environment_readings() as variables:
             ran = drivelint(*ARGUMENTS)
         (home / "variables.json").write_text(json.dumps(sorted(variables)))
@@ -310,37 +316,56 @@ def test_a_damaged_receipt_is_judged_anew(first: Ran, receipt: Path) -> None:
     assert not is_judged_anew(*ARGUMENTS)
 
 
-def test_a_run_is_not_kept_that_its_inputs_do_not_tell(
-    first: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of one log nothing is judged, so that the run has a refused one."""
+KEPT: dict[str, tuple[Result, bool]] = {
+    "whole": (result([verdict("pass")]), True),
+    "a drive was not judged": (result([verdict("pass")], drives=[drive(), drive("d2", status="not_judged")]), False),
+    "a rule erred": (result([verdict("error")]), False),
+    "interrupted": (result([verdict("pass")], interrupted=True), False),
+    "only its copies were interrupted": (result([verdict("pass")]), False),
+    "a rule took too long for a copy": (result([verdict("pass")]), False),
+    "its log is an output": (result([verdict("pass")]), False),
+}
+
+
+@pytest.mark.parametrize("what", KEPT)
+def test_only_a_run_is_kept_that_its_inputs_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+    judged, is_kept = KEPT[what]
+    log = "out/annotated/x.mcap" if what == "its log is an output" else "x.mcap"
+    judged = replace(judged, asked=RunRequest(traces={"d1": log}))
+
+    def judges(_settings: object, _progress: object, interruption: Interruption, *_: object) -> Result:
+        if what == "only its copies were interrupted":
+            interruption.requested = True
+        if what == "a rule took too long for a copy":
+            machine_bound("it took too long")
+        return judged
+
+    monkeypatch.setattr(run, "check", judges)
+    monkeypatch.setattr(os, "_exit", sys.exit)  # an interrupted command waits for nothing
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")
-    with added("logs/empty.csv"):
-        with _environment_readings() as variables:
-            ran = drivelint(*ARGUMENTS)
-        (home / "variables.json").write_text(json.dumps(sorted(variables)))
-    assert ran.exit_code == 4
-    assert not (tmp_path / "cache").exists()
+    monkeypatch.setenv("DRIVELINT_TEST_STREAMS", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    drivelint("check", "x.mcap", "--cache", "--out", "out")
+    assert (tmp_path / "cache" / "receipts").exists() is is_kept
 
 
 def test_logs_beside_the_results_are_found(first: Ran, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The folder of results lies among the logs: what `check` writes there is no input, what somebody else does is one."""
+
+    def judges(settings: run.CheckOptions, *_: object) -> Result:
+        logs = [log for log in expand_traces(settings.traces) if log.read_bytes()]
+        assert settings.out is not None
+        (settings.out / "annotated").mkdir()
+        (settings.out / "annotated" / "d1.mcap").write_bytes(b"")
+        return replace(judged, asked=RunRequest(traces={"d1": str(logs[0])}))
+
+    judged = result([verdict("pass")])
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")
-    args = (
-        "check",
-        ".",
-        "--map",
-        "road.xodr",
-        "--rules",
-        "ukhc.no-collision",
-        "--no-robustness",
-        "--out",
-        "results",
-        "--cache",
-    )
     monkeypatch.chdir(_copied(tmp_path / "beside"))
-    once = drivelint(*args)
-    assert once.exit_code in {0, 1}
+    args = ("check", ".", "--no-robustness", "--out", "results", "--cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "check", judges)
+        assert drivelint(*args).exit_code == 0
     assert not is_judged_anew(*args)
     with added("results/log.csv", "x"):
         assert is_judged_anew(*args)
