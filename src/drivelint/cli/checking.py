@@ -16,7 +16,12 @@ from drivelint.cli.restart import Restart
 from drivelint.phrases import inert_json
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.engine.interruption import Interruption
+    from drivelint.report.progress import Progress
     from drivelint.result.model import Result
+    from drivelint.run import CheckOptions
 
 
 @options.takes_drive_input
@@ -93,6 +98,16 @@ def check(
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
     ] = False,
+    jobs: Annotated[
+        int,
+        typer.Option(
+            "--jobs",
+            "-j",
+            metavar="N",
+            min=1,
+            help="Processes that judge, each a part of the logs. The result is the same.",
+        ),
+    ] = 1,
     cache: Annotated[
         bool,
         option(
@@ -178,7 +193,8 @@ def check(
                     baseline, waivers, Path(SETTINGS_FILE), day, out, confidence=confidence
                 )
                 judged = run_interruptible(
-                    lambda: run.check(settings, progress, interruption, deaf, kept), interruption.request
+                    lambda: _judge(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=kept),
+                    interruption.request,
                 )
         except KeyboardInterrupt as stop:
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
@@ -196,6 +212,25 @@ def check(
     elif pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(code)
+
+
+def _judge(
+    settings: CheckOptions,
+    jobs: int,
+    progress: Progress,
+    *,
+    interruption: Interruption,
+    deaf: Restart | None,
+    keep: Callable[[Result], Result],
+) -> Result:
+    """Judge the logs in this process, or by several."""
+    if jobs > 1:
+        from drivelint import parallel
+
+        return parallel.check(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=keep)
+    from drivelint import run
+
+    return run.check(settings, progress, interruption, deaf, keep)
 
 
 def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:

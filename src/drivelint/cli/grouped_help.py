@@ -23,6 +23,7 @@ _GROUPS: Final = {
         "evidence",
         "sign",
         "verbose",
+        "jobs",
         "cache",
         "quiet",
     ),

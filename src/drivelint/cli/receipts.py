@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from drivelint.gate import GateInputs
     from drivelint.result.model import Result
 
-_WITHOUT_EFFECT: Final = frozenset({"cache", "quiet", "today"})
+_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options on which nothing depends that is kept; the day counts where there are waivers."""
 _UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
 """What is read in the working folder without a name; the second by the database's library of projections, if it is there."""

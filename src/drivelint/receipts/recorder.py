@@ -62,6 +62,17 @@ class Recorder:
             if self._states[whole] is None:
                 self.trouble = f"{whole} cannot be looked at again"
 
+    def add(self, inputs: Inputs | None) -> None:
+        """Add what another process of the same run read; None: its part is not of its inputs alone."""
+        with self._lock:
+            if inputs is None:
+                self.trouble = "a worker's part cannot be repeated"
+                return
+            for known, told in ((self._states, inputs.states), (self._globs, inputs.globs)):
+                for name, said in told.items():
+                    if known.setdefault(name, said) != said:
+                        self.trouble = f"{name} changed"
+
     def inputs(self) -> Inputs | None:
         """Return what was read; None: the result is not of these inputs alone, or they changed while they were read."""
         self._inside.busy = True  # from here on nothing is recorded in this thread
@@ -127,6 +138,11 @@ def recording(is_output: IsOutput, named: Iterable[str | os.PathLike[str]]) -> I
         yield recorder
     finally:
         _recorders.remove(recorder)
+
+
+def active() -> Recorder | None:
+    """Return the recorder of the run that goes on in this process; None: nothing is recorded."""
+    return _recorders[-1] if _recorders else None
 
 
 def _hook(event: str, args: tuple[Any, ...]) -> None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapTables
 
-_KEYS: Final = {
+ORDER: Final = {
     "scenes": "drive_id, ego_id, t_ns",
     "lanes": "environment_id, lanelet_id",
     "spaces": "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id",
@@ -65,7 +65,7 @@ def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
     """Return the tables of evidence under the names that `Result` has for them, totally ordered."""
     return {
         name: con.execute(f"SELECT * FROM {TABLE_OF_FILE[name]} ORDER BY {keys}").to_arrow_table()
-        for name, keys in _KEYS.items()
+        for name, keys in ORDER.items()
     }
 
 
