@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 from collections import defaultdict
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions, JudgedLogs, LogNote
 
 _LOOK_S: Final = 0.2
+_PATIENCE_S: Final = 5.0
+"""How long a process may take to end by itself."""
 
 
 class WorkerLostError(DriveLintError):
@@ -226,8 +229,8 @@ class _Worker:
         except (EOFError, OSError):
             self._process.join()
             raise WorkerLostError(
-                f"a process that judged {len(self._part.paths)} logs died (exit code {self._process.exitcode}), for lack of memory if it "
-                "is negative: check again with fewer --jobs"
+                f"a process that judged {len(self._part.paths)} logs died (exit code {self._process.exitcode}; -9: killed, as for lack of "
+                "memory): check again with fewer --jobs"
             ) from None
         if isinstance(told, _Ended):
             self.ended = told
@@ -252,10 +255,11 @@ class _Worker:
         self.start()
 
     def stop(self) -> None:
-        """End the process."""
-        self._process.terminate()
-        self._process.join()
+        """End the process, which removes its temporary files where it can."""
         self.pipe.close()
+        self._process.join(_PATIENCE_S)
+        self._process.kill()
+        self._process.join()
 
 
 class _Teller(Progress):
@@ -324,6 +328,7 @@ class _DeafInWorker:
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process."""
     begin_worker(None, parent)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
