@@ -25,6 +25,7 @@ from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY
 from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
+from drivelint.phrases import plural
 from drivelint.receipts import recorder
 from drivelint.report.progress import Progress
 from drivelint.result.names import TABLE_OF_FILE
@@ -229,7 +230,7 @@ class _Worker:
         except (EOFError, OSError):
             self._process.join()
             raise WorkerLostError(
-                f"a process that judged {len(self._part.paths)} logs died (exit code {self._process.exitcode}; -9: killed, as for lack of "
+                f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, as for lack of "
                 "memory): check again with fewer --jobs"
             ) from None
         if isinstance(told, _Ended):
@@ -246,7 +247,7 @@ class _Worker:
         """Start the process again without a rule that does not end."""
         self.stop()
         self._listener.progress.note(
-            f"rule {deaf.rule_id} cannot be stopped: {len(self._part.paths)} logs are judged again without it"
+            f"rule {deaf.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0

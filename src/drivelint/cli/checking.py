@@ -202,7 +202,7 @@ def check(
         result = kept(judged)
         stdout, code = _stdout(result, format_, out, verbose=verbose), int(exit_status(result).code)
         receipts.keep(result, stdout, code, moved=grown, gate=gate_inputs, interruption=interruption)
-        if memory is not None and (most := peak_bytes()) is not None:
+        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # of this process
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
             )
