@@ -230,8 +230,8 @@ class _Worker:
         except (EOFError, OSError):
             self._process.join()
             raise WorkerLostError(
-                f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, as for lack of "
-                "memory): check again with fewer --jobs"
+                f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, "
+                "as for lack of memory): check again with fewer --jobs"
             ) from None
         if isinstance(told, _Ended):
             self.ended = told
