@@ -29,6 +29,8 @@ os.environ.pop("COLUMNS", None)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 # nor does a test read what other versions kept for the user
 os.environ["DRIVELINT_CACHE_DIR"] = str(ROOT / ".pytest_cache" / "drivelint")
+# nor is it answered by what an earlier version of the code came to
+os.environ["DRIVELINT_CHECK_CACHE"] = "no"
 
 SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 

@@ -21,7 +21,8 @@ from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
 from drivelint.formats.tables import canonical, parquet
 from drivelint.phrases import listed, one_line
-from drivelint.result.files import OutputError, described_parquet, prepare_folder, publish
+from drivelint.result.files import described_parquet
+from drivelint.result.publishing import OutputError, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:

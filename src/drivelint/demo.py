@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.resources import folder
-from drivelint.result.files import publish
+from drivelint.result.publishing import publish
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -29,6 +29,10 @@ class DriveLintError(Exception):
     exit_code: ExitCode = ExitCode.USAGE
     _is_told = False
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return how another process makes the error again, whose line is there already."""
+        return _made_again, (type(self), self.args)
+
     def __str__(self) -> str:
         """Return the line; where a damaged file put a long text into it, without its middle."""
         text = super().__str__()
@@ -47,6 +51,12 @@ class DriveLintError(Exception):
     def is_of_the_run(self) -> bool:
         """Whether the fault is no drive's: every other drive of the run would meet it, too."""
         return self.exit_code == ExitCode.TEMPFAIL
+
+
+def _made_again(kind: type[DriveLintError], args: tuple[object, ...]) -> DriveLintError:
+    error = kind.__new__(kind)
+    error.args = args
+    return error
 
 
 class UsageError(DriveLintError):

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
 
@@ -28,17 +28,21 @@ from drivelint.formats import expand_traces
 from drivelint.phrases import plural
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES
+from drivelint.result.joining import join
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from drivelint.catalogue import Rule
     from drivelint.engine.session import BatchObserver
     from drivelint.evaluate.limits import DeafRules
     from drivelint.report.progress import Progress
 
+CHECKING: Final = "checking"
+"""The stage in which drives are judged; that of their copies comes later."""
 _MISSED: Final = "the run was interrupted before this drive was judged"
 
 
@@ -52,11 +56,56 @@ class CheckOptions(JudgingOptions):
     keep_db: bool = False
     evidence: bool = False
     """Gather what reports show without `out`, too."""
+    threads: int | None = None
+    """Cores that a statement may take; None: all."""
 
     @classmethod
     def judging(cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None) -> CheckOptions:
         """Return the options of a check of these logs that judges as `options` say, whatever else they have."""
         return cls(traces, out, **{each.name: getattr(options, each.name) for each in fields(JudgingOptions)})
+
+
+class RunRules(NamedTuple):
+    """By what a run judges: the rules, the ids of those of which none may be unknown, their parameters, and the table of profiles."""
+
+    rules: Sequence[Rule]
+    required: tuple[str, ...]
+    params: Mapping[str, Mapping[str, object]]
+    profiles: pa.Table
+
+    @classmethod
+    def of(cls, settings: CheckOptions) -> RunRules:
+        """Return what the options of a run choose. Errors: `UsageError`, `RuleError`."""
+        known = catalogue.load_rules(settings.rules_dirs)
+        rules = catalogue.select_rules(known, settings.rules, settings.ignore)
+        required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
+        params = catalogue.parse_params(rules, settings.params)
+        profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
+        if (settings.margins or settings.keep_db) and settings.out is None:
+            raise UsageError("--margins and --keep-db write files: say where with --out DIR")
+        return cls(rules, required, params, profiles)
+
+
+class LogNote(NamedTuple):
+    """What is to be said of a log. `once`: of all logs with this text only the first is told, by name."""
+
+    path: Path
+    text: str
+    once: bool = False
+
+    @property
+    def told(self) -> str:
+        """The note as a person reads it."""
+        return f"{self.path.name}: {self.text}" if self.once else self.text
+
+
+@dataclass(frozen=True)
+class JudgedLogs:
+    """What became of some logs of a run, in their order: a result whose notes are these."""
+
+    result: Result
+    notes: tuple[LogNote, ...]
+    refused: tuple[RefusedLog, ...]
 
 
 def check(
@@ -76,18 +125,39 @@ def check(
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
+    judged_by = RunRules.of(settings)
+    paths, refused = named_logs(settings)
+    progress.stage(CHECKING, len(paths))
+    judged = judge_logs(
+        settings,
+        judged_by,
+        paths,
+        refused=refused,
+        progress=progress,
+        notes=LogNotes(progress, len(paths)),
+        interruption=interruption,
+        deaf=deaf,
+    )
+    return conclude(paths, [judged], keep)
+
+
+def judge_logs(
+    settings: CheckOptions,
+    judged_by: RunRules,
+    paths: Sequence[Path],
+    *,
+    refused: list[RefusedLog],
+    progress: Progress,
+    notes: LogNotes,
+    interruption: Interruption | None = None,
+    deaf: DeafRules | None = None,
+) -> JudgedLogs:
+    """Judge logs in one database, in their order; add to `refused` what could not be judged."""
     interruption = interruption or Interruption()
-    known = catalogue.load_rules(settings.rules_dirs)
-    rules = catalogue.select_rules(known, settings.rules, settings.ignore)
-    required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
-    params = catalogue.parse_params(rules, settings.params)
-    profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
-    if (settings.margins or settings.keep_db) and settings.out is None:
-        raise UsageError("--margins and --keep-db write files: say where with --out DIR")
-    paths, refused = _named_logs(settings)
+    rules, required, params, profiles = judged_by
     options, library = settings.ingest_options(), MapLibrary(settings)
 
-    with store.workspace(settings.memory) as con:
+    with store.workspace(settings.memory, threads=settings.threads) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
@@ -123,8 +193,6 @@ def check(
             limits=RuleLimits(settings.rule_timeout, task="drives", deaf=deaf),
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
-        progress.stage("checking", len(paths))
-        notes = _Notes(progress, len(paths))
         ids: dict[Path, str] = {}
         read = _announced(read_drives(paths, options, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
@@ -138,8 +206,6 @@ def check(
             session.close()
         done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
         missed = sorted(set(paths) - done) if interruption.requested else []
-        if missed and not session.judged:
-            raise NothingJudgedError
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
@@ -154,21 +220,38 @@ def check(
             strict=settings.strict,
             required=required,
             interrupted=bool(missed),
-            notes=tuple(notes.texts),
             asked=RunRequest.from_options(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
-        if len(refused) >= len(paths):
-            if keep is not None:
-                keep(result)
-            first = refused[0].error
-            many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
-            raise first if len(refused) == 1 else many
-        return result
+        return JudgedLogs(result, tuple(notes.notes), tuple(refused))
 
 
-def _named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
+def conclude(
+    paths: Sequence[Path], parts: Sequence[JudgedLogs], keep: Callable[[Result], object] | None = None
+) -> Result:
+    """Return the result of a run whose logs, in this order, were judged in these parts, which have no drive in common.
+
+    Notes are in the order of the logs. Errors: as `check`, if no drive could be judged.
+    """
+    result = parts[0].result if len(parts) == 1 else join([part.result for part in parts])
+    place = {path: n for n, path in enumerate(paths)}
+    notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
+    result = replace(result, notes=tuple(note.told for note in told_once(notes)))
+    statuses = result.drives["status"].to_pylist()
+    if result.interrupted and "judged" not in statuses:
+        raise NothingJudgedError
+    refused = [each for part in parts for each in part.refused]
+    if len(refused) >= len(statuses):
+        if keep is not None:
+            keep(result)
+        first = refused[0].error
+        many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
+        raise first if len(refused) == 1 else many
+    return result
+
+
+def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     """Return the logs that are named; none, and the refusal of that name, if one names nothing and the result is kept in a folder."""
     try:
         return sorted_logs(expand_traces(settings.traces, but=settings.map)), []
@@ -189,31 +272,42 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
         progress.doing(f"reading {min(done + 1, n)}/{n}")
 
 
-class _Notes:
+class LogNotes:
     """Shows what is to be said of the logs, and keeps it for the result."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
-        self.texts: list[str] = []
+        self.notes: list[LogNote] = []
         self._n_logs = n_logs
         self._progress = progress
         self._said: set[str] = set()
 
-    def add(self, text: str) -> None:
-        """Show and keep a note."""
-        self.texts.append(text)
-        self._progress.note(text)
+    def add(self, note: LogNote) -> None:
+        """Keep a note, and show it unless it was shown of an earlier log: not a thousand times for a thousand logs."""
+        self.notes.append(note)
+        if not (note.once and note.text in self._said):
+            self._progress.note(note.told)
+        if note.once:
+            self._said.add(note.text)
 
     def add_refused(self, refused: Iterable[RefusedLog]) -> None:
         """Add why logs are not judged; that of a single one is the error of the whole run."""
         for each in refused if self._n_logs > 1 else ():
-            self.add(f"not judged: {each.error}")
+            self.add(LogNote(each.path, f"not judged: {each.error}"))
 
-    def add_of_log(self, name: str, said: Iterable[str]) -> None:
-        """Add what its reader said of a log, unless it said that of an earlier one: not a thousand times for a thousand logs."""
-        for note in said:
-            if note not in self._said:
-                self.add(f"{name}: {note}")
-        self._said.update(said)
+
+def same_log(path: Path, drive_id: str) -> LogNote:
+    """Return the note on a log that is there twice."""
+    return LogNote(path, f"{path}: the same log as one before ({drive_id}), judged once")
+
+
+def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
+    """Yield the notes, of those that are told once the first."""
+    told: set[str] = set()
+    for note in notes:
+        if not (note.once and note.text in told):
+            yield note
+        if note.once:
+            told.add(note.text)
 
 
 def _judge_copies(session: JudgingSession, progress: Progress) -> None:
@@ -231,7 +325,7 @@ def _judge(
     batch: Iterable[Drive | RefusedLog],
     refused: list[RefusedLog],
     progress: Progress,
-    notes: _Notes,
+    notes: LogNotes,
 ) -> None:
     """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused`."""
     n_before = len(refused)
@@ -240,10 +334,11 @@ def _judge(
         if isinstance(item, RefusedLog):
             refused.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
-            notes.add(f"{item.trace.path}: the same log as one before ({item.trace.drive_id}), judged once")
+            notes.add(same_log(item.trace.path, item.trace.drive_id))
         else:
             drives.append(item)
-            notes.add_of_log(item.trace.path.name, item.trace.notes)
+            for text in item.trace.notes:
+                notes.add(LogNote(item.trace.path, text, once=True))
     progress.doing(f"judging {plural(len(drives), 'drive')}")
     n_unread = len(refused) - n_before
     try:

@@ -7,7 +7,7 @@ from typing import Any
 
 from drivelint.report.progress import Silent
 from drivelint.result.files import parquet_bytes
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -25,8 +25,8 @@ from drivelint.engine import batch
 from drivelint.errors import TraceError
 from drivelint.evaluate import evaluate
 from drivelint.formats import read_trace
-from drivelint.result.files import OutputError
 from drivelint.result.geometry import without_geometry
+from drivelint.result.publishing import OutputError
 from tests.annotate.files import seeking, streaming, verify
 from tests.annotate.runs import CASE, ROOT, run, the
 from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw

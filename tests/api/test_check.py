@@ -25,12 +25,12 @@ import typer
 import drivelint
 from drivelint import cli, demo
 from drivelint.pack import VerifyRequest, verify
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from tests.report import synthetic
 from tests.shared_data import ROOT
 
-PRINTING = {"format_", "verbose", "quiet", "help"}
-"""Options of the command line about what it prints."""
+PRINTING = {"format_", "verbose", "quiet", "cache", "jobs", "help"}
+"""Options of the command line alone: what it prints and keeps, and by how many processes."""
 NAMES = {"map_": "map", "sensor_range_m": "sensor_range"}
 """Parameters of the command line -> keywords, where they differ."""
 

@@ -19,7 +19,7 @@ from drivelint.audit import delta, merge
 from drivelint.audit.delta import DIGEST, NAMES
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Progress, Silent
-from drivelint.result.files import OutputError
+from drivelint.result.publishing import OutputError
 from tests.audit import fleet
 from tests.audit.here import judged
 from tests.shared_data import ROOT

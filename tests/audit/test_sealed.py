@@ -16,7 +16,7 @@ from drivelint.audit.run import merge
 from drivelint.errors import UsageError
 from drivelint.fleet_report.opened import opened, opened_both
 from drivelint.report.progress import Silent
-from drivelint.result.folder import MANIFEST
+from drivelint.result.names import MANIFEST
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 

@@ -17,7 +17,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
 from drivelint.formats.osi.writer import osi_ids
 from drivelint.formats.protobuf.wire import varint
-from drivelint.result.files import OutputError
+from drivelint.result.publishing import OutputError
 from tests.convert.stock_reader import messages
 from tests.formats.osi import osi_log
 from tests.shared_data import ROOT

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.fleet_report import page
-from drivelint.result.folder import MANIFEST
+from drivelint.result.names import MANIFEST
 from tests.audit import fleet
 from tests.audit.here import judged
 from tests.fleet_report import lake

@@ -10,7 +10,7 @@ import pytest
 from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from tests.formats.logs import cars, mapping, read, table
 
 

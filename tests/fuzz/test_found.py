@@ -22,7 +22,8 @@ from drivelint.formats.film import mapping as film_mapping
 from drivelint.gate import waivers
 from drivelint.result.files import parquet_bytes
 from drivelint.result.load import _table, load_result
-from drivelint.result.schemas import TABLE_OF_FILE, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import empty_table
 from drivelint.settings import read_settings
 from tests.formats.logs import cars, mapping, quality, read, table
 from tests.formats.mcap.damage import FOOTER, places, replaced

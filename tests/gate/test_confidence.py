@@ -20,6 +20,7 @@ from drivelint.report.progress import Silent
 from drivelint.result import gate as gates
 from drivelint.result.certainty import certainty
 from drivelint.result.model import exit_status
+from drivelint.result.names import GATE_FILE
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -91,7 +92,7 @@ def test_the_gate_is_read_back_as_it_was_written(result: Result, tmp_path: Path)
     gate = GateInputs(TODAY, confidence=0.95).apply_to(copied(result, 100, 53)).gate
     assert gate is not None
     assert len(gate.possible) == 1
-    (tmp_path / gates.FILE).write_bytes(gates.render(gate))
+    (tmp_path / GATE_FILE).write_bytes(gates.render(gate))
     assert gates.load(tmp_path) == gate
 
 

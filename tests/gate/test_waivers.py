@@ -15,6 +15,7 @@ from drivelint.gate import Gate, GateInputs, Waiver, descriptions, waivers
 from drivelint.report import junit, terminal
 from drivelint.result import gate as store
 from drivelint.result.model import Result, exit_status
+from drivelint.result.names import GATE_FILE
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 
 TODAY = date(2026, 11, 20)
@@ -217,14 +218,14 @@ def test_the_terminal_shows_what_is_let_through_and_what_to_look_at() -> None:
 def test_the_file_of_a_gate_is_read_back(tmp_path: Path) -> None:
     gate = gated(waiver(from_s=1.5), rows=[ROW]).gate
     assert gate is not None
-    (tmp_path / store.FILE).write_bytes(store.render(gate))
+    (tmp_path / GATE_FILE).write_bytes(store.render(gate))
     assert store.load(tmp_path) == gate
     assert store.load(tmp_path / "elsewhere") is None
 
 
 @pytest.mark.parametrize("content", [b"{", b'{"gate_schema": 99, "gate": {}}', b'{"gate": 1}', b"\xff"])
 def test_a_file_that_is_no_gate_is_refused(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / store.FILE).write_bytes(content)
+    (tmp_path / GATE_FILE).write_bytes(content)
     with pytest.raises(UsageError, match=r"gate\.json: .*check the drives again"):
         store.load(tmp_path)
 

@@ -21,7 +21,7 @@ from drivelint.formats.ros2.messages import MESSAGES
 from drivelint.guide import dictionary
 from drivelint.reasons.signals import REMEDIES, SIGNALS
 from drivelint.result.geometry import SHAPES
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
 from drivelint.sql.words import vocabularies
 from tests.guide.blocks import PAGES

@@ -18,7 +18,7 @@ from drivelint.audit import parts
 from drivelint.audit.store import LocalFolder
 from drivelint.errors import UsageError
 from drivelint.pack import VerifyRequest, verify
-from drivelint.result.folder import MANIFEST
+from drivelint.result.names import MANIFEST
 from tests.pack import audited
 from tests.pack.audited import (
     AUDIT,

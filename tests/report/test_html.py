@@ -19,7 +19,7 @@ from drivelint.report.html.reasons import VerdictReason, summarise_reasons, verd
 from drivelint.report.outputs import write
 from drivelint.result.load import load_result
 from drivelint.result.model import Result
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from tests.report.pages import NASTY, Parsed, nasty, page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 

@@ -18,7 +18,7 @@ from drivelint.engine import batch
 from drivelint.report.progress import Silent
 from drivelint.result import evidence
 from drivelint.result.model import Result
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from drivelint.run import CheckOptions, check
 from tests.result.fixture_result import FIXTURE, NAMES, run
 

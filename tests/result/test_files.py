@@ -10,10 +10,12 @@ import pytest
 
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.outputs import write
-from drivelint.result import files
-from drivelint.result.files import OutputError, parquet_bytes, publish
+from drivelint.result import publishing
+from drivelint.result.files import parquet_bytes
 from drivelint.result.load import load_result
-from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.publishing import OutputError, publish
+from drivelint.result.schemas import OUTPUT_VERSION
 from tests.report.synthetic import finding, result, table, verdict
 
 NAMES = {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "summary.json", "junit.xml", "files.json"}
@@ -80,7 +82,7 @@ def test_a_full_disk_leaves_the_earlier_results_whole(tmp_path: Path, monkeypatc
         if len(synced) == 2:
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(files, "_sync", disk_full_at_the_second)
+    monkeypatch.setattr(publishing, "_sync", disk_full_at_the_second)
     with pytest.raises(OutputError, match="No space left"):
         publish(tmp_path, {"one": b"new", "two": b"new"}, {})
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"one": b"old", "two": b"old"}

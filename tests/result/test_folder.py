@@ -11,8 +11,9 @@ import pytest
 from drivelint.errors import TraceError, UsageError
 from drivelint.report.outputs import working_folder, write
 from drivelint.result import folder
-from drivelint.result.files import OutputError
 from drivelint.result.load import load_result
+from drivelint.result.names import MANIFEST
+from drivelint.result.publishing import OutputError
 from tests.report.synthetic import drive, result, verdict
 
 
@@ -40,8 +41,8 @@ def test_what_an_earlier_run_wrote_and_this_one_does_not_goes(tmp_path: Path) ->
     checked(tmp_path, "b")
     assert not names(tmp_path) & {"annotated/a.mcap", "drivelint.duckdb", "report.md"}
     assert "annotated/b.mcap" in names(tmp_path)
-    written = json.loads((tmp_path / folder.MANIFEST).read_text(encoding="utf-8"))["written_by_drivelint"]
-    assert {*written, folder.MANIFEST} == names(tmp_path)
+    written = json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))["written_by_drivelint"]
+    assert {*written, MANIFEST} == names(tmp_path)
 
 
 def test_foreign_files_stay_whatever_their_folder_is(tmp_path: Path) -> None:
@@ -58,7 +59,7 @@ def test_foreign_files_stay_whatever_their_folder_is(tmp_path: Path) -> None:
 def test_a_foreign_file_of_such_a_name_is_not_overwritten_unasked(tmp_path: Path, name: str) -> None:
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("mine")
-    if name == folder.MANIFEST:
+    if name == MANIFEST:
         (tmp_path / "summary.json").write_text("mine")
     with pytest.raises(UsageError, match="--overwrite"):
         checked(tmp_path, "a")
@@ -73,7 +74,7 @@ def test_a_list_of_files_elsewhere_removes_nothing(tmp_path: Path) -> None:
     checked(out, "a")
     other.write_text("mine")
     said = {"written_by_drivelint": ["../other.mcap", "annotated/../../other.mcap", str(other), *names(out)]}
-    (out / folder.MANIFEST).write_text(json.dumps(said))
+    (out / MANIFEST).write_text(json.dumps(said))
     checked(out, "b")
     assert other.read_text() == "mine"
 

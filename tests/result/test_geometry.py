@@ -20,7 +20,8 @@ from drivelint.resources import folder as folder_of
 from drivelint.result.files import parquet_bytes
 from drivelint.result.geometry import SHAPES, with_geometry
 from drivelint.result.load import load_result
-from drivelint.result.schemas import TABLE_OF_FILE, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import empty_table
 from drivelint.sql import store
 from tests.shared_data import ROOT
 

@@ -18,8 +18,8 @@ from drivelint.engine.barrier import refused
 from drivelint.engine.batch import are_large
 from drivelint.errors import ChangedLogError, DriveLintError
 from drivelint.result import collect
-from drivelint.result.files import OutputError
 from drivelint.result.model import Result
+from drivelint.result.publishing import OutputError
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:

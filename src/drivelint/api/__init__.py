@@ -28,6 +28,7 @@ from drivelint.report import outputs
 from drivelint.result import request
 from drivelint.result.evidence import lanes_of_map
 from drivelint.result.load import load_result
+from drivelint.result.names import RUN_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -183,7 +184,7 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     Errors: `DriveLintError` for a folder without a whole result, or one of another version.
     """
     place = Path(folder)
-    asked = request.load(place) if (place / request.RUN_FILE).is_file() else None
+    asked = request.load(place) if (place / RUN_FILE).is_file() else None
     result = load_result(place)
     return CheckResult(replace(result, asked=asked), place, result.notes)
 

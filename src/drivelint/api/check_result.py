@@ -17,9 +17,9 @@ from drivelint.api.tables import Table, TableSet
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
-from drivelint.result.files import publish
 from drivelint.result.model import exit_status
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.publishing import publish
 
 if TYPE_CHECKING:
     from drivelint.api.options import AnyPath

@@ -13,7 +13,7 @@ from obstore import exceptions
 from obstore.store import from_url
 
 from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
-from drivelint.result.files import OutputError
+from drivelint.result.publishing import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -24,7 +24,7 @@ from drivelint.audit.store import open_store
 from drivelint.audit.worker import TABLES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
-from drivelint.result.files import OutputError
+from drivelint.result.publishing import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

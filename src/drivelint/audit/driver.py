@@ -11,7 +11,8 @@ from drivelint.audit.model import AuditDrive, Receipt, Task
 from drivelint.audit.worker import TABLES, rows_sha256, with_key, write_batch
 from drivelint.drive.trace import DriveInput
 from drivelint.result import collect
-from drivelint.result.schemas import TABLE_OF_FILE, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import empty_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

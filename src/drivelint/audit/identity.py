@@ -15,6 +15,7 @@ from drivelint import __version__, catalogue
 from drivelint.audit.bucket import as_url, download, look
 from drivelint.audit.model import digest
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
+from drivelint.receipts.inputs import file_sha256
 from drivelint.resources import folder
 from drivelint.result import collect
 
@@ -86,16 +87,11 @@ def _file_sha256(path: str) -> str:
     if (url := as_url(where)) is not None:
         found = look(url)
         with TemporaryDirectory(prefix="drivelint-map-") as home:
-            return f"unread {url}" if found is None else _sha256(download(found, Path(home)))
+            return f"unread {url}" if found is None else file_sha256(download(found, Path(home)))
     try:
         if where.is_dir():
             files = sorted(file for file in where.rglob("*") if file.is_file())
-            return digest([[file.relative_to(where).as_posix(), _sha256(file)] for file in files])
-        return _sha256(where)
+            return digest([[file.relative_to(where).as_posix(), file_sha256(file)] for file in files])
+        return file_sha256(where)
     except OSError:
         return f"unread {path}"
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

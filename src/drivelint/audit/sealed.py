@@ -20,7 +20,8 @@ from drivelint.audit.compact import chunk_name, chunks, loose_receipts
 from drivelint.audit.driver import empty_rows
 from drivelint.audit.worker import TABLES, batch_name, rows_sha256
 from drivelint.errors import UsageError
-from drivelint.result.folder import MANIFEST, hashes_in, manifest
+from drivelint.result.folder import hashes_in, manifest
+from drivelint.result.names import MANIFEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

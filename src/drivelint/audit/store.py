@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from drivelint.audit.bucket import Bucket, is_url
 from drivelint.errors import UsageError
-from drivelint.result.files import OutputError
+from drivelint.result.publishing import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

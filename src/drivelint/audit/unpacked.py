@@ -23,7 +23,7 @@ from drivelint.audit.driver import empty_rows
 from drivelint.audit.worker import TABLES, batch_name
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
-from drivelint.result.folder import MANIFEST
+from drivelint.result.names import MANIFEST
 
 if TYPE_CHECKING:
     from pathlib import Path

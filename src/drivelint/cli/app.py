@@ -9,20 +9,17 @@ import os
 import signal
 import sys
 from contextlib import redirect_stdout
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
 
 from drivelint import __version__, temporary
-from drivelint.cli import audits, completion, fleets, options, packs, results, rules, streams, values, watching
+from drivelint.cli import audits, checking, fleets, options, packs, results, rules, streams, values, watching
 from drivelint.cli import docs as docs_
-from drivelint.cli.console import print_rich, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
-from drivelint.cli.console import progress as bar
+from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
-from drivelint.cli.restart import Restart
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 from drivelint.phrases import inert, inert_json, inert_line
 
@@ -59,161 +56,7 @@ def _root(
         raise typer.Exit(int(ExitCode.USAGE))
 
 
-@app.command(cls=GroupedCommand)
-@options.takes_drive_input
-def check(
-    *,
-    traces: Annotated[list[str], argument("TRACE", "Recorded drives: files, globs or folders.")],
-    drive: options.DriveInputValues,
-    out: Annotated[
-        Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
-    ] = None,
-    overwrite: options.Overwrite = False,
-    rules: Annotated[
-        Texts, options.rules("Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
-    ] = None,
-    ignore: options.Ignore = None,
-    profile: Annotated[
-        Texts,
-        options.profile(
-            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
-        ),
-    ] = None,
-    param: options.Param = None,
-    rules_dir: options.RulesDirs = None,
-    fail_on: options.FailOnOption = "critical",
-    strict: options.Strict = False,
-    require: Annotated[
-        Texts,
-        option(
-            "--require",
-            "SEL",
-            "These of the rules may not be unknown: exit code 4. Repeatable.",
-            autocompletion=completion.rule_ids,
-        ),
-    ] = None,
-    format_: options.FormatOption = "text",
-    margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
-    keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
-    annotate: Annotated[
-        bool,
-        option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
-    ] = True,
-    robustness: Annotated[
-        bool | None,
-        options.robustness(
-            "Count in how many copies of the drive with recording errors a critical or major finding stays. "
-            "Default: for the gravest finding of each rule, and for those that small errors may take away."
-        ),
-    ] = None,
-    confidence: Annotated[
-        float | None,
-        option(
-            "--confidence",
-            "SHARE",
-            "Only findings that stay in this share of their copies gate, such as 0.95. Default: all gate.",
-            min=0.0,
-            max=1.0,
-        ),
-    ] = None,
-    baseline: options.Baseline = None,
-    waivers: options.Waivers = None,
-    today: options.Today = None,
-    memory: options.MemorySize = None,
-    rule_timeout: Annotated[
-        float,
-        option(
-            "--rule-timeout",
-            "S",
-            "Seconds that a rule may take on a batch of drives: beyond them that rule is an error, the others go on.",
-            min=0.1,
-        ),
-    ] = 30.0,
-    evidence: options.Evidence = None,
-    sign: options.Sign = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
-    ] = False,
-    quiet: options.Quiet = False,
-) -> None:
-    """Judge recorded drives against the rules.
-
-    With --out: tables of verdicts and findings, report.html, and the logs with their verdicts in them.
-
-    SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
-    status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
-
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
-    that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
-    judged (with --strict or --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged
-    until then is kept.
-    """
-    from drivelint import run
-    from drivelint.engine.interruption import Interruption, NothingJudgedError
-    from drivelint.engine.memory import format_bytes, peak_bytes
-    from drivelint.gate import GateInputs, refuse_own_baseline
-    from drivelint.report import summary, terminal
-    from drivelint.report.outputs import working_folder, write
-    from drivelint.result.model import Result, exit_status
-    from drivelint.result.one_line import on_one_line
-    from drivelint.settings import SETTINGS_FILE
-
-    robustness = values.robustness_for(confidence, robustness)
-    pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
-    day = values.parse_today(today)
-    refuse_own_baseline(baseline, out)
-    settings = run.CheckOptions(
-        traces=tuple(traces),
-        **drive,
-        rules=tuple(rules or ()),
-        ignore=tuple(ignore or ()),
-        profiles=tuple(profile or ()),
-        params=tuple(param or ()),
-        rules_dirs=tuple(rules_dir or ()),
-        fail_on=fail_on,
-        strict=strict,
-        require=tuple(require or ()),
-        margins=margins,
-        keep_db=keep_db,
-        annotate=annotate,
-        robustness=robustness,
-        memory=values.parse_memory(memory),
-        rule_timeout=rule_timeout,
-    )
-    interruption = Interruption()
-    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
-        settings = replace(settings, out=work)
-        gate_inputs = GateInputs.from_files(baseline, waivers, Path(SETTINGS_FILE), day, out, confidence=confidence)
-        deaf = Restart.if_possible(progress, work)
-
-        def kept(result: Result) -> Result:
-            if gate_inputs is not None:
-                result = gate_inputs.apply_to(result)
-            if out is not None:
-                write(result, out, work, overwrite=overwrite)
-            return result
-
-        try:
-            result = kept(
-                run_interruptible(lambda: run.check(settings, progress, interruption, deaf, kept), interruption.request)
-            )
-        except KeyboardInterrupt as stop:
-            say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
-            raise
-        if memory is not None and (most := peak_bytes()) is not None:
-            progress.note(
-                f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
-            )
-    if format_ == "json":
-        typer.echo(inert_json(summary.render(result).decode()), nl=False)
-    else:
-        told = on_one_line(result)
-        print_rich(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))
-    if result.interrupted:
-        say_kept(result.drives["status"].to_pylist(), out)
-    elif pack is not None:
-        packs.write_and_tell(pack, err=True)
-    raise typer.Exit(int(exit_status(result).code))
+app.command(cls=GroupedCommand)(checking.check)
 
 
 @app.command()

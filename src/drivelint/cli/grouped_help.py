@@ -13,7 +13,20 @@ _GROUPS: Final = {
     "Input": tuple(options.DRIVE_OPTIONS),
     "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
     "Gate": ("fail_on", "strict", "require", "confidence", "baseline", "waivers", "today"),
-    "Output": ("out", "overwrite", "format_", "margins", "keep_db", "annotate", "evidence", "sign", "verbose", "quiet"),
+    "Output": (
+        "out",
+        "overwrite",
+        "format_",
+        "margins",
+        "keep_db",
+        "annotate",
+        "evidence",
+        "sign",
+        "verbose",
+        "jobs",
+        "cache",
+        "quiet",
+    ),
 }
 """Heading -> parameters, in the order of the command; an option that is in none comes last."""
 

@@ -14,6 +14,8 @@ from threading import Event, Lock, Thread
 from time import monotonic
 from typing import TYPE_CHECKING, Final, Literal, NoReturn, Protocol
 
+from drivelint.receipts.events import machine_bound
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
@@ -135,6 +137,7 @@ class RuleLimits:
                 if held.over.is_set():
                     return
                 held.excess = excess
+                machine_bound(f"rule {rule_id} went beyond its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
                     self._deaf.found(self._task, rule_id, excess)

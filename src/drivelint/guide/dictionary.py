@@ -16,7 +16,7 @@ from drivelint.reasons.reason_text import shared_texts
 from drivelint.report import catalogue_page
 from drivelint.resources import folder
 from drivelint.result import geometry
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
 from drivelint.guide import dictionary, html
-from drivelint.result.files import publish
+from drivelint.result.publishing import publish
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:

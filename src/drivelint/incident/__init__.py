@@ -26,8 +26,8 @@ from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import visible
 from drivelint.result import request as run_request
 from drivelint.result.compiled_templates import CompiledTemplates
-from drivelint.result.files import publish
 from drivelint.result.load import load_result
+from drivelint.result.publishing import publish
 from drivelint.result.text import measure, number
 
 if TYPE_CHECKING:

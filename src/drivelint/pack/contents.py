@@ -13,9 +13,8 @@ from drivelint import __version__
 from drivelint.drive.trace import DriveInput
 from drivelint.pack.bag import sha256_of
 from drivelint.pack.inputs import judged
-from drivelint.report.outputs import RESULT_FILES
-from drivelint.result import folder as folder_of_result
 from drivelint.result import request as run_request
+from drivelint.result.names import MANIFEST, RESULT_FILES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,7 +31,7 @@ FORM: Final = 1
 """What `evidence` says in `evidence.json`: raised when a key changes its meaning or goes."""
 OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or "/" in name)) - {
     "drivelint.duckdb",
-    folder_of_result.MANIFEST,
+    MANIFEST,
 }
 """Of the files of a result those that a pack has. The bag has manifests of its own."""
 SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")

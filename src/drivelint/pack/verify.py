@@ -21,7 +21,7 @@ from drivelint.pack.write import PUBLIC_KEY
 from drivelint.phrases import plural
 from drivelint.result import request as run_request
 from drivelint.result.files import parquet_bytes
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey

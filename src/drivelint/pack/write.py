@@ -20,8 +20,8 @@ from drivelint.pack.request import MOST_FINDINGS, Content
 from drivelint.pack.statement import ENVELOPE, FILE, statement
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import request as run_request
-from drivelint.result.files import OutputError
 from drivelint.result.load import load_result
+from drivelint.result.publishing import OutputError
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule

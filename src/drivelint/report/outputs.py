@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.report import html, junit, markdown, sarif, summary, xqar
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
-from drivelint.result.schemas import TABLE_OF_FILE
+from drivelint.result.names import GATE_FILE, MARK, REPORT_FILES, RESULT_FILES, RUN_FILE, TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -20,24 +20,13 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
-    "html": ("report.html", html.render),
-    "junit": ("junit.xml", junit.render),
-    "sarif": ("report.sarif", sarif.render),
-    "xqar": ("report.xqar", xqar.render),
-    "markdown": ("report.md", markdown.render),
+    "html": (REPORT_FILES["html"], html.render),
+    "junit": (REPORT_FILES["junit"], junit.render),
+    "sarif": (REPORT_FILES["sarif"], sarif.render),
+    "xqar": (REPORT_FILES["xqar"], xqar.render),
+    "markdown": (REPORT_FILES["markdown"], markdown.render),
 }
 """Name -> file in the result folder, and what renders it: the same result, the same bytes."""
-
-
-MARK: Final = "summary.json"
-"""The file without which a folder is no result: it is written last."""
-RESULT_FILES: Final = (
-    *(f"{name}.parquet" for name in TABLE_OF_FILE),
-    *(name for name, _ in REPORT_FORMATS.values()),
-    *(gate.FILE, request.RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, folder.MANIFEST),
-    *("annotated/*.mcap", "annotated/viewer-layout.json"),
-)
-"""Globs of the names that the files of a result may have."""
 
 
 @contextmanager
@@ -51,30 +40,32 @@ def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Pat
     if out is None:
         yield None
     else:
-        reports = [name for name, _ in REPORT_FORMATS.values()]
+        reports = list(REPORT_FILES.values())
         with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
             yield work
 
 
-def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> None:
+def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> tuple[str, ...]:
     """Write every result file of `check` into the folder `out`, in place of an earlier result.
 
     `work`: what `working_folder` gave, whose files are taken over. `summary.json` appears last, when the others are there.
-    Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
+    Same tables, same bytes. Return the names of the files that grew during the run.
+    Errors: `OutputError` when the folder cannot be written.
     """
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     # what lies beside the page is what this run made, not what an earlier one left
-    contents["report.html"] = html.render(replace(result, folder=work or out))
-    contents["junit.xml"] = junit.render(result)
+    contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
+    contents[REPORT_FILES["junit"]] = junit.render(result)
     if result.gate is not None:
-        contents[gate.FILE] = gate.render(result.gate)
+        contents[GATE_FILE] = gate.render(result.gate)
     if result.asked is not None:
-        contents[request.RUN_FILE] = request.render(result.asked, out)
+        contents[RUN_FILE] = request.render(result.asked, out)
     contents[MARK] = summary.render(result)
     moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
     if work is not None:
         moved |= _grown(work, result)
     folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+    return tuple(sorted(moved))
 
 
 def _grown(work: Path, result: Result) -> dict[str, Path]:

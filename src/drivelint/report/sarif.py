@@ -18,6 +18,7 @@ from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt
 from drivelint.result.model import exit_status, gating_findings
+from drivelint.result.names import RUN_FILE
 from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, with_count
 
 if TYPE_CHECKING:
@@ -188,7 +189,7 @@ def _logs_as_named(result: Result) -> Mapping[str, str]:
     """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
     if result.asked is not None:
         return result.asked.named
-    if result.folder is None or not (result.folder / request.RUN_FILE).is_file():
+    if result.folder is None or not (result.folder / RUN_FILE).is_file():
         return {}
     return request.load(result.folder).named
 

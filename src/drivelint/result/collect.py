@@ -19,23 +19,24 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-_KEYS: Final = (
+ORDER_OF_VERDICTS: Final = (
     "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, ref_id NULLS FIRST, "
     "t_start_ns NULLS FIRST"
 )
+ORDER_OF_FINDINGS: Final = f"{ORDER_OF_VERDICTS}, finding_id"
 
 _ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # no list: every drive
 
 
 def verdicts(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return the table `verdict`, of these drives or all, totally ordered."""
-    rows = con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {_KEYS}", {"only": only})
+    rows = con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {ORDER_OF_VERDICTS}", {"only": only})
     return conform(rows.to_arrow_table(), "verdict")
 
 
 def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
     """Return the table `finding`, of these drives or all, totally ordered."""
-    rows = con.execute(f"SELECT * FROM finding WHERE {_ONLY} ORDER BY {_KEYS}, finding_id", {"only": only})
+    rows = con.execute(f"SELECT * FROM finding WHERE {_ONLY} ORDER BY {ORDER_OF_FINDINGS}", {"only": only})
     return conform(rows.to_arrow_table(), "finding")
 
 

@@ -12,7 +12,8 @@ import pyarrow as pa
 import shapely
 
 from drivelint.reasons.reason_table import make_reason_table
-from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import conform, empty_table
 from drivelint.sql import store
 from drivelint.sql.statements import statement
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapTables
 
-_KEYS: Final = {
+ORDER: Final = {
     "scenes": "drive_id, ego_id, t_ns",
     "lanes": "environment_id, lanelet_id",
     "spaces": "drive_id, ego_id, t_ns, actor_id <> ego_id, actor_id",
@@ -64,7 +65,7 @@ def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
     """Return the tables of evidence under the names that `Result` has for them, totally ordered."""
     return {
         name: con.execute(f"SELECT * FROM {TABLE_OF_FILE[name]} ORDER BY {keys}").to_arrow_table()
-        for name, keys in _KEYS.items()
+        for name, keys in ORDER.items()
     }
 
 

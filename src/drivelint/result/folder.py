@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import listed
-from drivelint.result.files import OutputError, prepare_folder, publish
+from drivelint.result.names import MANIFEST
+from drivelint.result.publishing import OutputError, prepare_folder, publish
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-MANIFEST: Final = "files.json"
 _KEY: Final = "written_by_drivelint"
 _HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"
@@ -41,7 +41,7 @@ def working_folder(
     """
     prepare_folder(out)
     present = _present(out, patterns)
-    foreign = sorted(present - _written(out) - {MANIFEST})
+    foreign = sorted(present - written(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
             f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
@@ -156,14 +156,14 @@ def replace(
     publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**gone, **moved}, mark)
     _remove_empty(out, gone)
     earlier = out / EARLIER
-    _remove(earlier, [*sorted(_ours(earlier, patterns, overwrite=False)), *([MANIFEST] if _written(earlier) else [])])
+    _remove(earlier, [*sorted(_ours(earlier, patterns, overwrite=False)), *([MANIFEST] if written(earlier) else [])])
     with suppress(OSError):  # somebody's file is there, or there is none
         earlier.rmdir()
 
 
 def add(out: Path, name: str, content: bytes) -> None:
     """Write one more file into the folder of a result. Errors: `OutputError`."""
-    publish(out, {MANIFEST: manifest({*_written(out), name}, _hashes(out)), name: content}, {})
+    publish(out, {MANIFEST: manifest({*written(out), name}, _hashes(out)), name: content}, {})
 
 
 def changed(out: Path) -> list[str]:
@@ -199,10 +199,11 @@ def _present(out: Path, patterns: Sequence[str]) -> set[str]:
 def _ours(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
     """Return the names of an earlier result's files, without their list: those that are listed, or all that may be overwritten."""
     present = _present(out, patterns) - {MANIFEST}
-    return present if overwrite else present & _written(out)
+    return present if overwrite else present & written(out)
 
 
-def _written(out: Path) -> set[str]:
+def written(out: Path) -> set[str]:
+    """Return the names of the files that drivelint wrote into a folder, without their list; none where nothing says so."""
     try:
         return set(map(str, json.loads((out / MANIFEST).read_text(encoding="utf-8"))[_KEY]))
     except (OSError, ValueError, KeyError, TypeError):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import msgspec
 
 from drivelint.errors import UsageError
+from drivelint.result.names import GATE_FILE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +23,6 @@ DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "un
 fails there at another step or place), unknown (NEW cannot tell), lost (NEW did not look there). None of the last three is fixed."""
 NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not looked at", "elsewhere": "still failing elsewhere"}
 """Status of a finding that is gone but not fixed -> words."""
-FILE: Final = "gate.json"
 GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or goes."""
 
@@ -205,7 +205,7 @@ def render(gate: Gate) -> bytes:
 
 def load(folder: Path) -> Gate | None:
     """Return what a result folder says of its gate; None: there was none. Errors: `UsageError` for a file of another kind."""
-    path = folder / FILE
+    path = folder / GATE_FILE
     try:
         found = msgspec.json.decode(path.read_bytes(), type=_File)
     except FileNotFoundError:

@@ -13,7 +13,8 @@ from drivelint.result import gate as gates
 from drivelint.result.folder import changed, left_by_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
-from drivelint.result.schemas import OUTPUT_VERSION, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,7 +78,8 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        return without_geometry(pq.read_table(path, page_checksum_verification=True))
+        with path.open("rb") as file:  # opened by Python, whose files a receipt knows
+            return without_geometry(pq.read_table(file, page_checksum_verification=True))
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
 

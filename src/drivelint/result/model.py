@@ -16,7 +16,8 @@ from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED
 from drivelint.result.counts import SEVERITIES, unrecorded
 from drivelint.result.gate import NOT_FIXED
-from drivelint.result.schemas import TABLE_OF_FILE, conform, empty_table
+from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.schemas import conform, empty_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

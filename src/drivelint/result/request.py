@@ -15,8 +15,8 @@ import msgspec
 
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
+from drivelint.result.names import RUN_FILE
 
-RUN_FILE: Final = "run.json"
 _PATHS: Final = ("map", "map_dir")
 
 

@@ -1,4 +1,4 @@
-"""The output tables: the files in which they stand, and their columns, which are those of `schemas/`."""
+"""The columns of the output tables, which are those of `schemas/`."""
 
 from __future__ import annotations
 
@@ -12,21 +12,6 @@ if TYPE_CHECKING:
 
 OUTPUT_VERSION: Final = 1
 """Version of the output files: raised when a column or a key changes its meaning or goes."""
-
-TABLE_OF_FILE: Final = {
-    "verdicts": "verdict",
-    "findings": "finding",
-    "drives": "drive",
-    "rules": "rule",
-    "scenes": "scene",
-    "lanes": "lane_shape",
-    "spaces": "danger_space",
-    "courses": "course",
-    "tracks": "track",
-    "overtakes": "overtake_record",
-    "opportunities": "opportunity_record",
-}
-"""Stem of the Parquet file -> table of the schema."""
 
 
 def conform(rows: pa.Table, table: str) -> pa.Table:

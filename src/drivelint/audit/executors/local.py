@@ -35,7 +35,7 @@ class LocalPool:
     """
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
-        self._workers = workers or _cores()
+        self._workers = workers or cores()
         self._memory = memory
         self._timeout_s = timeout_s
         self._pool = self._started()
@@ -122,7 +122,8 @@ def begin_worker(memory: int | None, parent: int) -> None:
         return
 
 
-def _cores() -> int:
+def cores() -> int:
+    """Return how many cores this process may use."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not Linux

@@ -13,6 +13,7 @@ from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
 from drivelint.formats.ros2.types import message_kind
+from drivelint.receipts.events import looked_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -60,7 +61,9 @@ def mcap_files(path: Path) -> list[Path]:
     found = []
     for name in names:
         # older recorders list a file by its name only, or below the folder's own name
-        file = next((each for each in (path / name, path / name.rsplit("/", 1)[-1]) if each.is_file()), None)
+        file = next(
+            (each for each in (path / name, path / name.rsplit("/", 1)[-1]) if looked_for(each).is_file()), None
+        )
         if file is None:
             raise TraceError(f"{path}: {name}, a part of this bag, is missing: copy the whole folder")
         if not file.stat().st_size:

@@ -1,0 +1,244 @@
+"""`drivelint check`: judges recorded drives, or shows what an earlier run of the same inputs came to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from drivelint.cli import completion, options, packs, values
+from drivelint.cli.console import progress as bar
+from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
+from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.restart import Restart
+from drivelint.phrases import inert_json
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.engine.interruption import Interruption
+    from drivelint.report.progress import Progress
+    from drivelint.result.model import Result
+    from drivelint.run import CheckOptions
+
+
+@options.takes_drive_input
+def check(
+    *,
+    traces: Annotated[list[str], argument("TRACE", "Recorded drives: files, globs or folders.")],
+    drive: options.DriveInputValues,
+    out: Annotated[
+        Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
+    ] = None,
+    overwrite: options.Overwrite = False,
+    rules: Annotated[
+        Texts, options.rules("Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
+    ] = None,
+    ignore: options.Ignore = None,
+    profile: Annotated[
+        Texts,
+        options.profile(
+            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
+        ),
+    ] = None,
+    param: options.Param = None,
+    rules_dir: options.RulesDirs = None,
+    fail_on: options.FailOnOption = "critical",
+    strict: options.Strict = False,
+    require: Annotated[
+        Texts,
+        option(
+            "--require",
+            "SEL",
+            "These of the rules may not be unknown: exit code 4. Repeatable.",
+            autocompletion=completion.rule_ids,
+        ),
+    ] = None,
+    format_: options.FormatOption = "text",
+    margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
+    keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
+    annotate: Annotated[
+        bool,
+        option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
+    ] = True,
+    robustness: Annotated[
+        bool | None,
+        options.robustness(
+            "Count in how many copies of the drive with recording errors a critical or major finding stays. "
+            "Default: for the gravest finding of each rule, and for those that small errors may take away."
+        ),
+    ] = None,
+    confidence: Annotated[
+        float | None,
+        option(
+            "--confidence",
+            "SHARE",
+            "Only findings that stay in this share of their copies gate, such as 0.95. Default: all gate.",
+            min=0.0,
+            max=1.0,
+        ),
+    ] = None,
+    baseline: options.Baseline = None,
+    waivers: options.Waivers = None,
+    today: options.Today = None,
+    memory: options.MemorySize = None,
+    rule_timeout: Annotated[
+        float,
+        option(
+            "--rule-timeout",
+            "S",
+            "Seconds that a rule may take on a batch of drives: beyond them that rule is an error, the others go on.",
+            min=0.1,
+        ),
+    ] = 30.0,
+    evidence: options.Evidence = None,
+    sign: options.Sign = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
+    ] = False,
+    jobs: Annotated[
+        int,
+        typer.Option(
+            "--jobs",
+            "-j",
+            metavar="N",
+            min=1,
+            help="Processes that judge, each a part of the logs. The result is the same.",
+        ),
+    ] = 1,
+    cache: Annotated[
+        bool,
+        option(
+            "--cache/--no-cache",
+            None,
+            "Where logs, map, rules and options are those of an earlier run, write and print what it did, without judging. "
+            "--no-cache judges, and keeps nothing.",
+            envvar="DRIVELINT_CHECK_CACHE",
+        ),
+    ] = True,
+    quiet: options.Quiet = False,
+) -> None:
+    """Judge recorded drives against the rules.
+
+    With --out: tables of verdicts and findings, report.html, and the logs with their verdicts in them.
+
+    SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
+    status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
+
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
+    that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
+    judged (with --strict or --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged
+    until then is kept.
+    """
+    asked = dict(locals())
+
+    from drivelint.cli.receipts import CheckReceipts
+
+    robustness = values.robustness_for(confidence, robustness)
+    day = values.parse_today(today)
+    receipts = CheckReceipts(asked, day)
+    with tells_of_earlier(out):
+        earlier = receipts.earlier()
+    if earlier is not None:
+        typer.echo(earlier.stdout, nl=False)
+        raise typer.Exit(earlier.exit_code)
+
+    from drivelint import run
+    from drivelint.engine.interruption import Interruption, NothingJudgedError
+    from drivelint.engine.memory import format_bytes, peak_bytes
+    from drivelint.gate import GateInputs, refuse_own_baseline
+    from drivelint.report.outputs import working_folder, write
+    from drivelint.result.model import exit_status
+    from drivelint.settings import SETTINGS_FILE
+
+    pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
+    refuse_own_baseline(baseline, out)
+    settings = run.CheckOptions(
+        traces=tuple(traces),
+        **drive,
+        rules=tuple(rules or ()),
+        ignore=tuple(ignore or ()),
+        profiles=tuple(profile or ()),
+        params=tuple(param or ()),
+        rules_dirs=tuple(rules_dir or ()),
+        fail_on=fail_on,
+        strict=strict,
+        require=tuple(require or ()),
+        margins=margins,
+        keep_db=keep_db,
+        annotate=annotate,
+        robustness=robustness,
+        memory=values.parse_memory(memory),
+        rule_timeout=rule_timeout,
+    )
+    interruption = Interruption()
+    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+        settings = replace(settings, out=work)
+        deaf = Restart.if_possible(progress, work)
+        grown: tuple[str, ...] = ()
+
+        def kept(result: Result) -> Result:
+            nonlocal grown
+            if gate_inputs is not None:
+                result = gate_inputs.apply_to(result)
+            if out is not None:
+                grown = write(result, out, work, overwrite=overwrite)
+            return result
+
+        try:
+            with receipts.recording():
+                gate_inputs = GateInputs.from_files(
+                    baseline, waivers, Path(SETTINGS_FILE), day, out, confidence=confidence
+                )
+                judged = run_interruptible(
+                    lambda: _judge(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=kept),
+                    interruption.request,
+                )
+        except KeyboardInterrupt as stop:
+            say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
+            raise
+        result = kept(judged)
+        stdout, code = _stdout(result, format_, out, verbose=verbose), int(exit_status(result).code)
+        receipts.keep(result, stdout, code, moved=grown, gate=gate_inputs, interruption=interruption)
+        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # of this process
+            progress.note(
+                f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
+            )
+    typer.echo(stdout, nl=False)
+    if result.interrupted:
+        say_kept(result.drives["status"].to_pylist(), out)
+    elif pack is not None:
+        packs.write_and_tell(pack, err=True)
+    raise typer.Exit(code)
+
+
+def _judge(
+    settings: CheckOptions,
+    jobs: int,
+    progress: Progress,
+    *,
+    interruption: Interruption,
+    deaf: Restart | None,
+    keep: Callable[[Result], Result],
+) -> Result:
+    """Judge the logs in this process, or by several."""
+    if jobs > 1:
+        from drivelint import parallel
+
+        return parallel.check(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=keep)
+    from drivelint import run
+
+    return run.check(settings, progress, interruption, deaf, keep)
+
+
+def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
+    """Return what is printed of a result."""
+    from drivelint.report import summary, terminal
+    from drivelint.result.one_line import on_one_line
+
+    if format_ == "json":
+        return inert_json(summary.render(result).decode())
+    told = on_one_line(result)
+    return rich_text(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))

@@ -1,0 +1,148 @@
+"""The receipts of `check`: shows again what an earlier run of the same inputs came to, and keeps what this one does.
+
+A run is kept if it can be told by its inputs alone, and wrote nothing but stdout and the files of a result: not one that keeps its
+database or packs evidence, that was interrupted, of which a drive was not judged or a rule erred, or whose logs are its own outputs.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager, suppress
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.cli.restart import KNOWN
+from drivelint.memo import cache_folder
+from drivelint.receipts import store
+from drivelint.receipts.program import question_sha256
+from drivelint.receipts.recorder import Recorder, recording
+from drivelint.report.progress import NotePrinter
+from drivelint.result import folder
+from drivelint.result.names import MARK, REPORT_FILES, RESULT_FILES
+from drivelint.settings import SETTINGS_FILE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from datetime import date
+    from pathlib import Path
+
+    from drivelint.engine.interruption import Interruption
+    from drivelint.gate import GateInputs
+    from drivelint.result.model import Result
+
+_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
+"""Options on which nothing depends that is kept; the day counts where there are waivers."""
+_UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
+"""What is read in the working folder without a name; the second by the database's library of projections, if it is there."""
+_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER, f"{folder.EARLIER}/annotated"})
+_AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
+
+
+class Outputs:
+    """The files that `check` writes into a folder; None: it writes none."""
+
+    def __init__(self, out: Path | None) -> None:
+        self._root = None if out is None else os.path.realpath(out)
+
+    def __call__(self, path: str) -> bool:
+        """Whether a path without links is that of an output, or of a folder of outputs only below that of the results."""
+        if self._root is None or not path.startswith(self._root + os.sep):
+            return False
+        name = path[len(self._root) + 1 :].replace(os.sep, "/")
+        if name in _SUBFOLDERS:
+            with suppress(OSError):
+                return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
+        name = name.removeprefix(f"{folder.EARLIER}/")
+        return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILES)
+
+
+class CheckReceipts:
+    """The receipt of an earlier run of one check, and the one that this run leaves. `asked`: the options of `check`."""
+
+    def __init__(self, asked: Mapping[str, Any], day: date) -> None:
+        self._out: Path | None = asked["out"]
+        self._overwrite: bool = asked["overwrite"]
+        self._quiet: bool = asked["quiet"]
+        self._day = day.isoformat()
+        drive = asked["drive"]
+        paths = [asked["baseline"], asked["waivers"], *(drive[name] for name in ("map", "map_dir", "mapping"))]
+        self._named = [*asked["traces"], *(asked["rules_dir"] or ()), *(path for path in paths if path is not None)]
+        self._is_output = Outputs(self._out)
+        self._recorder: Recorder | None = None
+        self._key: str | None = None
+        elsewhere = asked["keep_db"] or asked["evidence"] is not None or KNOWN in os.environ
+        if asked["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
+            counted = {name: value for name, value in asked.items() if name not in _WITHOUT_EFFECT}
+            places = {name: os.path.realpath(asked[name]) for name in ("out", "baseline") if asked[name] is not None}
+            self._key = question_sha256({**counted, "places": places})
+
+    def earlier(self) -> store.Receipt | None:
+        """Write what an earlier run of the same inputs wrote, and return its receipt; None: there is none.
+
+        Errors: as those of any run whose folder cannot be written.
+        """
+        if self._key is None:
+            return None
+        with store.opened(self._key) as found:
+            if found is None or found.receipt.day not in {None, self._day}:
+                return None
+            if not found.receipt.inputs.are_unchanged(self._is_output):
+                return None
+            if self._out is not None:
+                self._write(found, self._out)
+            if not self._quiet:
+                notes = NotePrinter()
+                for text in (*found.receipt.notes, _AGAIN):
+                    notes.note(text)
+            return found.receipt
+
+    def _write(self, found: store.OpenedReceipt, out: Path) -> None:
+        overwrite, reports = self._overwrite, list(REPORT_FILES.values())
+        with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
+            contents, moved = found.unpack(work)
+            folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+
+    @contextmanager
+    def recording(self) -> Iterator[None]:
+        """Record what is read inside the block, if the run may be kept."""
+        if self._key is None:
+            yield
+            return
+        with recording(self._is_output, [*_UNNAMED, *self._named]) as self._recorder:
+            yield
+
+    def keep(
+        self,
+        result: Result,
+        stdout: str,
+        exit_code: int,
+        *,
+        moved: tuple[str, ...],
+        gate: GateInputs | None,
+        interruption: Interruption,
+    ) -> None:
+        """Keep a run that has ended. `moved`: those of its files that grew during the run."""
+        if self._key is None or self._recorder is None or interruption.requested or not _is_of_inputs(result):
+            return
+        if result.asked is None or self._has_outputs(result.asked.traces.values()):
+            return
+        inputs = self._recorder.inputs()
+        if inputs is None:
+            return
+        day = self._day if gate is not None and gate.waivers else None
+        with suppress(OSError):
+            names = (
+                [] if self._out is None else sorted(folder.written(self._out), key=lambda name: (name == MARK, name))
+            )
+            sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
+            receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, moved)
+            store.keep(self._key, receipt, self._out)
+
+    def _has_outputs(self, paths: Iterator[str] | Any) -> bool:
+        return any(self._is_output(os.path.realpath(path)) for path in paths)
+
+
+def _is_of_inputs(result: Result) -> bool:
+    """Whether a result is whole, and nothing in it may be of the machine: a drive or a rule that failed may not fail again."""
+    judged = set(result.drives["status"].to_pylist()) <= {"judged"}
+    return judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()

@@ -1,0 +1,368 @@
+"""Checks logs by several processes, each of which judges a part of them as a run of its own.
+
+The parts are cut from the logs in their order, and have about as many bytes each. Where they are cut does not show in the result.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections import defaultdict
+from contextlib import nullcontext, suppress
+from dataclasses import replace
+from multiprocessing.connection import wait
+from pathlib import Path
+from threading import Lock, Thread
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, NoReturn
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint import run, temporary
+from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
+from drivelint.engine.interruption import Interruption
+from drivelint.engine.memory import LEAST_MEMORY
+from drivelint.errors import DriveLintError, ExitCode, InternalError
+from drivelint.formats.files import file_states
+from drivelint.phrases import plural
+from drivelint.receipts import recorder
+from drivelint.report.progress import Progress
+from drivelint.result.names import TABLE_OF_FILE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from multiprocessing.connection import Connection
+
+    from drivelint.evaluate.limits import DeafRules, Excess
+    from drivelint.receipts.inputs import Inputs, IsOutput
+    from drivelint.result.model import Result
+    from drivelint.run import CheckOptions, JudgedLogs, LogNote
+
+_LOOK_S: Final = 0.2
+_PATIENCE_S: Final = 5.0
+"""How long a process may take to end by itself."""
+
+
+class WorkerLostError(DriveLintError):
+    """A process that judged a part of the logs has died."""
+
+    exit_code = ExitCode.TEMPFAIL
+
+
+class _Part(NamedTuple):
+    """The logs that one process judges. `n_logs`: of the whole run; `is_output`: for the record of its inputs; None: none is kept.
+
+    `deaf`: task -> rule -> limit, of rules that did not end in an earlier process.
+    """
+
+    settings: CheckOptions
+    paths: Sequence[Path]
+    n_logs: int
+    is_output: IsOutput | None
+    deaf: dict[str, dict[str, Excess]]
+
+
+class _Ended(NamedTuple):
+    """What a part came to, and what was read for it."""
+
+    judged: JudgedLogs
+    inputs: Inputs | None
+
+
+class _Deaf(NamedTuple):
+    """A rule that does not end."""
+
+    task: str
+    rule_id: str
+    excess: Excess
+
+
+class _Told(NamedTuple):
+    """A call of a method of `Progress` in a process, and its arguments."""
+
+    method: str
+    arguments: tuple[Any, ...]
+
+
+def check(
+    settings: CheckOptions,
+    jobs: int,
+    progress: Progress,
+    *,
+    interruption: Interruption | None = None,
+    deaf: DeafRules | None = None,
+    keep: Callable[[Result], object] | None = None,
+) -> Result:
+    """Judge every drive as `run.check` does, by at most `jobs` processes at a time; one writes margins, or keeps a database.
+
+    Errors: as those of `run.check`; `WorkerLostError`.
+    """
+    if jobs > 1 and not settings.margins and not settings.keep_db:
+        run.RunRules.of(settings)  # what cannot be judged by is refused once, here
+        paths, _ = run.named_logs(settings)
+        if len(parts := _cut(paths, jobs)) > 1:
+            joined = _judged_by_workers(settings, paths, parts, progress, interruption or Interruption())
+            return run.conclude(paths, joined, keep)
+    return run.check(settings, progress, interruption, deaf, keep)
+
+
+def _judged_by_workers(
+    settings: CheckOptions,
+    paths: Sequence[Path],
+    parts: Sequence[Sequence[Path]],
+    progress: Progress,
+    interruption: Interruption,
+) -> list[JudgedLogs]:
+    """Judge each part by a process of its own."""
+    memory = None if settings.memory is None else max(LEAST_MEMORY, settings.memory // len(parts))
+    own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
+    recording = recorder.active()
+    is_output = None if recording is None else recording.is_output
+    progress.stage(run.CHECKING, len(paths))
+    listener = _Listener(progress, len(paths))
+    workers = [_Worker(_Part(own, part, len(paths), is_output, {}), listener) for part in parts]
+    try:
+        for worker in workers:
+            worker.start()
+        while running := {worker.pipe: worker for worker in workers if worker.ended is None}:
+            if interruption.requested:
+                for worker in running.values():
+                    worker.interrupt()
+            for pipe in wait(list(running), timeout=_LOOK_S):
+                running[pipe].hear()  # type: ignore[index]
+    finally:
+        for worker in workers:
+            worker.stop()
+    ended = [worker.ended for worker in workers if worker.ended is not None]
+    if recording is not None:
+        for each in ended:
+            recording.add(each.inputs)
+    return _without_copies([each.judged for each in ended])
+
+
+def _cut(paths: Sequence[Path], most: int) -> list[list[Path]]:
+    """Cut logs into at most so many parts of about as many bytes; a log that cannot be looked at counts as an empty one."""
+    sizes = []
+    for path in paths:
+        with suppress(DriveLintError):
+            sizes.append(sum(size for _, size, _ in file_states(path)))
+            continue
+        sizes.append(0)
+    whole, done = sum(sizes) + len(paths), 0
+    parts: dict[int, list[Path]] = defaultdict(list)
+    for path, size in zip(paths, sizes, strict=True):
+        middle = done + (size + 1) / 2
+        parts[min(most - 1, int(most * middle / whole))].append(path)
+        done += size + 1
+    return [parts[no] for no in sorted(parts)]
+
+
+def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
+    """Return the parts without drives that an earlier one has judged: logs with the same name and content, which are judged once."""
+    judged: set[str] = set()
+    found: list[JudgedLogs] = []
+    for part in parts:
+        drives = part.result.drives
+        mine = set(drives.filter(pc.equal(drives["status"], "judged"))["drive_id"].to_pylist())
+        copies = sorted(mine & judged)
+        found.append(_without(part, copies) if copies else part)
+        judged |= mine
+    return found
+
+
+def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
+    """Return a part without these drives, with a note on each instead of those that it has."""
+    result, paths = part.result, {} if part.result.asked is None else part.result.asked.traces
+    tables = {name: getattr(result, name) for name in TABLE_OF_FILE}
+    others = {
+        name: table.filter(pc.invert(pc.is_in(table["drive_id"], value_set=pa.array(drives, pa.string()))))
+        for name, table in tables.items()
+        if "drive_id" in table.column_names
+    }
+    told = [run.same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    kept = [note for note in part.notes if note.path not in {each.path for each in told}]
+    return replace(part, result=replace(result, **others), notes=(*kept, *told))
+
+
+class _Listener:
+    """Shows what the workers tell, each text once."""
+
+    def __init__(self, progress: Progress, n_logs: int) -> None:
+        self.progress = progress
+        self._notes = run.LogNotes(progress, n_logs)
+
+    def hear(self, told: _Told) -> None:
+        """Show one call of a worker."""
+        if told.method == "add":
+            self._notes.add(*told.arguments)
+        else:
+            getattr(self.progress, told.method)(*told.arguments)
+
+
+class _Worker:
+    """A process that judges a part, and is started again where a rule of it does not end. `ended`: what came of it; None: nothing yet."""
+
+    def __init__(self, part: _Part, listener: _Listener) -> None:
+        self.ended: _Ended | None = None
+        self._part = part
+        self._listener = listener
+        self._n_done = 0
+
+    def start(self) -> None:
+        """Start the process."""
+        context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
+        self.pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_work, args=(self._part, theirs, os.getpid()), daemon=True)
+        with deaf_to_ctrl_c():
+            self._process.start()
+        theirs.close()
+
+    def interrupt(self) -> None:
+        """Ask the process to end with what it has judged."""
+        with suppress(OSError):
+            self.pipe.send(None)
+
+    def hear(self) -> None:
+        """Take one message. Errors: the one that ended the part; `WorkerLostError`."""
+        try:
+            told = self.pipe.recv()
+        except (EOFError, OSError):
+            self._process.join()
+            raise WorkerLostError(
+                f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, "
+                "as for lack of memory): check again with fewer --jobs"
+            ) from None
+        if isinstance(told, _Ended):
+            self.ended = told
+        elif isinstance(told, BaseException):
+            raise told
+        elif isinstance(told, _Deaf):
+            self._begin_again(told)
+        else:
+            self._n_done += told.arguments[0] if told.method == "advance" else 0
+            self._listener.hear(told)
+
+    def _begin_again(self, deaf: _Deaf) -> None:
+        """Start the process again without a rule that does not end."""
+        self.stop()
+        self._listener.progress.note(
+            f"rule {deaf.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
+        )
+        self._listener.progress.advance(-self._n_done)
+        self._n_done = 0
+        known = {**self._part.deaf, deaf.task: {**self._part.deaf.get(deaf.task, {}), deaf.rule_id: deaf.excess}}
+        self._part = self._part._replace(deaf=known)
+        self.start()
+
+    def stop(self) -> None:
+        """End the process, which removes its temporary files where it can."""
+        self.pipe.close()
+        self._process.join(_PATIENCE_S)
+        self._process.kill()
+        self._process.join()
+
+
+class _Teller(Progress):
+    """Tells the listener, in a worker, what is to be shown. Advances of its own stages but the first are not the run's."""
+
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe = pipe
+        self._lock = Lock()
+        self._counts = True
+
+    def send(self, told: object) -> None:
+        """Send a message to the process that listens."""
+        with self._lock:
+            self._pipe.send(told)
+
+    def stage(self, name: str, total: int | None = None) -> None:  # noqa: ARG002 - the run has its own
+        """See `Progress`."""
+        self._counts = name == run.CHECKING
+        self.doing(name)
+
+    def advance(self, n: int = 1) -> None:
+        """See `Progress`."""
+        if self._counts:
+            self.send(_Told("advance", (n,)))
+
+    def doing(self, what: str) -> None:
+        """See `Progress`."""
+        self.send(_Told("doing", (what,)))
+
+    def note(self, text: str) -> None:
+        """See `Progress`."""
+        self.send(_Told("note", (text,)))
+
+
+class _SentNotes(run.LogNotes):
+    """Sends the notes on logs, which are shown once for all workers."""
+
+    def __init__(self, teller: _Teller, n_logs: int) -> None:
+        super().__init__(Progress(), n_logs)
+        self._teller = teller
+
+    def add(self, note: LogNote) -> None:
+        """See `LogNotes`."""
+        self.notes.append(note)
+        self._teller.send(_Told("add", (note,)))
+
+
+class _DeafInWorker:
+    """Ends a worker because of a rule that does not end, and says so: see `DeafRules`."""
+
+    def __init__(self, known: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
+        self._known = known
+        self._teller = teller
+
+    def known(self, task: str) -> Mapping[str, Excess]:
+        """See `DeafRules`."""
+        return self._known.get(task, {})
+
+    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+        """See `DeafRules`."""
+        temporary.remove_all()
+        self._teller.send(_Deaf(task, rule_id, excess))
+        os._exit(0)
+
+
+def _work(part: _Part, pipe: Connection, parent: int) -> None:
+    """Judge a part in this process."""
+    begin_worker(None, parent)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
+    interruption, teller = Interruption(), _Teller(pipe)
+    Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
+    try:
+        teller.send(_judged(part, teller, interruption))
+    except DriveLintError as error:
+        teller.send(error)
+    except Exception as error:  # noqa: BLE001 - whatever it is, the run ends with it
+        teller.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
+
+
+def _judged(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
+    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.deaf, teller)
+    with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
+        judged_by = run.RunRules.of(part.settings)
+        judged = run.judge_logs(
+            part.settings,
+            judged_by,
+            part.paths,
+            refused=[],
+            progress=teller,
+            notes=notes,
+            interruption=interruption,
+            deaf=deaf,
+        )
+    return _Ended(judged, None if recording is None or part.deaf else recording.inputs())
+
+
+def _listen(pipe: Connection, interruption: Interruption) -> None:
+    """Interrupt the part when asked to, and end the process where nobody asks any more."""
+    while True:
+        try:
+            pipe.recv()
+        except (EOFError, OSError):
+            temporary.remove_all()
+            os._exit(1)
+        interruption.request()

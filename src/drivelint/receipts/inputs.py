@@ -1,0 +1,82 @@
+"""The state of files and folders that a run reads: the same state, the same input.
+
+The content of every file is hashed: size and time of the last change can be the same for another content.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from glob import glob
+from hashlib import file_digest, sha256
+from pathlib import Path
+from stat import S_ISDIR, S_ISREG
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    IsOutput = Callable[[str], bool]
+    """Whether a file or folder is an output of the run, at its absolute path without links."""
+
+ABSENT: Final = "absent"
+
+
+def file_sha256(path: Path | str) -> str:
+    """Return the hash of a file's bytes. Errors: `OSError`."""
+    with Path(path).open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()
+
+
+def state(path: str, is_output: IsOutput) -> str | None:
+    """Return what is the same as long as nothing changes at a path; None: it cannot be known, as of a pipe.
+
+    Of a file its content counts, of a folder the names in it; of both, where links lead to.
+    """
+    try:
+        mode = os.stat(path).st_mode  # noqa: PTH116 - thousands of paths
+        real = os.path.realpath(path)
+        if S_ISREG(mode):
+            return f"file {file_sha256(path)} {real}"
+        return f"folder {_listing(path, real, is_output)} {real}" if S_ISDIR(mode) else None
+    except (FileNotFoundError, NotADirectoryError):
+        return ABSENT
+    except (OSError, ValueError):
+        return None
+
+
+def matches(pattern: str, is_output: IsOutput) -> str:
+    """Return the hash of the names that a pattern matches."""
+    found = glob(pattern, recursive=True)  # noqa: PTH207 - as the search for logs does it
+    return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a run read. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
+
+    states: dict[str, str] = field(default_factory=dict)
+    globs: dict[str, str] = field(default_factory=dict)
+
+    def are_unchanged(self, is_output: IsOutput) -> bool:
+        """Whether everything is as it was."""
+        names = all(matches(pattern, is_output) == said for pattern, said in self.globs.items())
+        return names and all(state(path, is_output) == said for path, said in self.states.items())
+
+
+def _listing(folder: str, real: str, is_output: IsOutput) -> str:
+    with os.scandir(folder) as entries:
+        shown = [entry for entry in entries if not is_output(os.path.join(real, entry.name))]  # noqa: PTH118
+    told = [(entry.name, *_kind(entry)) for entry in sorted(shown, key=lambda entry: entry.name)]
+    return _hash(told)
+
+
+def _kind(entry: os.DirEntry[str]) -> tuple[str, str]:
+    """Return what an entry of a folder is, and where it leads to as a link."""
+    kind = "folder" if entry.is_dir() else "file" if entry.is_file() else "other"
+    return kind, os.readlink(entry.path) if entry.is_symlink() else ""  # noqa: PTH115
+
+
+def _hash(names: Iterable[object]) -> str:
+    return sha256(json.dumps(list(names)).encode()).hexdigest()

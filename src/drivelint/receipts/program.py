@@ -1,0 +1,85 @@
+"""What decides a result besides its inputs: the program, what is installed beside it, what was asked, and where."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+ENVIRONMENT: Final = (
+    *("COLUMNS", "LINES", "TERM", "COLORTERM", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"),
+    *("JUPYTER_COLUMNS", "JUPYTER_LINES", "UNICODE_VERSION", "TZ", "LANG", "LC_ALL", "LC_CTYPE"),
+    *("PROJ_DATA", "PROJ_LIB", "PROJ_NETWORK", "PYARROW_IGNORE_TIMEZONE", "PYDANTIC_DISABLE_PLUGINS"),
+)
+"""The variables that a result, or how it is shown, may depend on."""
+
+
+def program_folders() -> tuple[Path, ...]:
+    """Return the folders of the program's own files."""
+    return Path(__file__).parents[1], folder("queries"), folder("schemas")
+
+
+@cache
+def program_sha256() -> str:
+    """Return the hash of all files of the program, of Python, and of the names and versions of what is installed beside it.
+
+    Everything counts: whoever works on drivelint changes it without changing its version.
+    """
+    whole = sha256()
+    for root in program_folders():
+        for place, folders, names in os.walk(root):
+            folders[:] = sorted(name for name in folders if name != "__pycache__")
+            for name in sorted(names):
+                path = os.path.join(place, name)  # noqa: PTH118 - a thousand files, and a tenth of a second is much here
+                with open(path, "rb", buffering=0) as file:  # noqa: PTH123
+                    content = file.read()
+                whole.update(f"{os.path.relpath(path, root)} {len(content)}\0".encode("utf-8", "surrogateescape"))
+                whole.update(content)
+    machine = [sys.version, sys.platform, platform.machine(), sys.path, _installed()]
+    whole.update(json.dumps(machine).encode())
+    return whole.hexdigest()
+
+
+def _installed() -> list[str]:
+    """Return the folders of what is installed, which are called by name and version."""
+    found: list[str] = []
+    for place in sys.path:
+        try:
+            found += [name for name in os.listdir(place or ".") if name.endswith((".dist-info", ".egg-info"))]  # noqa: PTH208
+        except OSError:
+            continue
+    return sorted(found)
+
+
+def question_sha256(arguments: Mapping[str, object]) -> str:
+    """Return the hash of the program and of what it is asked: the options, in which folder, and by whom it is read."""
+    asked = {
+        "arguments": arguments,
+        "folder": os.getcwd(),  # noqa: PTH109 - relative paths begin there
+        "stdout": [sys.stdout.encoding, sys.stdout.isatty(), _terminal_size()],
+        "names": sys.getfilesystemencoding(),
+        "environment": {name: os.environ.get(name) for name in ENVIRONMENT},
+    }
+    return sha256(f"{program_sha256()} {json.dumps(asked, sort_keys=True, default=str)}".encode()).hexdigest()
+
+
+def _terminal_size() -> tuple[int, int] | None:
+    """Return columns and lines of the terminal; None where stdout is none."""
+    if not sys.stdout.isatty():
+        return None
+    for stream in (0, 1, 2):
+        try:
+            return tuple(os.get_terminal_size(stream))  # type: ignore[return-value]
+        except OSError:
+            continue
+    return None

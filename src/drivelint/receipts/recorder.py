@@ -1,0 +1,165 @@
+"""Records what a run reads: every file that Python opens, every folder that it lists, and what is looked for elsewhere.
+
+The state of each is taken before its first reading, and again at the end of the run. Where both differ, nobody knows of which one the
+verdicts are. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from threading import Lock, local
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.memo import cache_folder
+from drivelint.receipts.events import LOOKED_FOR, MACHINE_BOUND
+from drivelint.receipts.inputs import Inputs, matches, state
+from drivelint.receipts.program import program_folders
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from drivelint.receipts.inputs import IsOutput
+
+_WRITES: Final = frozenset("wax+")
+_WRITE_FLAGS: Final = os.O_WRONLY | os.O_RDWR
+_NO_INPUT: Final = frozenset({"/dev/null", "/dev/urandom", "/proc/self/statm", "/proc/meminfo"})
+"""Files that say nothing, or how much memory there is, on which no result depends."""
+
+
+class Recorder:
+    """What one run has read so far. `is_output`: whether a path is one of its outputs."""
+
+    def __init__(self, is_output: IsOutput) -> None:
+        self.is_output = is_output
+        self.trouble: str | None = None
+        """Why the run cannot be repeated by looking at its inputs; None: it can."""
+        self._states: dict[str, str | None] = {}
+        self._globs: dict[str, str] = {}
+        self._written: set[str] = set()
+        self._made: set[str] = set()
+        self._inside = local()
+        self._lock = Lock()
+        cache = cache_folder()
+        self._ours = tuple(
+            os.path.realpath(folder) for folder in (*program_folders(), *([] if cache is None else [cache]))
+        )
+
+    def look(self, path: str | os.PathLike[str]) -> None:
+        """Take the state of a path before it is read for the first time."""
+        whole = os.path.abspath(path)  # noqa: PTH100 - a link may lead to somewhere else later
+        if (
+            whole in self._states
+            or whole in self._written
+            or whole in _NO_INPUT
+            or self._is_own(os.path.realpath(whole))
+        ):
+            return
+        with self._lock:
+            self._states[whole] = None
+            self._states[whole] = state(whole, self.is_output)
+            if self._states[whole] is None:
+                self.trouble = f"{whole} cannot be looked at again"
+
+    def add(self, inputs: Inputs | None) -> None:
+        """Add what another process of the same run read; None: its part is not of its inputs alone."""
+        with self._lock:
+            if inputs is None:
+                self.trouble = "a worker's part cannot be repeated"
+                return
+            for known, told in ((self._states, inputs.states), (self._globs, inputs.globs)):
+                for name, said in told.items():
+                    if known.setdefault(name, said) != said:
+                        self.trouble = f"{name} changed"
+
+    def inputs(self) -> Inputs | None:
+        """Return what was read; None: the result is not of these inputs alone, or they changed while they were read."""
+        self._inside.busy = True  # from here on nothing is recorded in this thread
+        if self.trouble is not None:
+            return None
+        read = {path: said for path, said in self._states.items() if said is not None}
+        found = Inputs(read, dict(self._globs))
+        return found if found.are_unchanged(self.is_output) else None
+
+    def hear(self, event: str, args: tuple[Any, ...], importer: bool) -> None:
+        """Take note of an audit event. Errors of the caller's are its own: nothing is raised here."""
+        if getattr(self._inside, "busy", False):
+            return
+        self._inside.busy = True
+        try:
+            self._hear(event, args, importer)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it must not end the run
+            self.trouble = f"{event}: {error!r}"
+        finally:
+            self._inside.busy = False
+
+    def _hear(self, event: str, args: tuple[Any, ...], importer: bool) -> None:
+        if event == MACHINE_BOUND:
+            self.trouble = args[0]
+        elif event == "tempfile.mkdtemp":
+            self._made.add(os.path.realpath(args[0]))
+        elif event == "glob.glob":
+            self._globs.setdefault(pattern := os.fspath(args[0]), matches(pattern, self.is_output))
+        elif not importer and not isinstance(path := "." if args[0] is None else args[0], int):
+            path = os.fsdecode(path)
+            if event == "open" and _is_writing(*args[1:]):
+                self._written.add(os.path.abspath(path))  # noqa: PTH100
+            else:
+                self.look(path)
+
+    def _is_own(self, real: str) -> bool:
+        return self.is_output(real) or any(is_below(real, folder) for folder in (*self._ours, *self._made))
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Whether a path is that of a folder or of something in it, both without links."""
+    return path == folder or path.startswith(folder.rstrip(os.sep) + os.sep)
+
+
+_EVENTS: Final = frozenset(
+    {"open", "os.scandir", "os.listdir", "glob.glob", "tempfile.mkdtemp", LOOKED_FOR, MACHINE_BOUND}
+)
+_recorders: Final[list[Recorder]] = []
+_has_hook: Final[list[bool]] = []
+
+
+@contextmanager
+def recording(is_output: IsOutput, named: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
+    """Record what this process reads inside the block. `named`: paths that were named to it, which are looked at first."""
+    recorder = Recorder(is_output)
+    for path in named:
+        recorder.look(path)
+    if not _has_hook:
+        sys.addaudithook(_hook)  # it stays as long as the process
+        _has_hook.append(True)
+    _recorders.append(recorder)
+    try:
+        yield recorder
+    finally:
+        _recorders.remove(recorder)
+
+
+def active() -> Recorder | None:
+    """Return the recorder of the run that goes on in this process; None: nothing is recorded."""
+    return _recorders[-1] if _recorders else None
+
+
+def _hook(event: str, args: tuple[Any, ...]) -> None:
+    if not _recorders or event not in _EVENTS:
+        return
+    importer = _caller().startswith(("importlib.", "_frozen_importlib", "zipimport"))
+    for recorder in tuple(_recorders):  # another thread may end one
+        recorder.hear(event, args, importer)
+
+
+def _caller() -> str:
+    """Return the module whose code raised the event; '' for none, as of a thread of a library."""
+    try:
+        return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001 - nothing else tells the importer from others
+    except ValueError:
+        return ""
+
+
+def _is_writing(mode: str | None, flags: int) -> bool:
+    return bool(_WRITES.intersection(mode or "")) or bool(flags & _WRITE_FLAGS)

@@ -1,0 +1,167 @@
+"""The receipts in the user's cache folder: one file each, sealed with the hash of its bytes, and no more than a few.
+
+A file is a line of JSON about the run, the files that it wrote, and 32 bytes of hash. It appears whole or not at all; one that is damaged
+is none. The receipts that were not used for longest go first.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from shutil import copyfileobj
+from tempfile import NamedTemporaryFile
+from typing import IO, TYPE_CHECKING, Any, Final
+
+from drivelint.memo import cache_folder
+from drivelint.receipts.inputs import Inputs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+MOST_RECEIPTS: Final = 100
+MOST_BYTES: Final = 1_000_000_000
+"""Of all receipts together."""
+MOST_BYTES_OF_ONE: Final = 200_000_000
+"""A run that writes more is judged again: copying so much takes long, too."""
+_FORMAT: Final = "drivelint receipt 1"
+_SEAL_BYTES: Final = 32
+_PIECE: Final = 1 << 20
+
+
+@dataclass(frozen=True)
+class Receipt:
+    """A run: what it read, what it printed, what it noted, how it ended, and the names and sizes of the files that it wrote.
+
+    `day`: on which it was, where that counts; `moved`: those of the files that grew during the run.
+    """
+
+    inputs: Inputs
+    stdout: str
+    notes: tuple[str, ...]
+    exit_code: int
+    day: str | None = None
+    files: dict[str, int] = field(default_factory=dict)
+    moved: tuple[str, ...] = ()
+
+
+class OpenedReceipt:
+    """A receipt whose file is open, so that nobody replaces it meanwhile."""
+
+    def __init__(self, receipt: Receipt, file: IO[bytes], start: int) -> None:
+        self.receipt = receipt
+        self._file = file
+        self._start = start
+
+    def unpack(self, work: Path) -> tuple[dict[str, bytes], dict[str, Path]]:
+        """Return name -> content, and name -> path of those of the files that grew during the run, which are put into `work`."""
+        self._file.seek(self._start)
+        contents: dict[str, bytes] = {}
+        moved: dict[str, Path] = {}
+        for name, size in self.receipt.files.items():
+            content = self._file.read(size)
+            if name in self.receipt.moved:
+                moved[name] = work / name
+                moved[name].parent.mkdir(parents=True, exist_ok=True)
+                moved[name].write_bytes(content)
+            else:
+                contents[name] = content
+        return contents, moved
+
+
+@contextmanager
+def opened(key: str) -> Iterator[OpenedReceipt | None]:
+    """Open the receipt of a key; None: there is none, or it is damaged."""
+    home = _folder()
+    try:
+        file = None if home is None else (home / key).open("rb")
+    except OSError:
+        file = None
+    if file is None or home is None:
+        yield None
+        return
+    with file:
+        found = _read(file, key)
+        if found is not None:
+            with suppress(OSError):
+                os.utime(home / key)
+        yield found
+
+
+def keep(key: str, receipt: Receipt, out: Path | None) -> None:
+    """Keep a receipt with the files that the run wrote into `out`, unless they are too large, or the folder cannot be written."""
+    home = _folder()
+    if home is None or sum(receipt.files.values()) > MOST_BYTES_OF_ONE:
+        return
+    with suppress(OSError):
+        home.mkdir(parents=True, exist_ok=True)
+        with NamedTemporaryFile(dir=home, prefix=".new-", delete=False) as part:
+            try:
+                _write(part, key, receipt, [out / name for name in receipt.files] if out else [])
+            except BaseException:
+                Path(part.name).unlink(missing_ok=True)
+                raise
+        Path(part.name).replace(home / key)
+        _remove_oldest(home)
+
+
+def _folder() -> Path | None:
+    home = cache_folder()
+    return None if home is None else home / "receipts"
+
+
+def _write(part: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
+    """Write a receipt. Errors: `OSError`, also where a file has another size than was said."""
+    head = {"format": _FORMAT, "key": key, **asdict(receipt)}
+    part.write(json.dumps(head).encode() + b"\n")
+    for file, size in zip(files, receipt.files.values(), strict=True):
+        before = part.tell()
+        with file.open("rb") as content:
+            copyfileobj(content, part, _PIECE)
+        if part.tell() - before != size:
+            raise OSError(f"{file} changed")
+    part.flush()
+    with Path(part.name).open("rb") as written:
+        part.write(_hash_of(written, part.tell()))
+
+
+def _read(file: IO[bytes], key: str) -> OpenedReceipt | None:
+    size = file.seek(0, os.SEEK_END) - _SEAL_BYTES
+    file.seek(0)
+    if size <= 0 or _hash_of(file, size) != file.read(_SEAL_BYTES):
+        return None
+    file.seek(0)
+    try:
+        told: dict[str, Any] = json.loads(file.readline())
+        if told.pop("format") != _FORMAT or told.pop("key") != key:
+            return None
+        return OpenedReceipt(_receipt(told), file, file.tell())
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def _receipt(told: Mapping[str, Any]) -> Receipt:
+    lists = {name: tuple(told[name]) for name in ("notes", "moved")}
+    return Receipt(**{**told, **lists, "inputs": Inputs(**told["inputs"])})
+
+
+def _hash_of(file: IO[bytes], size: int) -> bytes:
+    """Return the hash of the next `size` bytes."""
+    whole = sha256()
+    while size > 0 and (piece := file.read(min(size, _PIECE))):
+        whole.update(piece)
+        size -= len(piece)
+    return whole.digest()
+
+
+def _remove_oldest(home: Path) -> None:
+    """Remove what was not used for longest, until the rest is few and small enough; parts that a killed process left are among it."""
+    known = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
+    size = 0
+    for n, (_, path) in enumerate(known, 1):
+        size += path.stat().st_size
+        if n > MOST_RECEIPTS or size > MOST_BYTES:
+            path.unlink(missing_ok=True)

@@ -1,0 +1,45 @@
+"""Joins the results of parts of a run: the tables are those of a run over all of its logs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import pyarrow as pa
+
+from drivelint.result import collect, evidence
+from drivelint.sql import store
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from drivelint.result.model import Result
+
+_ORDER: Final = {
+    "verdicts": collect.ORDER_OF_VERDICTS,
+    "findings": collect.ORDER_OF_FINDINGS,
+    "drives": "drive_id, file_name",
+    **evidence.ORDER,
+}
+"""Table -> the order of its rows."""
+
+
+def join(results: Sequence[Result]) -> Result:
+    """Return one result of several whose drives are different; settings and notes are those of the first.
+
+    Maps that several have lanes of are there once.
+    """
+    first = results[0]
+    with store.connect(threads=1) as con:
+        tables = {}
+        for name, order in _ORDER.items():
+            con.register("_rows", pa.concat_tables([getattr(result, name) for result in results]))
+            once = f"DISTINCT ON ({order})" if name == "lanes" else ""
+            tables[name] = con.execute(f"SELECT {once} * FROM _rows ORDER BY {order}").to_arrow_table()
+            con.unregister("_rows")
+    asked = [result.asked for result in results if result.asked is not None]
+    if asked:
+        traces = {drive: path for each in reversed(asked) for drive, path in each.traces.items()}
+        named = {drive: path for each in reversed(asked) for drive, path in each.named.items()}
+        tables["asked"] = replace(asked[0], traces=traces, named=dict(sorted(named.items())))
+    return replace(first, **tables, interrupted=any(result.interrupted for result in results))

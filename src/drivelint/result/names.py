@@ -1,0 +1,40 @@
+"""The names of the files that `check --out` writes. Nothing heavy is imported for them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+MANIFEST: Final = "files.json"
+RUN_FILE: Final = "run.json"
+GATE_FILE: Final = "gate.json"
+MARK: Final = "summary.json"
+"""The file without which a folder is no result: it is written last."""
+TABLE_OF_FILE: Final = {
+    "verdicts": "verdict",
+    "findings": "finding",
+    "drives": "drive",
+    "rules": "rule",
+    "scenes": "scene",
+    "lanes": "lane_shape",
+    "spaces": "danger_space",
+    "courses": "course",
+    "tracks": "track",
+    "overtakes": "overtake_record",
+    "opportunities": "opportunity_record",
+}
+"""Stem of the Parquet file -> table of the schema."""
+REPORT_FILES: Final = {
+    "html": "report.html",
+    "junit": "junit.xml",
+    "sarif": "report.sarif",
+    "xqar": "report.xqar",
+    "markdown": "report.md",
+}
+"""Format of a report -> its file."""
+RESULT_FILES: Final = (
+    *(f"{name}.parquet" for name in TABLE_OF_FILE),
+    *REPORT_FILES.values(),
+    *(GATE_FILE, RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, MANIFEST),
+    *("annotated/*.mcap", "annotated/viewer-layout.json"),
+)
+"""Globs of the names that the files of a result may have."""
