@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 import pyarrow.compute as pc
 
-from drivelint.report import html, junit, markdown, sarif, summary, xqar
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
 from drivelint.result.schemas import TABLE_OF_FILE
@@ -19,12 +19,23 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
+
+def _renderer(format_: str) -> Callable[[Result], bytes]:
+    """Return what renders a report, whose module is loaded when it does: most runs write no report."""
+
+    def render(result: Result) -> bytes:
+        rendered: bytes = import_module(f"drivelint.report.{format_}").render(result)
+        return rendered
+
+    return render
+
+
 REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
-    "html": ("report.html", html.render),
-    "junit": ("junit.xml", junit.render),
-    "sarif": ("report.sarif", sarif.render),
-    "xqar": ("report.xqar", xqar.render),
-    "markdown": ("report.md", markdown.render),
+    "html": ("report.html", _renderer("html")),
+    "junit": ("junit.xml", _renderer("junit")),
+    "sarif": ("report.sarif", _renderer("sarif")),
+    "xqar": ("report.xqar", _renderer("xqar")),
+    "markdown": ("report.md", _renderer("markdown")),
 }
 """Name -> file in the result folder, and what renders it: the same result, the same bytes."""
 
@@ -62,6 +73,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     `work`: what `working_folder` gave, whose files are taken over. `summary.json` appears last, when the others are there.
     Same tables, same bytes. Errors: `OutputError` when the folder cannot be written.
     """
+    from drivelint.report import html, junit, summary
+
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     # what lies beside the page is what this run made, not what an earlier one left
     contents["report.html"] = html.render(replace(result, folder=work or out))
