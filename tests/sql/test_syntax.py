@@ -132,7 +132,7 @@ def test_an_occasion_that_does_not_hold_is_refused() -> None:
     with pytest.raises(DriveLintError, match=r"^here\.sql: without rows in p there may be rows"):
         _reads(sql, "here.sql")
     reads, needs, occasion = _reads(sql.replace("LEFT JOIN", "JOIN"), "here.sql")
-    assert (reads, needs) == ({"a", "b"}, {"a", "b"})
+    assert reads == needs == {"a", "b"}
     assert occasion == "WITH p AS (FROM a) SELECT 1 FROM p LIMIT 1"
 
 
