@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -111,6 +112,21 @@ def test_help_loads_nothing_heavy() -> None:
     loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
     assert "drivelint" in loaded
     assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "lxml", "mcap", "shapely", "yaml", "msgspec"}
+
+
+def test_a_check_loads_neither_pandas_nor_what_only_reports_need(tmp_path: Path) -> None:
+    """DuckDB and pyarrow load pandas wherever it is installed: half a second."""
+    assert find_spec("pandas") is not None
+    probe = (
+        f"import sys; sys.argv = ['drivelint', 'check', *{[*TRACES, *ON_ROAD, *SDA, NO_COPIES]!r}]\n"
+        "from drivelint.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: print('|'.join(sorted(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True, cwd=tmp_path)
+    loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
+    assert {"drivelint", "duckdb", "pyarrow"} <= loaded
+    assert not loaded & {"pandas", "jinja2", "yaml", "matplotlib", "scipy"}
 
 
 def test_version(ran: Ran) -> None:

@@ -98,18 +98,19 @@ entry_or_exit_with_boxes AS MATERIALIZED (
 -- angle_rad: the other's direction of travel minus its own, where the two come nearest.
 first_contact AS MATERIALIZED (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns,
-        min(first_touch(
-            boxes_sides(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m),
-            boxes_sides(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
-        )) AS share,
-        min({'d2': (b.x_m - i.x_m) ** 2 + (b.y_m - i.y_m) ** 2, 't_ns': b.t_ns, 'angle_rad': wrap_rad(b.travel_rad - i.travel_rad)}) FILTER (
-            abs(wrap_rad(b.travel_rad - i.travel_rad)) > conflict_angle_rad()
-            AND boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m)
-        ).angle_rad AS angle_rad
-    FROM entry_or_exit_with_boxes e
-    JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
-    GROUP BY e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id, e.sense, i.t_sample_ns, i.t_ns, e.t_off_ns
+        drive_id, ego_id, object_id, n, is_ego, actor_id, sense, t_sample_ns, t_on_ns, t_off_ns, min(first_touch(sides_off, sides_on)) AS share,
+        min({'d2': d2, 't_ns': t_ns, 'angle_rad': angle_rad}) FILTER (abs(angle_rad) > conflict_angle_rad() AND is_meeting).angle_rad AS angle_rad
+    FROM (
+        SELECT
+            e.drive_id, e.ego_id, e.object_id, e.n, e.is_ego, i.actor_id AS actor_id, e.sense, i.t_sample_ns AS t_sample_ns, i.t_ns AS t_on_ns, e.t_off_ns, b.t_ns,
+            (b.x_m - i.x_m) ** 2 + (b.y_m - i.y_m) ** 2 AS d2, wrap_rad(b.travel_rad - i.travel_rad) AS angle_rad,
+            boxes_sides(b.x_m - f.x_m, b.y_m - f.y_m, f.cos_yaw, f.sin_yaw, b.cos_yaw, b.sin_yaw, f.half_length_m, f.half_width_m, b.half_length_m, b.half_width_m) AS sides_off,
+            boxes_sides(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m) AS sides_on,
+            boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m) AS is_meeting
+        FROM entry_or_exit_with_boxes e
+        JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
+    )
+    GROUP BY drive_id, ego_id, object_id, n, is_ego, actor_id, sense, t_sample_ns, t_on_ns, t_off_ns
 ),
 -- If the common ground ends because the angle becomes too small, not because the boxes part, share is NULL, and the moment off the ground
 -- is the time of the entry or exit. An entry or exit without a moment off the ground was not seen.

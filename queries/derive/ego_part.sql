@@ -40,6 +40,7 @@ actor_behind AS (
     WHERE (o.x_m - e.x_m) ** 2 + (o.y_m - e.y_m) ** 2 <= ((e.length_m + o.length_m) / 2 + drawbar_m()) ** 2
         AND (o.x_m - e.x_m) * cos(e.yaw_rad) + (o.y_m - e.y_m) * sin(e.yaw_rad) < 0
 ),
+-- occasion: handover, actor_behind
 shared_sample AS (
     SELECT
         b.*, o.t_ns, e.length_m / 2 AS ego_half_length_m, sqrt((e.x_m - lag(e.x_m) OVER w) ** 2 + (e.y_m - lag(e.y_m) OVER w) ** 2) AS moved_m,

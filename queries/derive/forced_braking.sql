@@ -21,6 +21,7 @@ clock_second_to_search AS (
     UNION
     SELECT drive_id, object_id, t_ns // 1_000_000_000 - d.i FROM head_on_stop CROSS JOIN range(2 * conflict_ns() // 1_000_000_000) AS d(i)
 ),
+-- occasion: clock_second_to_search
 -- Mean deceleration over the half second before each sample, or over one sample period if that is longer.
 slowing_sample AS MATERIALIZED (
     SELECT *, (earlier.speed_mps - speed_mps) / ((t_ns - earlier.t_ns) / 1e9) AS decel_mps2

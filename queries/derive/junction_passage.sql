@@ -24,6 +24,7 @@ passage AS (
     WHERE junction_id IS NOT NULL
     GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run_no
 ),
+-- occasion: passage
 -- Where the ego cut the corner of a junction, it drove beside a lanelet of its chain. The times at that lanelet are then those between the
 -- lanelet before and the one after.
 chain_lanelet AS (

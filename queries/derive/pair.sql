@@ -243,21 +243,26 @@ pair_level AS (
 -- ---- the trailer's box belongs to the ego, too: the nearer of the two boxes counts
 trailer_clearance AS (
     SELECT
-        a.pair_no,
+        pair_no,
         min(CASE
-            WHEN l.least_m > exact_clearance_m() THEN l.least_m
-            WHEN l.least_m + a.yaw_rad + s.yaw_rad IS NOT NULL THEN box_clearance(
-                (a.x_m - s.x_m) * cos(s.yaw_rad) + (a.y_m - s.y_m) * sin(s.yaw_rad), (a.y_m - s.y_m) * cos(s.yaw_rad) - (a.x_m - s.x_m) * sin(s.yaw_rad),
-                cos(a.yaw_rad - s.yaw_rad), sin(a.yaw_rad - s.yaw_rad), s.length_m / 2, s.width_m / 2, a.object_half_length_m, a.object_half_width_m
-            )
+            WHEN least_m > exact_clearance_m() THEN least_m
+            WHEN is_known THEN box_clearance(dx, dy, c, s, trailer_half_length_m, trailer_half_width_m, object_half_length_m, object_half_width_m)
         END) AS clearance_m
-    FROM pair_offset a
-    JOIN (FROM ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
-    LEFT JOIN state_dynamics s ON s.drive_id = g.drive_id AND s.actor_id = g.object_id AND s.t_ns = a.t_ns
-    CROSS JOIN LATERAL (
-        SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.object_half_length_m ** 2 + a.object_half_width_m ** 2) AS least_m
-    ) l
-    GROUP BY a.pair_no
+    FROM (
+        -- The object's box in the frame of the trailer's box, as columns.
+        SELECT
+            a.pair_no, l.least_m, l.least_m + a.yaw_rad + s.yaw_rad IS NOT NULL AS is_known,
+            (a.x_m - s.x_m) * cos(s.yaw_rad) + (a.y_m - s.y_m) * sin(s.yaw_rad) AS dx, (a.y_m - s.y_m) * cos(s.yaw_rad) - (a.x_m - s.x_m) * sin(s.yaw_rad) AS dy,
+            cos(a.yaw_rad - s.yaw_rad) AS c, sin(a.yaw_rad - s.yaw_rad) AS s,
+            s.length_m / 2 AS trailer_half_length_m, s.width_m / 2 AS trailer_half_width_m, a.object_half_length_m, a.object_half_width_m
+        FROM pair_offset a
+        JOIN (FROM ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
+        LEFT JOIN state_dynamics s ON s.drive_id = g.drive_id AND s.actor_id = g.object_id AND s.t_ns = a.t_ns
+        CROSS JOIN LATERAL (
+            SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.object_half_length_m ** 2 + a.object_half_width_m ** 2) AS least_m
+        ) l
+    )
+    GROUP BY pair_no
 ),
 combined_clearance AS (
     SELECT

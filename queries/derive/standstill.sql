@@ -20,6 +20,7 @@ stop_period AS (
     GROUP BY drive_id, ego_id, seg, run_no
     HAVING max(t_ns) - min(t_ns) >= 1_000_000_000
 ),
+-- occasion: stop_period
 stop_place AS (
     SELECT s.*, e.road_type, e.lanelet_id, e.chain_id, e.front_s_m, e.rear_s_m, n.junction_id AS lane_junction_id, g.environment_id IS NOT NULL AS has_map
     FROM stop_period s

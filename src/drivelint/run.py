@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pyarrow as pa
 
 from drivelint import catalogue
-from drivelint.annotate import Annotator
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
@@ -166,6 +165,8 @@ def judge_logs(
         if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
         if settings.out and settings.annotate:
+            from drivelint.annotate import Annotator  # what it writes with takes a tenth of a second to import
+
             annotated = settings.out / "annotated"
             observers.append(
                 Annotator(

@@ -40,6 +40,19 @@ FROM step JOIN visited_cell USING (drive_id) GROUP BY ALL"""
 CELL = "SELECT drive_id, max(t_ns) AS cell FROM step GROUP BY drive_id"
 
 
+@pytest.mark.parametrize(("most", "n"), [(derive.ASKED_STATES, 0), (-1, 5)])
+def test_without_an_occasion_a_table_of_few_states_stays_empty(
+    con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, most: int, n: int
+) -> None:
+    """Of many, nothing is run twice: the statement itself finds that there are no rows; here it is made to have some."""
+    made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
+    monkeypatch.setattr(derivations, "_files", lambda: made)
+    monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
+    monkeypatch.setattr(derive, "ASKED_STATES", most)
+    derive.derive(con, ["step"], of_the_map=False, also=())
+    assert con.execute("SELECT count(*) FROM step").fetchone() == (n,)
+
+
 @pytest.mark.parametrize("large", [0, 10])
 def test_each_runs_after_what_it_reads(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, large: int

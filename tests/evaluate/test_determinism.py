@@ -120,6 +120,7 @@ def test_rules_are_judged_on_two_connections_as_on_one(
     crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(evaluation, "LEAST_RULES_FOR_TWO_CONNECTIONS", 2)
+    monkeypatch.setattr(evaluation, "LEAST_STEPS_FOR_TWO_CONNECTIONS", 0)
     with database(DRIVES, threads=2, order="k") as con:
         assert result(con, rules) == crowd
 
@@ -133,6 +134,7 @@ def test_a_rule_that_errs_is_an_error_on_whatever_connection(tmp_path: Path, mon
         for n in range(12)
     ]
     monkeypatch.setattr(evaluation, "LEAST_RULES_FOR_TWO_CONNECTIONS", 2)
+    monkeypatch.setattr(evaluation, "LEAST_STEPS_FOR_TWO_CONNECTIONS", 0)
     with database(("d0",), threads=2, order="k") as con:
         evaluate(con, found)
         rows = con.execute("SELECT rule_id, list_sort(list(DISTINCT verdict)) FROM verdict GROUP BY rule_id").fetchall()

@@ -39,7 +39,6 @@ LOGS = {
     "bridge-over": "bridge",
 }
 UNIQUE_FOR_A_REASON = {
-    "(FROM state_dynamics WHERE actor_id = $object_id) BY drive_id, t_ns": "of one actor; see state_dynamics by actor_id",
     "(SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE clearance_m <= 0) BY drive_id, ego_id, object_id, t_ns": "no drive here has "
     "a contact, and pair has one row for each ego, object and step",
     "lane_crossing BY drive_id, ego_id, t_ns": "ego_state has one row, with one chain, for each step",

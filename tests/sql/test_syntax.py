@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import duckdb
 import pytest
 
 from drivelint.errors import DriveLintError
-from drivelint.sql import syntax
-from drivelint.sql.derivations import Derivation, derivations
+from drivelint.sql import store, syntax
+from drivelint.sql.derivations import Derivation, _reads, derivations
 
 TABLES = ("a", "b", "c")
 NEEDS = {
@@ -80,6 +82,58 @@ def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBP
         con.execute(f"BEGIN; DELETE FROM {table}")
         assert not con.execute(sql).fetchall()
         con.execute("ROLLBACK")
+
+
+OCCASIONS = {
+    "WITH p AS (FROM a) FROM p": "p",
+    "WITH p AS (FROM a), q AS (FROM b) FROM p UNION ALL FROM q": "p q",
+    "WITH p AS (FROM a), q AS (SELECT * FROM p LEFT JOIN b USING (x)) SELECT x, count(*) AS n FROM q GROUP BY x": "p",
+    "WITH p AS (FROM a) FROM b SEMI JOIN p USING (x)": "p",
+}
+NO_OCCASIONS = {
+    "WITH p AS (FROM a), q AS (FROM b) FROM p UNION ALL FROM q": "p",
+    "WITH p AS (FROM a) FROM b LEFT JOIN p USING (x)": "p",
+    "WITH p AS (FROM a) SELECT count(*) FROM p": "p",
+    "WITH p AS (FROM a) SELECT x FROM b WHERE NOT EXISTS (FROM p)": "p",
+    "WITH p AS (FROM a) SELECT * FROM (WITH p AS (FROM b) FROM p) JOIN a USING (x)": "p",
+    "WITH p AS (FROM a) FROM main.b": "p",
+    "FROM a": "p",
+}
+
+
+@pytest.mark.parametrize("sql", OCCASIONS)
+def test_a_select_has_no_rows_without_those_of_its_occasion(con: duckdb.DuckDBPyConnection, sql: str) -> None:
+    ctes = OCCASIONS[sql].split()
+    assert syntax.has_no_rows_without(syntax.parse_select(sql, "here"), frozenset(ctes))
+    assert con.execute(sql).fetchall()
+    for cte in ctes:
+        sql = re.sub(rf"{cte} AS \((.*?)\)", rf"{cte} AS (SELECT * FROM (\1) WHERE false)", sql, count=1)
+    assert not con.execute(sql).fetchall()
+
+
+@pytest.mark.parametrize("sql", NO_OCCASIONS)
+def test_a_cte_without_which_there_may_be_rows_is_no_occasion(sql: str) -> None:
+    assert not syntax.has_no_rows_without(syntax.parse_select(sql, "here"), frozenset(NO_OCCASIONS[sql].split()))
+
+
+OF_DERIVATIONS = [step for step in derivations().values() if step.occasion]
+
+
+@pytest.mark.parametrize("step", OF_DERIVATIONS, ids=lambda step: step.table)
+def test_the_occasion_of_a_derivation_is_a_query(step: Derivation) -> None:
+    """A statement of its own, which stops before the derivation's does."""
+    assert syntax.tables_read(syntax.parse_select(step.occasion, step.table)) & derivations().keys() <= step.reads
+    with store.connect() as con:
+        assert con.execute(step.occasion).fetchone() is None
+
+
+def test_an_occasion_that_does_not_hold_is_refused() -> None:
+    sql = "WITH p AS (FROM a),\n-- occasion: p\nq AS (FROM b)\nFROM q LEFT JOIN p USING (x)"
+    with pytest.raises(DriveLintError, match=r"^here\.sql: without rows in p there may be rows"):
+        _reads(sql, "here.sql")
+    reads, needs, occasion = _reads(sql.replace("LEFT JOIN", "JOIN"), "here.sql")
+    assert reads == needs == {"a", "b"}
+    assert occasion == "WITH p AS (FROM a) SELECT 1 FROM p LIMIT 1"
 
 
 def test_what_is_read() -> None:

@@ -22,6 +22,7 @@ from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 from drivelint.phrases import inert, inert_json, inert_line
+from drivelint.without_pandas import leave_out_pandas
 
 app = typer.Typer(
     name="drivelint",
@@ -169,6 +170,7 @@ def main() -> NoReturn:
     from typer.exceptions import TyperException
 
     streams.prepare()
+    leave_out_pandas()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: what is judged is kept
     try:
         code = app(standalone_mode=False, default_map=_settings())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
+from dataclasses import replace
 from graphlib import TopologicalSorter
 from typing import TYPE_CHECKING, Final
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from drivelint.sql.derivations import Derivation
 
 WORKERS: Final = 2
+ASKED_STATES: Final = 100_000
+"""States up to which a table's occasion is looked for first: to plan the whole statement takes longer than to run its first part twice."""
 ONE_WORKER_STATES: Final = 1_000_000
 """States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
 
@@ -46,6 +49,8 @@ def derive(
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
+    if n_states > ASKED_STATES:
+        todo = {table: replace(step, occasion="") for table, step in todo.items()}
     empty = store.empty_tables(con) - todo.keys()
     for table in texts("map_shapes").keys() - empty if of_the_map else ():
         con.execute(statement(f"map_shapes/{table}"))
@@ -88,6 +93,8 @@ def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
     """Return how many rows the table got."""
     try:
         with store.telling_short_memory():
+            if step.occasion and con.execute(step.occasion).fetchone() is None:
+                return 0
             return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
     except duckdb.OutOfMemoryException:
         raise  # no fault of the query: there may be more

@@ -41,7 +41,7 @@ class BatchObserver(Protocol):
 
 
 class JudgingSession:
-    """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it.
+    """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it, and a few states.
 
     A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
@@ -152,7 +152,8 @@ class JudgingSession:
                 self._robustness.add(drives)
             undo.pop_all()
         self._seen.update(ids)
-        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
+        if not are_few(drives):  # a few take little memory, and the next batch recreates their tables anyway
+            store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
 
     @property
     def n_waiting(self) -> int:

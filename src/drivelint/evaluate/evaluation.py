@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 LEAST_RULES_FOR_TWO_CONNECTIONS: Final = 16
 """From so many rules on they are judged on two connections."""
+LEAST_STEPS_FOR_TWO_CONNECTIONS: Final = 2_000
+"""Steps below which they are not: the tables that the second one needs cost more than it would save."""
 MOST_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
 """Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
 
@@ -57,9 +59,10 @@ class Evaluation:
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
         # what memory the process takes can be laid to a rule only if no other one runs meanwhile
         shipped = deque(binding for binding in todo if _is_shipped(binding))
+        n_steps = self._count("SELECT count(*) FROM step")
         if (
             len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
-            and self._count("SELECT count(*) FROM step") < MOST_STEPS_FOR_TWO_CONNECTIONS
+            and LEAST_STEPS_FOR_TWO_CONNECTIONS <= n_steps < MOST_STEPS_FOR_TWO_CONNECTIONS
         ):
             todo = deque(binding for binding in todo if binding not in shipped)
             self._share(shipped)
@@ -72,7 +75,7 @@ class Evaluation:
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        self._run("finding", "verdict", "margin")
+        self._run("finding", "verdict", *(("margin",) if self.margins else ()))
         if self.keep_measure_series:
             self._run("course")
 
@@ -107,6 +110,8 @@ class Evaluation:
             if (lost := self.limits.lost(binding.rule.id)) is not None:
                 self._record(binding, lost, again=True)
                 continue
+            if self._has_no_occasion(binding):
+                continue
             with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
                 try:
                     with store.telling_short_memory():
@@ -135,16 +140,15 @@ class Evaluation:
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
-        """Run the statements of one rule; none of a shipped rule that has no occasion here.
-
-        A rule of the user's may have an error in it, which only running it shows.
-        """
-        if binding.rule.occasion_needs & self._empty and _is_shipped(binding) and self._may_stop(0):
-            return
+        """Run the statements of one rule."""
         if binding.rule.kind == "invariant":
             self._invariant(binding)
         else:
             self._occasion(binding)
+
+    def _has_no_occasion(self, binding: Binding) -> bool:
+        """Whether a rule needs no statement; one of the user's may have an error in it, which only running it shows."""
+        return bool(binding.rule.occasion_needs & self._empty) and _is_shipped(binding)
 
     def _is_quick(self, binding: Binding) -> bool:
         """Whether the first pass can settle groups; margins need every step anyway."""

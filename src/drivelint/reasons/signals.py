@@ -6,7 +6,6 @@ from typing import Final
 
 from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
-from drivelint.formats.registry import FORMATS
 from drivelint.phrases import hint
 from drivelint.resources import toml_beside
 
@@ -53,6 +52,8 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
     """Return how to provide a signal in a log of this format. `advice`: what the reason why it is lacking asks for."""
     if signal == "registration" and advice:
         return advice  # the map is not at fault
+    from drivelint.formats.registry import FORMATS  # the readers of all formats, which the catalogue needs not
+
     name = log_format if log_format in FORMATS else "mapped"
     # what a format cannot hold is given in the Parquet tables of a converted log
     tables = TEXTS["where"]["canonical-parquet"].items()

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 import pyarrow.compute as pc
 
-from drivelint.report import html, junit, markdown, sarif, summary, xqar
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
 from drivelint.result.names import GATE_FILE, MARK, REPORT_FILES, RESULT_FILES, RUN_FILE, TABLE_OF_FILE
@@ -19,12 +19,19 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
+
+def _renderer(format_: str) -> Callable[[Result], bytes]:
+    """Return what renders a report, whose module is loaded when it does: most runs write no report."""
+
+    def render(result: Result) -> bytes:
+        rendered: bytes = import_module(f"drivelint.report.{format_}").render(result)
+        return rendered
+
+    return render
+
+
 REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
-    "html": (REPORT_FILES["html"], html.render),
-    "junit": (REPORT_FILES["junit"], junit.render),
-    "sarif": (REPORT_FILES["sarif"], sarif.render),
-    "xqar": (REPORT_FILES["xqar"], xqar.render),
-    "markdown": (REPORT_FILES["markdown"], markdown.render),
+    name: (file, _renderer(name)) for name, file in REPORT_FILES.items()
 }
 """Name -> file in the result folder, and what renders it: the same result, the same bytes."""
 
@@ -52,6 +59,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     Same tables, same bytes. Return the names of the files that grew during the run.
     Errors: `OutputError` when the folder cannot be written.
     """
+    from drivelint.report import html, junit, summary
+
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     # what lies beside the page is what this run made, not what an earlier one left
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))

@@ -8,8 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from drivelint.phrases import plural
 from drivelint.result.text import number, rule_name, seconds, subject, with_count
 
@@ -26,6 +24,8 @@ def text_template(
 
     `finalize`: what is done to each value that is filled in.
     """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # most runs fill in no template
+
     environment = Environment(  # noqa: S701 - no HTML
         loader=FileSystemLoader(Path(module_file).parent),
         finalize=finalize,

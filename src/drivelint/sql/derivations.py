@@ -5,6 +5,7 @@ The order follows from which tables each SELECT reads.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from graphlib import TopologicalSorter
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+_OCCASION: Final = re.compile(r"^-- occasion: (\w+(?:, \w+)*)$", re.MULTILINE)
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
 # What the engine and the drive table read themselves, whatever the rules are.
 ALWAYS_NEEDED = (
@@ -36,6 +38,8 @@ class Derivation:
     sql: str
     reads: frozenset[str]
     needs: frozenset[str] = frozenset()
+    occasion: str = ""
+    """A query without rows where the table has none: the CTEs that `-- occasion: a, b` behind them names have none. '': none is named."""
 
     @property
     def of_the_map(self) -> bool:
@@ -65,17 +69,28 @@ def _derivation(table: str) -> Derivation:
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
     sql = file.read_text(encoding="utf-8")
-    reads, needs = _READS.of(sql, lambda: _reads(sql, str(file)))
-    return Derivation(table, sql, reads & _files().keys() - {table}, needs)
+    reads, needs, occasion = _READS.of(sql, lambda: _reads(sql, str(file)))
+    return Derivation(table, sql, reads & _files().keys() - {table}, needs, occasion)
 
 
-_READS: Final = Memo[tuple[frozenset[str], frozenset[str]]]("derivations", tuple[frozenset[str], frozenset[str]])
+_Reads = tuple[frozenset[str], frozenset[str], str]
+_READS: Final = Memo[_Reads]("derivations", _Reads)
 
 
-def _reads(sql: str, where: str) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the tables that a SELECT reads, and those that must have rows for it to have any."""
+def _reads(sql: str, where: str) -> _Reads:
+    """Return the tables that a SELECT reads, those that must have rows for it to have any, and `Derivation.occasion`.
+
+    Errors: `DriveLintError` where the CTEs that are its occasion may have no rows and the SELECT still some.
+    """
     tree = syntax.parse_select(sql, where)
-    return syntax.tables_read(tree), syntax.tables_needing_rows(tree)
+    occasion = ""
+    if mark := _OCCASION.search(sql):
+        ctes = mark[1].split(", ")
+        if not syntax.has_no_rows_without(tree, frozenset(ctes)):
+            raise DriveLintError(f"{where}: without rows in {mark[1]} there may be rows: take the line -- occasion out")
+        first = " UNION ALL ".join(f"SELECT 1 FROM {name}" for name in ctes)
+        occasion = f"{sql[: mark.start()].rstrip().removesuffix(',')} {first} LIMIT 1"
+    return syntax.tables_read(tree), syntax.tables_needing_rows(tree), occasion
 
 
 def _with_sources(tables: Iterable[str]) -> list[Derivation]:

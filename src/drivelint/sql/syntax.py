@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from copy import deepcopy
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,6 +24,7 @@ _NONE: Final[frozenset[str]] = frozenset()
 _CALLED: Final = re.compile(r"(\w+)\"?\(")
 _MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
+_NO_ROWS: Final = "ctes without rows"
 _INNER: Final = (dict, list)
 """The types of a tree's inner nodes. Nine tenths of a tree are single values, which `walk` leaves out."""
 
@@ -70,6 +73,18 @@ def tables_read(tree: Node) -> Names:
 def tables_needing_rows(tree: Node) -> Names:
     """Return tables that must have rows for the SELECT to have any; a table left out only costs time."""
     return _query(tree, {}, beside=False)
+
+
+def has_no_rows_without(tree: Node, ctes: Names) -> bool:
+    """Whether a SELECT has no rows if these CTEs have none; false where that cannot be told, or a name stands for several."""
+    n_named = Counter(_folded(entry["key"]) for node, _ in walk(tree) for entry in _ctes(node))
+    if any(n_named[name] != 1 for name in ctes):
+        return False
+    tree = deepcopy(tree)
+    for node, in_sight in walk(tree):
+        if node.get("type") == "BASE_TABLE" and _folded(node["table_name"]) in ctes and _is_cte(node, in_sight):
+            node["table_name"] = _NO_ROWS  # one table in place of them all
+    return _NO_ROWS in _query(tree, {}, beside=False)
 
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:

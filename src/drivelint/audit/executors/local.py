@@ -17,6 +17,7 @@ from pebble import ProcessExpired, ProcessPool
 
 from drivelint.audit.executors import Outcome
 from drivelint.audit.worker import run_task
+from drivelint.without_pandas import leave_out_pandas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,6 +108,7 @@ def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
 
 def begin_worker(memory: int | None, parent: int) -> None:
     """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
+    leave_out_pandas()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
     try:

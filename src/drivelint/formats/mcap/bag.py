@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
-import yaml
-
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container
@@ -80,6 +78,8 @@ def mcap_files(path: Path) -> list[Path]:
 
 def _information(path: Path) -> Any:
     """Return the description of a bag. Errors: `TraceError`."""
+    import yaml  # logs of other formats do without
+
     try:
         return yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
     except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
