@@ -52,3 +52,4 @@ CREATE OR REPLACE MACRO reservation_m() AS 1.0;
 -- The share of what is required by which a value may be off where the sensors of a recorder measured it: places and boxes of other
 -- vehicles are good to some 0.1 to 0.3 m, and their speeds to some 3 %.
 CREATE OR REPLACE MACRO measured_share() AS 0.05;
+CREATE OR REPLACE MACRO measured_m() AS 0.1;

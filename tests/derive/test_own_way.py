@@ -96,7 +96,7 @@ def test_stopped_in_the_lane_it_is_the_lead_braked_for_or_swerved_round(hand: st
 def test_gone_round_in_its_own_time_it_is_no_lead_also_where_the_ego_leaves_its_lane(
     hand: str, with_map: bool, hurry: bool
 ) -> None:
-    """A delivery van in the middle of the lane: the ego goes round it over the middle of the road, by 2.8 m in 3 s, or within 1.2 s of it."""
+    """A delivery van in the middle of the lane: the ego goes round it over the middle of the road, in 3 s, or within 1.2 s of it."""
     way = road(hand=hand)
     t = times(14.0)
     stopped = standing("x", way, t, 200, way.own)

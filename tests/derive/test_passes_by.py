@@ -36,7 +36,7 @@ def passing(*actors: Actor, way: Road = WAY) -> set[bool | None]:
 
 
 def aslant() -> tuple[Actor, Actor]:
-    """Return the ego that leaves its lane to the right, and one that hardly moves to its left, both 40 degrees across the lane: side by side.
+    """Return the ego that leaves its lane to the right, and one to its left that hardly moves, 40 degrees across the lane: side by side.
 
     Along and across the lane their outlines overlap; the boxes are 2.4 m apart. (Two vehicles in a junction of HRV_Pula-27_3.)
     """

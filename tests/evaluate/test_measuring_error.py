@@ -69,6 +69,16 @@ def test_what_sensors_saw_is_known_to_five_per_cent(
     assert brief(verdicts(rule, scene([10.4] * 3, sensors=50.0))) == [PASS]
 
 
+@pytest.mark.parametrize(("unit", "value", "expected"), [("m", 0.95, UNKNOWN), ("m", 0.89, FAIL), ("s", 0.94, FAIL)])
+def test_no_distance_is_known_better_than_to_a_decimetre(
+    tmp_path: Path, unit: str, value: float, expected: tuple[str, str]
+) -> None:
+    sql = SQL.format(more="").replace("10 AS required", "1 AS required")
+    rule = write(tmp_path, INVARIANT | {"sense": '">"', "unit": f'"{unit}"'} | READS, {"condition": sql})
+    assert brief(verdicts(rule, scene([value], sensors=50.0))) == [expected]
+    assert brief(verdicts(rule, scene([value]))) == [FAIL]
+
+
 def test_an_occasion_is_judged_so_too(tmp_path: Path) -> None:
     sections = {
         "reference": "SELECT drive_id, ego_id, t_ns FROM ego_state WHERE t_ns = 100000000",

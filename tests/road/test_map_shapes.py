@@ -15,6 +15,7 @@ from drivelint.engine.derive import derive
 from drivelint.formats import load_map, read_source
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations
+from drivelint.sql.statements import statement
 from tests.shared_data import ROOT, shared
 
 if TYPE_CHECKING:
@@ -160,3 +161,23 @@ def test_the_grid_finds_the_lanes_that_contain_a_point(name: str, found: list[tu
         WHERE apart_m(ST_Point(s.x_m, s.y_m), l.geom) > {math.hypot(SLACK_M, SIDEWAYS_M) + CENTIMETRE}
     """).fetchall()
     assert too_far == []
+
+
+def test_objects_are_areas_lines_and_points_in_one_map() -> None:
+    """DuckDB 1.5.5 evaluates what two branches of a CASE share for every row: a polygon of two corners ends the statement."""
+    outlines = {
+        "area": ([0, 4, 4, 0], [0, 0, 2, 2]),
+        "line": ([0, 3, 6], [1, 1, 1]),
+        "two": ([0, 3], [1, 1]),
+        "none": ([], []),
+    }
+    con = store.connect(threads=1)
+    for name, (x, y) in outlines.items():
+        con.execute(
+            "INSERT INTO road_object BY NAME SELECT 'm' AS environment_id, ? AS object_id, 'obstacle' AS kind, '1' AS road_id, "
+            "0.0 AS road_s_m, 7.0 AS x_m, 8.0 AS y_m, ?::DOUBLE[] AS outline_x_m, ?::DOUBLE[] AS outline_y_m",
+            [name, x, y],
+        )
+    con.execute(statement("map_shapes/road_object"))
+    found = dict(con.execute("SELECT object_id, ST_GeometryType(geom)::VARCHAR FROM road_object").fetchall())
+    assert found == {"area": "POLYGON", "line": "LINESTRING", "two": "POINT", "none": "POINT"}

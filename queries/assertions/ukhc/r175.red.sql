@@ -7,7 +7,7 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_state", "step", "stop_line_crossing"]
+-- reads = ["ego_condition", "ego_state", "step", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
 --
 -- [params.line_m]
@@ -17,6 +17,14 @@
 --
 -- [reasons.stands_at_line]
 -- says = "the light was {state}, and the ego stood no more than {line_m:g} m further on: whether behind the line is not known so exactly"
+--
+-- [params.turn_m]
+-- default = 30.0
+-- unit = "m"
+-- why = "our default: who turns at a junction has turned so far past its stop line"
+--
+-- [reasons.right_on_red]
+-- says = "the light was {state}, and the ego turned right: in {nation} that is allowed after a stop, or without one where a lane of its own leads off; a person must judge"
 --
 -- [reasons.line_crossing_unseen]
 -- says = "the log does not show when the ego crossed the stop line"
@@ -34,9 +42,17 @@ SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.
         FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
         WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + $line_m
             AND e.speed_mps <= standstill_mps()
-    ) AS stands
+    ) AS stands,
+    -- North America drives on the right and turns right on red.
+    CASE WHEN g.nation IN ('us', 'ca') AND EXISTS (
+        FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
+        WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + $turn_m
+            AND wrap_rad(e.yaw_rad - a.yaw_rad) < -pi() / 6
+    ) THEN g.nation END AS turns_right_in
 FROM stop_line_crossing c
 JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
+LEFT JOIN ego_state a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.t_ns = c.t_ns
+LEFT JOIN ego_condition g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.t_ns = c.t_ns
 WHERE c.control = 'traffic_light'
 
 -- @condition
@@ -44,11 +60,12 @@ WHERE c.control = 'traffic_light'
 -- either the light or its recording failed.
 SELECT drive_id, ego_id, t_ns, ref_id,
     CASE WHEN begin_seen AND NOT coalesce(state = 'off' AND forbids(state_before), false) AND (NOT coalesce(changed, false) OR forbids(state_before) = forbids(state))
-        AND NOT (stands AND coalesce(forbids(state), false)) THEN NOT forbids(state) END AS holds,
+        AND NOT ((stands OR turns_right_in IS NOT NULL) AND coalesce(forbids(state), false)) THEN NOT forbids(state) END AS holds,
     CASE WHEN NOT begin_seen THEN why('line_crossing_unseen')
         WHEN state IS NULL THEN why('light_state_unknown')
         WHEN state = 'off' AND forbids(state_before) THEN why('red_then_off')
         WHEN changed THEN why('light_turned', {'state': state})
+        WHEN turns_right_in IS NOT NULL AND forbids(state) THEN why('right_on_red', {'state': state, 'nation': turns_right_in})
         WHEN stands AND forbids(state) THEN why('stands_at_line', {'state': state, 'line_m': $line_m})
         ELSE why('light_was', {'state': state}) END AS reason
 FROM reference

@@ -40,6 +40,7 @@ class Binding:
             "_all": rule.combine == "all",
             "_combined": rule.combine != "each",
             "_physical": rule.subtype == "physical",
+            "_metres": rule.unit == "m",
             **applicability.bound_values(rule),
         }
         for field, name in _ENGINE.items():
@@ -77,7 +78,8 @@ def condition_ctes(rule: Rule) -> str:
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
     (NULL: unknown),
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
-    NaN is NULL. What is missed by less than the `error` of the value is unknown. A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
+    NaN is NULL. What is missed by less than the `error` of the value is unknown.
+    A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
     has = rule.has_column
     measured = rule.sense != "holds"

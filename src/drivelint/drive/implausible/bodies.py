@@ -236,7 +236,7 @@ def _coupled(one: _Boxes, other: _Boxes) -> bool:
 
 
 def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
-    """Say in which of their first samples (n) two tracks that move overlap, deep at once, and part again with no sign of an impact, or are hardly apart."""
+    """Say in which of their first samples (n) two tracks that move overlap, deep at once, or are hardly apart, without an impact."""
     depth, speeds = _overlap(one, other)[0].min(axis=0), np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
