@@ -1,4 +1,4 @@
-"""The comparison with the peer of the German rules, on made-up numbers: the peer itself is not needed."""
+"""The comparison of the German rules with commonroad-stl-monitor 2025.1.1, on made-up numbers: the peer itself is not needed."""
 
 from __future__ import annotations
 
