@@ -187,6 +187,11 @@ def _border_within_75_cm(pair: Pair, step: int) -> bool:
     return 0.2 < pair.values.get(step, 9.0) <= 0.75
 
 
+def _time_to_speed_up(pair: Pair, step: int) -> bool:
+    """The ego has been in the recording for less than 10 s."""
+    return (step - min(pair.steps)) * pair.dt_s < 10.0
+
+
 def _within_tolerance(pair: Pair, step: int) -> bool:
     """Ours has judged that step, and the speed is within the tolerance."""
     return step in pair.values
@@ -206,5 +211,6 @@ FACTS: Mapping[str, Callable[[Pair, int], bool]] = {
     "fewer_than_three_ahead": _fewer_than_three_ahead,
     "faster_than_walking_pace": _faster_than_walking_pace,
     "border_within_75_cm": _border_within_75_cm,
+    "time_to_speed_up": _time_to_speed_up,
     "within_tolerance": _within_tolerance,
 }

@@ -21,6 +21,12 @@ def public_scenarios() -> list[Path]:
     return sorted((DATA / "commonroad").glob("*.xml"))
 
 
+def scenario_kinds(scenario: Path) -> tuple[str, ...]:
+    """Return the peer's kinds of a scenario: every one is judged as a motorway, and one that has an intersection as such, too."""
+    has_intersection = etree.parse(scenario).getroot().find("intersection") is not None
+    return ("interstate", "intersection") if has_intersection else ("interstate",)
+
+
 def with_speed_limit(scenario: Path, limit_kmh: int, folder: Path) -> Path | None:
     """Write a scenario again, with one German speed limit for all lanes; None if it has signs or is older than 2020a.
 

@@ -28,7 +28,7 @@ TWINS = {
     "intersection": {"stvo.rin1": "R_IN1"},
 }
 """Our rules and the peer's, by the peer's kind of scenario. R_IN3 to R_IN5 have no rule here."""
-CPU_S, MEMORY_BYTES = 1800, 5_000_000_000
+CPU_S, MEMORY_BYTES = 900, 4_000_000_000
 """A peer that takes more for one scenario is stopped, and decides nothing in it."""
 RANK = ("fail", "unknown", "pass", "not_applicable")
 

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from .kinds import Kind, kinds, load_kinds
-from .scenarios import LIMITS_KMH, public_scenarios, with_speed_limit
+from .scenarios import LIMITS_KMH, public_scenarios, scenario_kinds, with_speed_limit
 from .sides import Pair, our_result, pairs, peer_result
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def compared(python: Path, folder: Path, scenarios: Sequence[Path]) -> tuple[lis
     without: dict[str, str] = {}
     for part in ("limited", "theirs", "ours"):
         (folder / part).mkdir(parents=True, exist_ok=True)
-    todo = [(scenario, kind) for scenario in scenarios for kind in ("interstate", "intersection")]
+    todo = [(scenario, kind) for scenario in scenarios for kind in scenario_kinds(scenario)]
     for scenario in scenarios:
         limited = (with_speed_limit(scenario, limit, folder / "limited") for limit in LIMITS_KMH)
         todo += [(twin, "limited") for twin in limited if twin]
@@ -92,6 +92,12 @@ def report(found: Sequence[Pair], without: dict[str, str]) -> tuple[str, bool]:
     share_decided = total.ours_too / max(total.theirs, 1)
     lines += ["", f"differ without an explanation: {share_unexplained:.1%} of the pairs that both decide (at most 2 %)"]
     lines += [f"ours decides {share_decided:.1%} of the pairs that the peer decides (at least 70 %)"]
+    recorded = [pair for pair in found if pair.theirs and "+" not in pair.scenario]
+    share_recorded = sum(pair.ours_decides for pair in recorded) / max(len(recorded), 1)
+    share_judged = sum(pair.ours_decides or pair.judged > 0 for pair in recorded) / max(len(recorded), 1)
+    lines += [
+        f"  without the limits that were added: {share_recorded:.1%}; or at least a part of the drive: {share_judged:.1%}"
+    ]
     lines += ["", "differences:"]
     texts = {kind.name: kind for kind in known}
     counts = Counter((pair.rule, (kinds(pair, known) or ["UNEXPLAINED"])[0]) for pair in found if pair.differ)

@@ -11,7 +11,7 @@ from lxml import etree
 from drivelint.catalogue import load_rules
 
 from .kinds import FACTS, kinds, load_kinds
-from .scenarios import with_speed_limit
+from .scenarios import scenario_kinds, with_speed_limit
 from .sides import TWINS, Pair, pairs
 from .stvo import report, table
 
@@ -85,6 +85,8 @@ def test_every_kind_is_computed_and_belongs_to_a_rule() -> None:
         ("faster_than_walking_pace", {9: row(2, other(5, 2))}, {}, False),
         ("border_within_75_cm", {9: row(2)}, {"values": {9: 0.5}}, True),
         ("border_within_75_cm", {9: row(2)}, {"values": {9: 0.8}}, False),
+        ("time_to_speed_up", {0: row(9), 9: row(9)}, {}, True),
+        ("time_to_speed_up", {-91: row(9), 9: row(9)}, {}, False),
         ("within_tolerance", {9: row(20)}, {"values": {9: 20.0}}, True),
         ("within_tolerance", {9: row(20)}, {}, False),
     ],
@@ -158,6 +160,13 @@ def test_steps_and_verdicts_of_both_sides_meet(tmp_path: Path) -> None:
     )
     assert (made["stvo.ri3"].ours, made["stvo.ri3"].theirs) == ("not_applicable", None)
     assert {each.theirs for each in pairs(tmp_path / "s.xml", "interstate", ours, "exit 1")} == {None}
+
+
+@pytest.mark.parametrize(("content", "kinds_of_scenario"), [("", 1), ('<intersection id="1"/>', 2)])
+def test_rules_of_intersections_need_one(tmp_path: Path, content: str, kinds_of_scenario: int) -> None:
+    scenario = tmp_path / "s.xml"
+    scenario.write_text(f"<commonRoad>{content}</commonRoad>")
+    assert len(scenario_kinds(scenario)) == kinds_of_scenario
 
 
 @pytest.mark.parametrize(
