@@ -197,6 +197,16 @@ def _within_tolerance(pair: Pair, step: int) -> bool:
     return step in pair.values
 
 
+def _limit_of_another_country(pair: Pair, step: int) -> bool:
+    """The scenario's id is not German, and at that step there is a limit for us."""
+    return pair.scenario[:3] not in ("DEU", "ZAM") and "+" not in pair.scenario and step in pair.fails
+
+
+def _touches_several_lanes(pair: Pair, step: int) -> bool:
+    """The ego's box is on more than one lanelet."""
+    return bool(pair.steps[step]["lanes"] > 1)
+
+
 FACTS: Mapping[str, Callable[[Pair, int], bool]] = {
     "swaying_cuts_in": _swaying_cuts_in,
     "last_step": _is_last_step,
@@ -213,4 +223,6 @@ FACTS: Mapping[str, Callable[[Pair, int], bool]] = {
     "border_within_75_cm": _border_within_75_cm,
     "time_to_speed_up": _time_to_speed_up,
     "within_tolerance": _within_tolerance,
+    "limit_of_another_country": _limit_of_another_country,
+    "touches_several_lanes": _touches_several_lanes,
 }

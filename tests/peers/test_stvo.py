@@ -87,12 +87,22 @@ def test_every_kind_is_computed_and_belongs_to_a_rule() -> None:
         ("border_within_75_cm", {9: row(2)}, {"values": {9: 0.8}}, False),
         ("time_to_speed_up", {0: row(9), 9: row(9)}, {}, True),
         ("time_to_speed_up", {-91: row(9), 9: row(9)}, {}, False),
+        ("limit_of_another_country", {9: row(20)}, {"fails": (9,)}, True),
+        ("limit_of_another_country", {9: row(20)}, {"fails": (8,)}, False),
+        ("touches_several_lanes", {9: {**row(20), "lanes": 2}}, {}, True),
+        ("touches_several_lanes", {9: row(20)}, {}, False),
         ("within_tolerance", {9: row(20)}, {"values": {9: 20.0}}, True),
         ("within_tolerance", {9: row(20)}, {}, False),
     ],
 )
 def test_a_kind_follows_from_numbers(name: str, steps: dict[int, Any], more: dict[str, Any], is_so: bool) -> None:
     assert FACTS[name](pair("stvo.rg1", "pass", "kept", steps=steps, **more), 9) is is_so
+
+
+@pytest.mark.parametrize("scenario", ["DEU_A9-1", "ZAM_Test-1", "USA_US101-4_1_T-1+60"])
+def test_a_german_sign_is_known_to_the_peer(scenario: str) -> None:
+    judged = Pair(scenario, "stvo.rg3", "7", "fail", "kept", fails=(9,), steps={9: row(20)})
+    assert not FACTS["limit_of_another_country"](judged, 9)
 
 
 def test_a_difference_is_explained_only_if_each_step_of_the_breach_is() -> None:
