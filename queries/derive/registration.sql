@@ -70,8 +70,9 @@ map_check AS (
         -- If the ego is against its lane, the other vehicles can tell, unless the log began in the middle of an overtake. If it is off the
         -- lanes, the map may lack just its lane.
         n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against,
-        -- If the ego is far from the middle of its lane, the others are as well on a map that is moved across.
-        n_on_lane >= 0.8 * n_steps AND NOT n_with_direction < 0.6 * n_moving AND lateral_median_m > 1.2 AS is_far
+        -- If the ego is far from the middle of its lane, the others are as well on a map that is moved across. An ego that mostly stands may
+        -- be parked beside its lane.
+        n_on_lane >= 0.8 * n_steps AND NOT n_with_direction < 0.6 * n_moving AND lateral_median_m > 1.2 AND 2 * n_moving >= n_steps AS is_far
     FROM step_count c
     JOIN data_log g USING (drive_id)
     LEFT JOIN environment m ON m.environment_id = g.environment_id
