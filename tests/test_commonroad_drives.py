@@ -53,8 +53,12 @@ def test_the_vehicle_that_crosses_a_solid_line_fails(peach: Mapping[tuple[str, s
 
 
 def test_limits_of_an_older_scenario_are_judged() -> None:
-    """Two never move. Unknown: 1230, whose place does not fit the map, and nine whose speeds their positions contradict for a while."""
+    """Two never move. Unknown: nine whose speeds their positions contradict for a while.
+
+    1230, 8.5 m long, is 1.5 to 1.8 m off the middles of its lanes for the second that it is seen. The map is not moved: by shapely, half of
+    the time each of the 21 other moving vehicles is within 0.43 m of one.
+    """
     found = {ego: verdict for (ego, _), verdict in verdicts("USA_Lanker-1_1_T-1", LIMIT).items()}
-    assert sum(verdict in {"pass", "fail"} for verdict in found.values()) == 12
+    assert sum(verdict in {"pass", "fail"} for verdict in found.values()) == 13
     contradicted = {"1219", "1221", "1231", "1240", "1242", "1245", "1253", "1254", "1266"}
-    assert {ego for ego, verdict in found.items() if verdict == "unknown"} == {"1230", *contradicted}
+    assert {ego for ego, verdict in found.items() if verdict == "unknown"} == contradicted

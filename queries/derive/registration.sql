@@ -69,18 +69,21 @@ map_check AS (
             AND against_one_way_ns > one_way_ns() AND against_one_way_ns >= 0.8 * against_ns, false) AS is_against_one_way,
         -- If the ego is against its lane, the other vehicles can tell, unless the log began in the middle of an overtake. If it is off the
         -- lanes, the map may lack just its lane.
-        n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against
+        n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against,
+        -- If the ego is far from the middle of its lane, the others are as well on a map that is moved across. An ego that mostly stands may
+        -- be parked beside its lane.
+        n_on_lane >= 0.8 * n_steps AND NOT n_with_direction < 0.6 * n_moving AND lateral_median_m > 1.2 AND 2 * n_moving >= n_steps AS is_far
     FROM step_count c
     JOIN data_log g USING (drive_id)
     LEFT JOIN environment m ON m.environment_id = g.environment_id
 ),
--- If the ego drives against its lane, the other vehicles tell whether the map or the ego is wrong.
+-- If the ego drives against its lane, or far from its middle, the other vehicles tell whether the map or the ego is wrong.
 vehicle_place AS (
     SELECT
         s.drive_id, s.actor_id, s.t_ns, s.speed_mps,
         min({'off_m': abs(o.d_m), 'with_traffic': n.bidirectional OR abs(o.heading_diff_rad) < pi() / 2, 'is_along': abs(o.heading_diff_rad) < turned_off_rad()}) FILTER (o.drivable) AS b
     FROM state_dynamics s
-    SEMI JOIN map_check j ON j.drive_id = s.drive_id AND NOT j.has_no_map AND j.is_against
+    SEMI JOIN map_check j ON j.drive_id = s.drive_id AND NOT j.has_no_map AND (j.is_against OR j.is_far)
     JOIN data_log g ON g.drive_id = s.drive_id
     JOIN road_user a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND is_vehicle(a.actor_class) AND a.actor_class <> 'bicycle'
     LEFT JOIN lane_occupancy o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id AND o.t_ns = s.t_ns
@@ -98,13 +101,14 @@ other_vehicle AS (
     GROUP BY ALL
     HAVING max(t_ns) - min(t_ns) >= 3_000_000_000
 ),
+-- One or two vehicles that drive beside the middle as well may make a moved map fit: across, three are needed.
 witness_count AS (
     SELECT j.drive_id, j.ego_id, count(*) FILTER (o.is_fitting) AS n_fit, count(*) AS n_witnesses
     FROM map_check j
     JOIN other_vehicle o ON o.drive_id = j.drive_id AND o.actor_id <> j.ego_id
-    WHERE j.is_against
-    GROUP BY ALL
-    HAVING n_fit > 0 AND n_fit >= 0.75 * n_witnesses
+    WHERE j.is_against OR j.is_far
+    GROUP BY j.drive_id, j.ego_id, j.is_far
+    HAVING n_fit >= CASE WHEN j.is_far THEN 3 ELSE 1 END AND n_fit >= 0.75 * n_witnesses
 ),
 -- Other vehicles that do not keep to their lanes: if there are any, the map may be wrong about the one-way road, too.
 misfit AS (

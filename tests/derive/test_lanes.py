@@ -277,6 +277,27 @@ def test_other_vehicles_tell_whether_the_map_or_the_ego_is_elsewhere(
     assert wrong == ({"fail"} if ok else {"unknown"})
 
 
+@pytest.mark.parametrize(
+    ("off_m", "moved_m", "n_others", "driving_s", "ok"),
+    [
+        (1.3, 0.0, 3, 4.0, True),
+        (1.3, 0.0, 2, 4.0, False),
+        (0.0, 1.3, 3, 4.0, False),  # the map is moved, under everybody
+        (1.8, -0.5, 3, 4.0, True),
+        (1.3, 0.0, 3, 1.5, False),  # it may be parked beside the lane
+    ],
+)
+def test_other_vehicles_tell_whether_the_map_is_moved_across(
+    off_m: float, moved_m: float, n_others: int, driving_s: float, ok: bool
+) -> None:
+    way, t = road(((2000.0, 0.0),), hand="rht"), times(4.0)
+    middle = way.own - moved_m * way.over
+    actors = [moving("ego", way, t, 600 + 12 * np.minimum(t, driving_s), middle - off_m * way.over)]
+    actors += [moving(f"o{n}", way, t, 700 + 30 * n + 12 * t, middle) for n in range(n_others)]
+    (found,) = rows(derived(drive(actors, way.environment), tables=["registration"]), "FROM registration")
+    assert found["ok"] is ok
+
+
 @pytest.mark.parametrize(("seconds", "ok"), [(14.5, False), (15.5, True)])
 def test_a_log_may_begin_in_the_middle_of_an_overtake(seconds: float, ok: bool) -> None:
     """Against its lane for no longer than an overtake takes: the other vehicles tell nothing about the ego then."""
