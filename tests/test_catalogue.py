@@ -65,6 +65,7 @@ def test_cases(rule_id: str) -> None:
     assert coverage_problem(read_cases(rule)) == ""
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("rule_id", SAMPLE)
 def test_each_case_alone_and_as_egos(rule_id: str) -> None:
     assert [message for _, ok, message in run_cases(RULES[rule_id]) if not ok] == []

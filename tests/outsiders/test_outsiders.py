@@ -72,12 +72,12 @@ KNOWN: Final = {
     "walk_stops_v ukhc.h2.turn-pedestrian": "whether somebody on foot stopped for the ego, nobody can tell",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
-QUICK: Final = PERSONS[-1:]
-"""Of whom every run judges the scenes; the others take half a minute each."""
+BY_CI: Final = PERSONS[-1:]
+"""Whose scenes .ci/run judges; each takes half a minute."""
 
 
 def marks(person: str) -> list[pytest.MarkDecorator]:
-    return [] if person in QUICK else [pytest.mark.slow]
+    return [pytest.mark.ci if person in BY_CI else pytest.mark.slow]
 
 
 by_person = pytest.mark.parametrize("person", [pytest.param(p, marks=marks(p)) for p in PERSONS])
