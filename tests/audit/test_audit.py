@@ -111,6 +111,7 @@ def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     assert (again.reused, again.n_drives) == (3, 4)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_processes_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, workers: int
@@ -138,6 +139,7 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     assert len(released) > 1
 
 
+@pytest.mark.ci
 def test_shards_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -148,6 +150,7 @@ def test_shards_give_the_same_tables(
     assert merge(str(tmp_path / "out"), Silent()).digest == undisturbed[1].digest
 
 
+@pytest.mark.ci
 def test_kills_lose_nothing_and_double_nothing(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -201,6 +204,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
 
 
+@pytest.mark.ci
 def test_a_drive_that_takes_too_long_is_quarantined(drives: fleet.Fleet, tmp_path: Path) -> None:
     one = drives.manifest.parent / "logs" / "drive-00000.parquet"
     request = AuditRequest(

@@ -209,6 +209,7 @@ def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> Non
     assert "Not complete" in page_of(out).text_content()
 
 
+@pytest.mark.ci
 def test_a_baseline_says_what_is_new(audited: Audited) -> None:
     ran("report", audited.new, "--baseline", audited.base)
     since = section(page_of(audited.new), "since")

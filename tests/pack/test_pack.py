@@ -41,6 +41,7 @@ def by_all_rules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_pack(out / "result", out / "pack")
 
 
+@pytest.mark.ci
 def test_any_duckdb_gives_the_numbers_of_every_finding(by_all_rules: Path) -> None:
     findings = pq.read_table(by_all_rules / "data/result/findings.parquet").to_pylist()
     assert len({row["rule_id"] for row in findings}) >= 10
@@ -57,6 +58,7 @@ def test_any_duckdb_gives_the_numbers_of_every_finding(by_all_rules: Path) -> No
         ], row["rule_id"]
 
 
+@pytest.mark.ci
 def test_the_rows_are_few_and_decide(by_all_rules: Path, tmp_path: Path) -> None:
     """A contact is judged by one row of one pair; with another number in that row, the SQL gives another margin."""
     findings = pq.read_table(by_all_rules / "data/result/findings.parquet").to_pylist()

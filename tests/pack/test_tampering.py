@@ -250,6 +250,7 @@ def test_an_untouched_pack(packed: Packed, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, "untouched since it was signed\n"), done.stderr
 
 
+@pytest.mark.sample(3, ci=99)
 @pytest.mark.parametrize("name", TAMPERED)
 def test_what_was_changed_is_named(name: str, packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
