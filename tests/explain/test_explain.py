@@ -89,6 +89,7 @@ def test_a_value_that_is_nearly_nothing_keeps_its_digits() -> None:
     assert told == "Distance 0.0042 m at 7.70 s, object 3.1234 where more than -1.23 m/s2 is required"
 
 
+@pytest.mark.ci
 def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not(folder: Path, tmp_path: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     change = next(c for c in found.changes if c.name == "nominal.pull_out_headroom_m")
@@ -421,6 +422,7 @@ def test_the_whole_name_of_a_log_goes_before_the_beginning_of_another() -> None:
         _meant("near", known, "drive")
 
 
+@pytest.mark.ci
 def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> None:
     found = of(folder, "no-collision")
     assert found.verdict["drive_id"].startswith("collision")
