@@ -363,6 +363,7 @@ def safe_distance(  # noqa: PLR0917 - the formula's own symbols
     return w / math.tan(beta) + v_av * passing + w / math.tan(theta) + stopping + v_ov * (pull + passing + cut)
 
 
+@pytest.mark.ci
 @settings(max_examples=8, deadline=None)
 @example(
     14.5, 13.5, 17.0, 8.0, 12.0
