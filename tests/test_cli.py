@@ -304,6 +304,7 @@ def _cells(line: str) -> list[str]:
     return line.split(",")
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "name", ["ghost", *(pytest.param(name, marks=pytest.mark.slow) for name in ("restart", "restart before"))]
 )
