@@ -125,7 +125,7 @@ def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str,
     assert message in said
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(3, ci=3)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [
@@ -160,7 +160,7 @@ def test_what_is_wrong_in_cases_is_said_with_its_line(
     assert "\n" not in said
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [
