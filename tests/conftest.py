@@ -43,7 +43,7 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": 1, "tests/derive": 1, "tests/evaluate": 2}
+FEW: Final = {"tests/absence": 1, "tests/derive": 1, "tests/evaluate": 1}
 """Folder -> so many cases of each of its tests are quick, and the others are marked `ci`, unless the test is marked `sample`."""
 
 
