@@ -6,6 +6,8 @@ import shutil
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import pytest
+
 from drivelint.pack import VerifyRequest, verify
 from drivelint.report.outputs import write
 from drivelint.resources import folder
