@@ -501,7 +501,7 @@ def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
     return drive([ego, vbp, ov], way.environment)
 
 
-@pytest.mark.sample(0, ci=2)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
