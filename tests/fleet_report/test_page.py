@@ -210,6 +210,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     assert log.name in section(written, "open").text_content()
 
 
+@pytest.mark.ci
 def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     out = tmp_path / "out"

@@ -95,6 +95,7 @@ def test_anything_in_any_place(path: tuple[Any, ...], dataset: str, tmp_path: Pa
     assert [text for text in refused if "\n" in text] == []
 
 
+@pytest.mark.ci
 @pytest.mark.filterwarnings("error")
 def test_damaged_bytes(tmp_path: Path) -> None:
     content = pickle.dumps(CONTENT, 4)
