@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,13 +27,21 @@ from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 
 
-@pytest.fixture
-def audited(tmp_path: Path) -> tuple[Path, int]:
-    """Return an audit with contacts, and in how many drives."""
-    few = fleet.write(tmp_path / "fleet", 12)
+@pytest.fixture(scope="module")
+def once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """Return an audit with contacts, and in how many drives; nobody may alter it."""
+    home = tmp_path_factory.mktemp("audited")
+    few = fleet.write(home / "fleet", 12)
     assert len(few.planted) > 1
-    judged(few, tmp_path / "out")
-    return tmp_path / "out", len(few.planted)
+    judged(few, home / "out")
+    return home / "out", len(few.planted)
+
+
+@pytest.fixture
+def audited(once: tuple[Path, int], tmp_path: Path) -> tuple[Path, int]:
+    """Return a copy of that audit."""
+    shutil.copytree(once[0], tmp_path / "out")
+    return tmp_path / "out", once[1]
 
 
 def told(out: Path, *, robust: bool = True) -> tuple[str, AuditSummary]:
