@@ -83,7 +83,7 @@ def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
             by_test[str(item.path), item.originalname].append(item)
     for (path, name), cases in by_test.items():
         sides = {id(case): SIDES.get(str(case.callspec.params.get("hand"))) for case in cases}
-        quick, later = cases, []
+        quick, later = cases, list[pytest.Function]()
         if {0, 1} <= set(sides.values()):
             quick = [case for case in cases if sides[id(case)] in {None, zlib.crc32(name.encode()) % 2}]
         if sample := cases[0].get_closest_marker("sample"):
