@@ -239,6 +239,7 @@ def test_a_frame_far_from_all_others_is_no_part_of_the_drive(tmp_path: Path) -> 
     assert (code, drive["lossy"], drive["duration_s"]) == (1, False, pytest.approx(5.9))
 
 
+@pytest.mark.ci
 def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
     """At 100 Hz, and gone for three seconds in which objects come at 10 Hz: one stretch is unknown, not thirty."""
     messages = [ros_log.things(k / 10, ros_log.thing(1, 300.0, 4.0), topic="/objects") for k in range(60)]

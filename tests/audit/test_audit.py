@@ -101,6 +101,7 @@ def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tupl
     assert not executor.tasks
 
 
+@pytest.mark.ci
 def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     judged(few, tmp_path / "out")
@@ -235,6 +236,7 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
 
 
+@pytest.mark.ci
 def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
@@ -243,6 +245,7 @@ def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Pa
     assert judged(few, tmp_path / "out").reused == 3
 
 
+@pytest.mark.ci
 def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = tmp_path / "fleet" / "logs"
@@ -262,6 +265,7 @@ def tags_in(out: Path) -> list[dict[str, str]]:
     return sorted((dict(row["tags"]) for row in rows), key=str)
 
 
+@pytest.mark.ci
 def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 1)
     log = few.manifest.parent / "logs" / "drive-00000.parquet"
@@ -279,6 +283,7 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
         assert "1 log of the name and content of another, with its tags" in summary_text(counted, "out", ExitCode.OK)
 
 
+@pytest.mark.ci
 def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     judged(few, tmp_path / "out")
@@ -389,6 +394,7 @@ def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path:
             merge(str(tmp_path / "out"), Silent())
 
 
+@pytest.mark.ci
 def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"

@@ -144,6 +144,7 @@ def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: p
     assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(counted, "out", ExitCode.FAILED)
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("ego", ["0", "1"])
 def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: str) -> None:
     """A log is judged with ego 0, and again with the same or another one: only another one adds its distance."""
@@ -175,6 +176,7 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
     assert any(line.startswith("  and 3 more: drivelint sql out ") for line in lines)
 
 
+@pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
     ("tag", "told"),
     [("weather", "column weather is a tag only"), ("Handednes", "did you mean handedness?"), ("lap", None)],
@@ -196,6 +198,7 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
     assert all(str(told) in note for note in said)
 
 
+@pytest.mark.ci
 def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
@@ -239,6 +242,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
         assert content(con, out, None, ()).n_not_judged == 1
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize(
     ("column", "value", "words"),
     [
