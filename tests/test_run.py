@@ -79,6 +79,7 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.ci
 def test_tracks_are_the_same_wherever_the_egos_are_cut(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

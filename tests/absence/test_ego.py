@@ -163,6 +163,7 @@ def test_a_place_that_is_not_recorded_is_none(tmp_path: Path) -> None:
     require_missed(checked(path), "4.0 of 5.9 s (68 %)", FROM)
 
 
+@pytest.mark.ci
 def test_topics_begin_and_end_beside_each_other(tmp_path: Path) -> None:
     """A recorder of ROS finds the odometry up to a second after the objects."""
     missing = [*range(8), *range(N - 8, N)]
@@ -193,6 +194,7 @@ def screen(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
     return run
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("more", [(), ("--strict",)])
 def test_the_first_screen_says_it(tmp_path: Path, screen: Screen, more: tuple[str, ...]) -> None:
     """The near miss of the fixtures without its ego from frame 60 of 181 on."""

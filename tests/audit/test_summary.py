@@ -136,6 +136,7 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
     assert "more reason" not in all_told
 
 
+@pytest.mark.ci
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "MOST_RULES", 0)
     few = fleet.write(tmp_path / "fleet", 12)
@@ -226,6 +227,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
 
 
+@pytest.mark.ci
 def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
