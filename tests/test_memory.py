@@ -304,6 +304,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
     assert ("actor_state.arrow" in mapped) is not full
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lifted", [False, True])
 def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool) -> None:
     held = "SELECT sum(memory_usage_bytes) FROM duckdb_memory()"

@@ -46,6 +46,7 @@ def judged(logs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, 
     return out, checked(logs, ("collision", "near-miss-25mph"), out, keep_db=True)
 
 
+@pytest.mark.ci
 def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_about_half(
     judged: tuple[Path, list[Row]],
 ) -> None:

@@ -206,6 +206,7 @@ def compared(base: Result, new: Result, tags: tuple[dict[str, str], dict[str, st
         return compare(con, **more)
 
 
+@pytest.mark.ci
 def test_planted_changes_and_only_they(checked: Checked) -> None:
     base = load_result(checked(*RULES_OF_BASE))
     rows = base.findings.to_pylist()

@@ -131,6 +131,7 @@ def test_advice_names_a_profile_that_has_room() -> None:
     assert [each["mode"] for each in of_type(near, "mode")] == ["aggressive"]
 
 
+@pytest.mark.ci
 def test_it_halts_within_a_step_and_says_so(tmp_path: Path) -> None:
     out = tmp_path / "out"
     messages = watched(*options("ukhc.no-collision"), "--halt-on", "critical", "--out", out, every=2.5)
