@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import zlib
 from collections import defaultdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import pytest
@@ -19,9 +20,10 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-# how long an example takes says how busy the machine is, and nothing of the law
-settings.register_profile("drivelint", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("drivelint")
+# how long an example takes says how busy the machine is, and nothing of the law; .ci/full asks for `thorough`
+for profile, n in (("quick", 40), ("thorough", 200)):
+    settings.register_profile(profile, max_examples=n, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("quick")
 
 # pytest-xdist sets the width of its terminal, which would be that of every command that a test runs
 os.environ.pop("COLUMNS", None)
@@ -43,6 +45,8 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
+FEW: Final = {"tests/absence": 1, "tests/derive": 1, "tests/evaluate": 1}
+"""Folder -> so many cases of each of its tests are quick, and the others are marked `ci`, unless the test is marked `sample`."""
 
 
 @pytest.fixture(scope="session")
@@ -73,19 +77,27 @@ def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
     """Mark what a quick run leaves out of tests with many cases.
 
     Of a test of both sides of the road one side is slow: every run has half of the tests on the left, half on the right. Of a test marked
-    `sample(n)` all cases but n are.
+    `sample(n, ci=m)` n cases are quick, m more are marked `ci`, and the others are slow.
     """
     by_test: dict[tuple[str, str], list[pytest.Function]] = defaultdict(list)
     for item in items:
         if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
             by_test[str(item.path), item.originalname].append(item)
-    for (_, name), cases in by_test.items():
+    for (path, name), cases in by_test.items():
         sides = {id(case): SIDES.get(str(case.callspec.params.get("hand"))) for case in cases}
-        quick = cases
+        quick, later = cases, list[pytest.Function]()
         if {0, 1} <= set(sides.values()):
             quick = [case for case in cases if sides[id(case)] in {None, zlib.crc32(name.encode()) % 2}]
         if sample := cases[0].get_closest_marker("sample"):
-            quick = sorted(quick, key=lambda case: zlib.crc32(case.name.encode()))[: sample.args[0]]
+            quick, later = _parted(quick, sample.args[0], sample.kwargs.get("ci", 0))
+        elif few := FEW.get(Path(path).parent.relative_to(ROOT).as_posix()):
+            quick, later = _parted(quick, few, len(quick))
         for case in cases:
             if case not in quick:
-                case.add_marker(pytest.mark.slow)
+                case.add_marker(pytest.mark.ci if case in later else pytest.mark.slow)
+
+
+def _parted(cases: list[pytest.Function], n: int, more: int) -> tuple[list[pytest.Function], list[pytest.Function]]:
+    """Return n of the cases, and others up to `more`: always the same ones, whatever their order."""
+    ordered = sorted(cases, key=lambda case: zlib.crc32(case.name.encode()))
+    return ordered[:n], ordered[n : n + more]

@@ -122,7 +122,7 @@ def command(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) 
     return run
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize("who", ["all", "ego", "others"])
 @pytest.mark.parametrize("absent", COLUMNS)
 def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command: Command) -> None:

@@ -224,6 +224,7 @@ def test_a_mistake_is_one_line_with_the_right_exit_code(
     assert got == code or (code is None and got in {2, 4})
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize(("n", "is_there"), [(1, True), (2, True), (1, False)], ids=["one", "two", "a name of nothing"])
 def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(
     n: int, is_there: bool, tmp_path: Path, ran: Ran
@@ -319,6 +320,7 @@ def _cells(line: str) -> list[str]:
     return line.split(",")
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "name", ["ghost", *(pytest.param(name, marks=pytest.mark.slow) for name in ("restart", "restart before"))]
 )

@@ -241,6 +241,7 @@ def test_diff_of_two_results(results: dict[str, Path], ran: Ran) -> None:
     assert ran("diff", base, "nowhere")[0] == 2
 
 
+@pytest.mark.ci
 def test_a_log_of_another_content_is_matched_by_its_name(results: dict[str, Path], ran: Ran) -> None:
     """As where a simulation is repeated: the id of the drive and of the finding are others."""
     text = Path(NEAR).read_text(encoding="utf-8").rstrip("\n").splitlines()
@@ -269,6 +270,7 @@ def test_a_collision_is_not_fixed_by_a_log_in_which_the_other_car_ends_before_it
     assert all(re.match("object oncoming is recorded (from 0.00 s to 6.00 s|until 6.000 s) only", why) for why in whys)
 
 
+@pytest.mark.ci
 def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], ran: Ran, tmp_path: Path) -> None:
     folder = tmp_path / "copy"
     folder.mkdir()
@@ -284,6 +286,7 @@ def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], 
     assert (folder / "junit.xml").read_bytes() == (results["new"] / "junit.xml").read_bytes()
 
 
+@pytest.mark.ci
 def test_a_new_run_leaves_no_report_of_an_older_one(ran: Ran) -> None:
     Path("w.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
     check = ["check", SAFE, *ON_ROAD, *SDA, "--no-annotate", "--out", "out"]

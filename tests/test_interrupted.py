@@ -96,6 +96,7 @@ def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = Non
     )
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "later_s",
     [pytest.param(0.0, id="between two drives", marks=pytest.mark.slow), pytest.param(1.0, id="while one is judged")],
@@ -126,6 +127,7 @@ def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
     assert load_result(tmp_path / "out").interrupted
 
 
+@pytest.mark.ci
 def test_before_any_drive_is_judged_there_is_no_result(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "BATCH_STATES", 1)
     stopper = Stopper(0, later_s=0.01)
@@ -181,6 +183,7 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack:
     assert (process.returncode, sentence in err) == (0, True), err
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
 @pytest.mark.parametrize("earlier", [True, False])
 def test_ctrl_c_before_anything_is_judged_says_so_and_keeps_an_earlier_result_aside(
@@ -222,6 +225,7 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
 def test_ctrl_c_ends_the_check_at_the_end_of_a_watch(pack: Path, tmp_path: Path, scratch: Path) -> None:
     out = tmp_path / "out"
@@ -244,6 +248,7 @@ def test_ctrl_c_ends_the_check_at_the_end_of_a_watch(pack: Path, tmp_path: Path,
     assert not list(scratch.iterdir())
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, reason="Ctrl-C is ignored where these tests run")
 def test_a_second_ctrl_c_leaves_no_temporary_folder(tmp_path: Path, scratch: Path) -> None:
     stuck = "import time\nfrom drivelint.watch.run import Watch\nWatch.watch = lambda self: time.sleep(600)"
@@ -286,6 +291,7 @@ class Watcher(Silent):
         self.told.append(n)
 
 
+@pytest.mark.ci
 def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "FIRST_BATCH_DRIVES", 1)
     watcher = Watcher()

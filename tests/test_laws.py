@@ -262,6 +262,7 @@ def test_derived_rows_of_a_hundred_thousand_states() -> None:
     assert first["overtake"][0] > 5
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("table", [name for name, d in derivations().items() if d.needs])
 def test_a_derivation_that_is_not_run_would_have_had_no_rows(table: str) -> None:
     step, con = derivations()[table], _filled()
@@ -287,6 +288,7 @@ def occasions(rule: Rule) -> int:
     return int(con.execute(sql, values).fetchall()[0][0])
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("rule_id", OF_OCCASIONS)
 def test_a_rule_that_is_not_run_would_have_had_no_occasion(rule_id: str) -> None:
     rule, con = OF_OCCASIONS[rule_id], _filled()
@@ -296,6 +298,7 @@ def test_a_rule_that_is_not_run_would_have_had_no_occasion(rule_id: str) -> None
         con.execute("ROLLBACK")
 
 
+@pytest.mark.ci
 def test_a_rule_that_has_an_occasion_is_run() -> None:
     met = [rule for rule in OF_OCCASIONS.values() if occasions(rule)]
     assert len(met) > 30

@@ -66,5 +66,5 @@ def test_nothing_else_stands_at_the_top() -> None:
         pytest.skip("this is no git checkout")
     entries = {name.partition("/")[0] for name in told.stdout.splitlines()}
     folders = {"src", "schemas", "queries", "tests", "fixtures", "findings"}
-    files = {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"}
+    files = {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md"}
     assert {name for name in entries if not name.startswith(".")} == folders | files

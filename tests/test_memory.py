@@ -208,6 +208,7 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
     assert again.drives.equals(usual.drives)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("error", [SHORT, AT_COMMIT], ids=["at once", "at commit"])
 def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())
@@ -223,7 +224,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monk
     assert check(overtakes("safe"), Silent()).verdicts.equals(usual.verdicts)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("memory", [DEFAULT_MEMORY, None])
 def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     memory: int | None, monkeypatch: pytest.MonkeyPatch
@@ -277,6 +278,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
         con.execute(large)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_tables_that_are_set_aside_on_disk_give_the_same_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, full: bool
@@ -302,6 +304,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
     assert ("actor_state.arrow" in mapped) is not full
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lifted", [False, True])
 def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool) -> None:
     held = "SELECT sum(memory_usage_bytes) FROM duckdb_memory()"

@@ -219,6 +219,7 @@ def worst(rows: Iterable[Mapping[str, object]]) -> dict[tuple[str, ...], tuple[s
     return {key: min(each, key=lambda v: (order.index(v[0]), v[1])) for key, each in said.items()}
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["overtake-on-bend", "ukhc.r171.stop-sign"])
 def test_a_mirror_is_the_road_driven_on_the_other_side(name: str) -> None:
     case = cases()[name]

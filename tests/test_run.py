@@ -79,6 +79,7 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.ci
 def test_tracks_are_the_same_wherever_the_egos_are_cut(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -219,7 +220,7 @@ def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: st
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize(
     ("road", "told"),
     [
@@ -326,6 +327,7 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     assert said == {"lht": [], "rht": ["warning"]}
 
 
+@pytest.mark.sample(1, ci=3)
 @pytest.mark.parametrize(("moved_m", "told"), [(0.0, None), (-0.6, None), (0.8, "0.80 m"), (-1.1, "1.10 m")])
 def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told: str | None) -> None:
     """The ego of the fixture keeps to the middle of its lane."""

@@ -79,15 +79,22 @@ def test_the_command_line_takes_every_line_that_readme_and_guides_show() -> None
         called.make_context(called.name, words)  # parses, runs nothing
 
 
-def test_ci_takes_the_test_command_from_the_readme() -> None:
+def test_ci_takes_the_test_command_from_the_readme_and_every_mark_has_its_run() -> None:
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     assert "<!-- command: test -->" in script
-    assert ".venv/bin/pytest" not in script
     assert "pytest" in command("test")
-    for tool in ("ruff check", "ruff format --check", "mypy", "lint-imports"):
+    for tool in (
+        "ruff check",
+        "ruff format --check",
+        "mypy",
+        "lint-imports",
+        'pytest -n 2 --dist loadfile -m "ci and not slow"',
+    ):
         assert f"step .venv/bin/{tool}" in script
+    assert script.count(".venv/bin/pytest") == 1
     full = (ROOT / ".ci" / "full").read_text(encoding="utf-8")
-    for tool in ("pytest -n 2 --dist worksteal -m slow", "drivelint rules test\n", "drivelint rules test --mutate"):
+    everything = 'pytest -n 2 --dist loadfile -m "" --hypothesis-profile thorough'
+    for tool in (everything, "drivelint rules test\n", "drivelint rules test --mutate"):
         assert f"step .venv/bin/{tool}" in full
 
 

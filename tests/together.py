@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
-FILES: Final = 8
+FILES: Final = 15
 """Files of a folder whose scenes are answered together."""
-LEAST_TESTS: Final = 6
-MOST_ROUNDS: Final = 8
+LEAST_TESTS: Final = 8
+MOST_ROUNDS: Final = 5
 """Fewer tests than these, or the questions of a test after so many, are not answered together: a database costs time and memory."""
 Row: TypeAlias = "dict[str, Any]"
 

@@ -85,6 +85,7 @@ def known(row: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in row.items() if value is not None and key not in {"n_copies", "n_stays"}}
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["safe", "near_miss", "collision"])
 def test_every_verdict_and_finding_is_a_message_at_its_time(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -103,6 +104,7 @@ def test_every_verdict_and_finding_is_a_message_at_its_time(out: Path, name: str
     assert bool(found) == (len(findings) > 0)
 
 
+@pytest.mark.ci
 def test_every_actor_has_its_box_at_every_step(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
     states = read_trace(CASE / "near_miss.csv", IngestOptions(mapping=str(CASE / "mapping.toml"))).tables["actor_state"]
@@ -119,6 +121,7 @@ def test_every_actor_has_its_box_at_every_step(out: Path) -> None:
     assert not expected
 
 
+@pytest.mark.ci
 def test_a_viewer_can_follow_the_ego(out: Path) -> None:
     path = the(out / "annotated", "safe")
     boxes = {said.log_time: {e.id: e for e in said.content.entities} for said in messages(path, "scene")}
@@ -132,6 +135,7 @@ def test_a_viewer_can_follow_the_ego(out: Path) -> None:
         assert (move.rotation.z, move.rotation.w) == (cube.pose.orientation.z, cube.pose.orientation.w)
 
 
+@pytest.mark.ci
 def test_lanes_lie_under_everybody_and_are_there_from_the_start(out: Path) -> None:
     path = the(out / "annotated", "safe")
     (said,) = messages(path, "map")
@@ -150,6 +154,7 @@ def test_lanes_lie_under_everybody_and_are_there_from_the_start(out: Path) -> No
             assert road.contains(Point(at.x, at.y))
 
 
+@pytest.mark.ci
 def test_a_finding_shows_the_pair_concerned_and_says_what_is_wrong(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
     entities = shown(path, "markers", T0)
@@ -178,6 +183,7 @@ def test_near_misses_are_drawn_too(logged: tuple[Path, Path]) -> None:
         assert any(f"NEAR MISS {row['rule_id'].removeprefix('ukhc.')}" in text for text in texts)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["safe", "near_miss", "collision"])
 def test_after_a_jump_a_viewer_shows_what_it_shows_when_it_plays(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -188,6 +194,7 @@ def test_after_a_jump_a_viewer_shows_what_it_shows_when_it_plays(out: Path, name
             assert shown(path, topic, t).keys() == played(path, topic, t).keys()
 
 
+@pytest.mark.ci
 def test_nothing_stays_behind_a_finding(out: Path) -> None:
     for path in (out / "annotated").glob("*.mcap"):
         ends = [row["t_end_ns"] for row in rows(out, "findings", path.stem)]
@@ -199,6 +206,7 @@ def test_nothing_stays_behind_a_finding(out: Path) -> None:
     assert not shown(the(out / "annotated", "safe"), "danger_spaces", final)
 
 
+@pytest.mark.ci
 def test_danger_spaces_are_as_long_as_the_stopping_distance(out: Path) -> None:
     path = the(out / "annotated", "safe")
     drawn = messages(path, "danger_spaces")
@@ -223,6 +231,7 @@ def test_danger_spaces_are_as_long_as_the_stopping_distance(out: Path) -> None:
     assert texts == {"ego: pulling out", "VBP", "OV"}
 
 
+@pytest.mark.ci
 def test_the_log_panel_says_what_a_person_should_look_at(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
     lines = messages(path, "log")
@@ -238,6 +247,7 @@ def test_the_log_panel_says_what_a_person_should_look_at(out: Path) -> None:
     assert ours.content.message.count("58.33") == 1, "a reason that tells the numbers tells them alone"
 
 
+@pytest.mark.ci
 def test_metadata_and_summary_say_what_was_judged_and_by_what(out: Path) -> None:
     path = the(out / "annotated", "collision")
     with path.open("rb") as file:
@@ -322,6 +332,7 @@ def test_without_a_map_there_are_boxes_and_verdicts(tmp_path: Path) -> None:
     verify(path)
 
 
+@pytest.mark.ci
 def test_the_layout_shows_every_topic_that_is_there(out: Path) -> None:
     layout = json.loads((out / "annotated" / LAYOUT_FILE).read_bytes())
     panels = layout["configById"]
@@ -370,6 +381,7 @@ def test_a_log_that_changes_while_it_is_judged_is_not_judged(tmp_path: Path, mon
     assert not list((tmp_path / "out").rglob("*.mcap*"))
 
 
+@pytest.mark.ci
 def test_a_folder_that_cannot_be_written_ends_the_run(tmp_path: Path) -> None:
     (tmp_path / "annotated").write_text("a file where the folder should be", encoding="utf-8")
     with pytest.raises(OutputError, match=r"cannot write the annotated log: .*--no-annotate"):

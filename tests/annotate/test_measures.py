@@ -76,6 +76,7 @@ def boxes(path: Path) -> Boxes:
     return placed
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_margins_are_rows_of_the_margin_table(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -93,6 +94,7 @@ def test_margins_are_rows_of_the_margin_table(out: Path, name: str) -> None:
         assert all(not missing & one.keys() for one in table[key]), "left out is what the table does not know"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_of_several_at_a_step_the_worst_is_said_once(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -110,6 +112,7 @@ def test_of_several_at_a_step_the_worst_is_said_once(out: Path, name: str) -> No
             assert found[finding["rule_id"], finding["profile"], finding["t_worst_ns"]] <= finding["margin"] <= 0
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_the_distance_to_the_nearest_is_that_of_the_boxes(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -126,6 +129,7 @@ def test_the_distance_to_the_nearest_is_that_of_the_boxes(out: Path, name: str) 
     assert near > 50
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_speed_gap_and_required_gap_are_those_of_the_boxes(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -147,6 +151,7 @@ def test_speed_gap_and_required_gap_are_those_of_the_boxes(out: Path, name: str)
     assert not any("oncoming_gap_m" in row for row in said if row["t_ns"] < 7_700_000_000), "no overtake yet"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_the_time_to_collision_is_that_of_its_rule(out: Path, name: str) -> None:
     path = the(out / "annotated", name)
@@ -182,6 +187,7 @@ def test_of_a_long_drive_every_nth_step_is_measured(tmp_path: Path, monkeypatch:
     assert fewer == whole[:: -(-len(whole) // 50)]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["measures", "margin"])
 def test_every_message_keeps_its_schema(out: Path, name: str) -> None:
     jsonschema = pytest.importorskip("jsonschema")
@@ -201,6 +207,7 @@ def test_a_margin_has_the_columns_of_the_table() -> None:
     }
 
 
+@pytest.mark.ci
 def test_an_event_is_a_finding_from_its_first_to_its_last_failing_step(out: Path) -> None:
     for name in NAMES:
         path = the(out / "annotated", name)
@@ -221,6 +228,7 @@ def test_an_event_is_a_finding_from_its_first_to_its_last_failing_step(out: Path
         assert not findings
 
 
+@pytest.mark.ci
 def test_every_line_of_a_plot_leads_to_numbers_of_some_drive(out: Path) -> None:
     said: dict[str, list[dict[str, Any]]] = {}
     for path in (the(out / "annotated", name) for name in NAMES):

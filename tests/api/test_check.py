@@ -81,6 +81,7 @@ def test_write_writes_the_bytes_of_the_command_line(
     assert theirs == ours
 
 
+@pytest.mark.ci
 def test_evidence_is_a_pack_of_the_result(drives: Path, tmp_path: Path) -> None:
     asked: dict[str, Any] = {"map": drives / "road.xodr", "rules": "ukhc.no-collision", "robustness": False}
     pack = tmp_path / "pack"
@@ -142,6 +143,7 @@ def test_out_writes_all_that_the_command_line_writes(drives: Path, tmp_path: Pat
     assert files(opened.write(tmp_path / "b")) == theirs, "into its own folder"
 
 
+@pytest.mark.ci
 def test_a_margin_says_its_time_its_unit_and_its_finding(drives: Path) -> None:
     log = drives / "collision.mcap"
     rules = ["ukhc.no-collision", "ukhc.r126.*", "ukhc.r103.signal-means-go", "ukhc.r162.safe-distance-ahead"]

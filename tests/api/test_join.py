@@ -12,6 +12,8 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.ci
+
 NAMED = """SELECT v.rule_id, v.ego_id, v.profile, v.object_id, v.occurrence, f.finding_id
     FROM verdicts v JOIN findings f ON list_contains(v.finding_ids, f.finding_id)"""
 OVERLAPPING = """SELECT v.rule_id, v.ego_id, v.profile, v.object_id, v.occurrence, f.finding_id

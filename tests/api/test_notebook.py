@@ -65,6 +65,7 @@ def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
     assert "closing_mps" in table[0]["data"]["text/html"]
 
 
+@pytest.mark.ci
 def test_progress_is_drawn_under_the_cell(folder: Path) -> None:
     """Without ipywidgets, which rich would want, and warns of at each step."""
     asked = "r = drivelint.check('demo/safe.mcap', map='demo/road.xodr', rules='ukhc.no-collision', progress=True)"
@@ -75,6 +76,7 @@ def test_progress_is_drawn_under_the_cell(folder: Path) -> None:
     assert "ipywidgets" not in streams(outputs)["stderr"]
 
 
+@pytest.mark.ci
 def test_an_error_stops_a_cell_and_not_the_kernel(folder: Path) -> None:
     caught = "try:\n    drivelint.check('nowhere.mcap')\nexcept drivelint.DriveLintError as error:\n    print(error)"
     first, second = run(folder, f"import drivelint\n{caught}", "print('still there')")

@@ -101,6 +101,7 @@ def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tupl
     assert not executor.tasks
 
 
+@pytest.mark.ci
 def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     judged(few, tmp_path / "out")
@@ -111,6 +112,7 @@ def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     assert (again.reused, again.n_drives) == (3, 4)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_processes_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, workers: int
@@ -138,6 +140,7 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     assert len(released) > 1
 
 
+@pytest.mark.ci
 def test_shards_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -148,6 +151,7 @@ def test_shards_give_the_same_tables(
     assert merge(str(tmp_path / "out"), Silent()).digest == undisturbed[1].digest
 
 
+@pytest.mark.ci
 def test_kills_lose_nothing_and_double_nothing(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -201,6 +205,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
 
 
+@pytest.mark.ci
 def test_a_drive_that_takes_too_long_is_quarantined(drives: fleet.Fleet, tmp_path: Path) -> None:
     one = drives.manifest.parent / "logs" / "drive-00000.parquet"
     request = AuditRequest(
@@ -231,6 +236,7 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
 
 
+@pytest.mark.ci
 def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
@@ -239,6 +245,7 @@ def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Pa
     assert judged(few, tmp_path / "out").reused == 3
 
 
+@pytest.mark.ci
 def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = tmp_path / "fleet" / "logs"
@@ -258,6 +265,7 @@ def tags_in(out: Path) -> list[dict[str, str]]:
     return sorted((dict(row["tags"]) for row in rows), key=str)
 
 
+@pytest.mark.ci
 def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 1)
     log = few.manifest.parent / "logs" / "drive-00000.parquet"
@@ -275,6 +283,7 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
         assert "1 log of the name and content of another, with its tags" in summary_text(counted, "out", ExitCode.OK)
 
 
+@pytest.mark.ci
 def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     judged(few, tmp_path / "out")
@@ -385,6 +394,7 @@ def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path:
             merge(str(tmp_path / "out"), Silent())
 
 
+@pytest.mark.ci
 def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"

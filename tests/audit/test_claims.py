@@ -27,6 +27,8 @@ from tests.audit.here import judged
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.ci
+
 N_DRIVES = 18
 
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from drivelint.audit.executors.dask import DaskCluster
     from tests.audit.clusters import DaskProcesses
 
+pytestmark = pytest.mark.ci
+
 N_DRIVES = 16
 
 

@@ -27,6 +27,8 @@ from tests.shared_data import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.ci
+
 N_DRIVES = 6
 _IN_DELTA = (pa.types.is_string, pa.types.is_boolean, pa.types.is_int32, pa.types.is_int64, pa.types.is_float64)
 _KILLED = """

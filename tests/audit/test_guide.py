@@ -17,6 +17,8 @@ from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import judged
 
+pytestmark = pytest.mark.ci
+
 N_DRIVES = 9
 
 

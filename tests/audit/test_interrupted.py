@@ -24,6 +24,8 @@ from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 
+pytestmark = pytest.mark.ci
+
 N_DRIVES = 20
 
 

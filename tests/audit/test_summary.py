@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,13 +27,21 @@ from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 
 
-@pytest.fixture
-def audited(tmp_path: Path) -> tuple[Path, int]:
-    """Return an audit with contacts, and in how many drives."""
-    few = fleet.write(tmp_path / "fleet", 12)
+@pytest.fixture(scope="module")
+def once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """Return an audit with contacts, and in how many drives; nobody may alter it."""
+    home = tmp_path_factory.mktemp("audited")
+    few = fleet.write(home / "fleet", 12)
     assert len(few.planted) > 1
-    judged(few, tmp_path / "out")
-    return tmp_path / "out", len(few.planted)
+    judged(few, home / "out")
+    return home / "out", len(few.planted)
+
+
+@pytest.fixture
+def audited(once: tuple[Path, int], tmp_path: Path) -> tuple[Path, int]:
+    """Return a copy of that audit."""
+    shutil.copytree(once[0], tmp_path / "out")
+    return tmp_path / "out", once[1]
 
 
 def told(out: Path, *, robust: bool = True) -> tuple[str, AuditSummary]:
@@ -127,6 +136,7 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
     assert "more reason" not in all_told
 
 
+@pytest.mark.ci
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "MOST_RULES", 0)
     few = fleet.write(tmp_path / "fleet", 12)
@@ -135,6 +145,7 @@ def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: p
     assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(counted, "out", ExitCode.FAILED)
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("ego", ["0", "1"])
 def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: str) -> None:
     """A log is judged with ego 0, and again with the same or another one: only another one adds its distance."""
@@ -166,6 +177,7 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
     assert any(line.startswith("  and 3 more: drivelint sql out ") for line in lines)
 
 
+@pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
     ("tag", "told"),
     [("weather", "column weather is a tag only"), ("Handednes", "did you mean handedness?"), ("lap", None)],
@@ -187,6 +199,7 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
     assert all(str(told) in note for note in said)
 
 
+@pytest.mark.ci
 def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
@@ -214,6 +227,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
 
 
+@pytest.mark.ci
 def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
@@ -230,6 +244,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
         assert content(con, out, None, ()).n_not_judged == 1
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize(
     ("column", "value", "words"),
     [

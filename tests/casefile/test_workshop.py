@@ -16,7 +16,7 @@ from tests.evaluate.packs import INVARIANT, MEASURED, text
 KINDS = ("invariant", "execution", "precondition", "postcondition")
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Path, kind: str) -> None:
     sql, cases = workshop.new_rule(f"mine.r1.{kind}", tmp_path, kind)
@@ -29,6 +29,7 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
     assert "no case notices" not in "\n".join(said)
 
 
+@pytest.mark.ci
 def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
     workshop.new_rule("mine.two", tmp_path, "invariant")
@@ -124,7 +125,7 @@ def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str,
     assert message in said
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(3, ci=3)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [
@@ -159,7 +160,7 @@ def test_what_is_wrong_in_cases_is_said_with_its_line(
     assert "\n" not in said
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),
     [

@@ -18,11 +18,13 @@ NOT_PLANTED = {
 }
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda p: p.rule)
 def test_exactly_what_is_planted_is_found(planted: Planted) -> None:
     assert broken(judged(planted.pack)[planted.rule]) == {planted.rule, *planted.implied}
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda p: p.rule)
 def test_unchanged_nothing_is_found(planted: Planted) -> None:
     assert not broken(judged(planted.pack)[planted.clean])

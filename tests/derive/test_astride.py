@@ -31,6 +31,7 @@ def astride(way: Road, by: float, begin: float, end: float, *, to: float = 1.5, 
     return moving("ego", way, t, 50 + 15 * t, d)
 
 
+@pytest.mark.ci
 @HANDS
 @pytest.mark.parametrize("by", [-0.5, -0.01, 0.0, 0.01, 0.5])
 def test_astride_a_line_for_ten_seconds_wherever_the_centre_is(hand: str, by: float) -> None:
@@ -44,6 +45,7 @@ def test_astride_a_line_for_ten_seconds_wherever_the_centre_is(hand: str, by: fl
     assert verdict(KEEP, way, astride(way, by, 5.0, 8.0)) == "pass"
 
 
+@pytest.mark.ci
 @HANDS
 def test_astride_for_long_before_the_lane_change_is_done(hand: str) -> None:
     way = marked(hand, lanes=2)
@@ -79,6 +81,7 @@ def test_astride_the_middle_of_the_road(hand: str, by: float) -> None:
     assert verdict(KEEP, way, moving("ego", way, t, s, sign * (LANE / 2 - LANE * on))) == "pass"
 
 
+@pytest.mark.ci
 @HANDS
 def test_astride_is_lawful_as_long_as_somebody_is_overtaken(hand: str) -> None:
     way = marked(hand, "broken")
@@ -182,6 +185,7 @@ def test_room_to_pass_a_slow_cyclist_over_a_solid_line_grows_with_speed(hand: st
     assert verdict(SOLID, way, *over_line(way, rider=rider, speed=6.0, at=70.0, out=18.0, back=18.0)) == "pass"
 
 
+@pytest.mark.ci
 @HANDS
 def test_over_a_solid_line_for_nobody_or_long_after(hand: str) -> None:
     way = marked(hand, "solid solid", length=900.0)
@@ -201,6 +205,7 @@ def test_somebody_hidden_so_far_ahead_may_be_the_reason(hand: str) -> None:
     assert verdict(SOLID, way, ego, seen) == "unknown"
 
 
+@pytest.mark.ci
 @HANDS
 def test_who_went_away_ahead_and_is_out_of_sight_is_no_reason(hand: str) -> None:
     """The lane ahead is in plain view: nobody stands in it. A parked car that is lost meanwhile may have been passed."""

@@ -64,6 +64,7 @@ def test_who_comes_well_later_was_clear(rate: float, side: float) -> None:
     assert verdict(crossing(rate, 10.5, side=side, phase=0.5 / rate)) == ["pass"]
 
 
+@pytest.mark.ci
 def test_what_is_within_the_blur_is_unknown() -> None:
     """At 1 Hz nobody can tell a metre; at 10 Hz a centimetre is left."""
     late = 4.8 / 2 + 1.8 / 2 + 3.3  # the corners just touch
@@ -115,6 +116,7 @@ def test_a_queue_that_creeps_and_one_that_stands_are_clear_at_one_hertz() -> Non
     assert verdict(scene) == ["pass"]
 
 
+@pytest.mark.ci
 def test_a_hole_is_no_step() -> None:
     scene = crossing(1.0, 0.0, phase=0.5)
     assert between(scene)
@@ -133,6 +135,7 @@ def test_velocities_that_contradict_the_way_widen_the_blur() -> None:
     assert row["blur_m"] == pytest.approx(8 / 16 + 8 / 8)
 
 
+@pytest.mark.ci
 def test_every_ego_and_every_drive_for_itself() -> None:
     a, b = crossing(1.0, 0.0, phase=0.5), crossing(1.0, 0.4, phase=0.5, drive_id="e")
     both = rows(derived(a, b, tables=["between_steps"]), "FROM between_steps ORDER BY drive_id")
@@ -154,6 +157,7 @@ def cyclist(rate: float, gap: float, *, hand: str = "rht", phase: float = 0.0, d
     return drive([ego, rider], way.environment, drive_id=drive_id)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("rule", ["ukhc.r163.cyclist"])

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tests.scenes import Row
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("who", ["ego", "b"])
 def test_a_hole_far_from_each_other_is_no_contact_and_near_each_other_may_be(hand: str, who: str) -> None:

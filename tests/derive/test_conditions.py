@@ -74,7 +74,7 @@ MEDIAN = ((2, "driving"), (1, "median"), (-1, "driving"))
 APART = ((2, "driving"), (1, "restricted"), (-1, "driving"))
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(0, ci=5)
 @pytest.mark.parametrize(
     ("kind", "lanes", "carriageway", "area"),
     [
@@ -146,6 +146,7 @@ def test_the_class_of_the_ego_is_told_only_where_it_says_enough(kind: str | None
     assert only(con, "vehicle_class") == expected
 
 
+@pytest.mark.ci
 def test_what_is_given_for_the_drive_overrides_the_map_and_the_log() -> None:
     way = highway("town", *BOTH)
     given = {
@@ -220,6 +221,7 @@ def test_every_signal_that_a_rule_requires_is_answered_for_whatever_the_log() ->
     assert required <= signals(drive([ride()], None)).keys()
 
 
+@pytest.mark.ci
 def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
     way = highway("rural", *BOTH)
     for scene in (drive([ride()], None), drive([ride(way)], way.environment)):
@@ -231,6 +233,7 @@ def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
     }
 
 
+@pytest.mark.ci
 def test_what_the_log_declares_can_be_required() -> None:
     quiet = drive([ride()], None)
     assert not any(there for signal, there in signals(quiet).items() if signal.startswith(("mode", "declared")))
@@ -242,6 +245,7 @@ def test_what_the_log_declares_can_be_required() -> None:
     assert [given["mode_engaged"], given["mode_horn"]] == [True, False]
 
 
+@pytest.mark.ci
 def test_what_the_others_are_is_known_if_it_is_of_any_of_them_or_nobody_is_there() -> None:
     def known(*kinds: str | None) -> bool:
         others = [replace(ride(kind=kind), actor_id=f"o{n}") for n, kind in enumerate(kinds)]
@@ -252,6 +256,7 @@ def test_what_the_others_are_is_known_if_it_is_of_any_of_them_or_nobody_is_there
     ]  # fmt: skip
 
 
+@pytest.mark.ci
 def test_a_road_type_may_be_given_where_the_map_has_none() -> None:
     def known(kind: str | None, **given: str) -> bool:
         way = highway(kind, *BOTH)
@@ -272,12 +277,14 @@ def test_states_of_traffic_lights_count_only_if_one_is_known() -> None:
         assert signals(replace(scene, trace=replace(scene.trace, tables=tables)))["signals"] is expected
 
 
+@pytest.mark.ci
 def test_junctions_of_the_map_are_a_signal() -> None:
     way, plain = tee()["straight"], highway("rural", *BOTH)
     assert signals(drive([ride(way)], way.environment))["junctions"]
     assert not signals(drive([ride(plain)], plain.environment))["junctions"]
 
 
+@pytest.mark.ci
 def test_where_no_ways_meet_there_is_nothing_to_light_or_to_record() -> None:
     """But a map with junctions that has no lights may leave them out, and without a map nobody knows."""
     way, plain = tee()["straight"], highway("rural", *BOTH)

@@ -205,6 +205,7 @@ def test_neither_oncoming_nor_level_nor_behind_is_a_passing() -> None:
     assert not passings(way, ego, oncoming, level, catches_up)
 
 
+@pytest.mark.ci
 def test_of_a_passing_cut_by_the_log_or_a_hole_the_least_gap_is_only_what_was_seen() -> None:
     way = road(lanes=(0, 2))
     t = times(10.0)
@@ -243,6 +244,7 @@ def test_each_ego_has_its_own_passings() -> None:
     ]
 
 
+@pytest.mark.ci
 def test_who_has_no_place_beside_the_ego_may_have_been_passed() -> None:
     way = road(lanes=(1, 2))
     t = times(12.0)
@@ -284,6 +286,7 @@ def overtaken(hand: str, *, drift: float, out: bool = True, at: float = 6.0, fol
     return str(row["verdict"])
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_steady_as_soon_as_somebody_out_in_the_opposing_lane_comes_up(hand: str) -> None:
     assert overtaken(hand, drift=0.7) == "fail"

@@ -38,6 +38,7 @@ def test_one_cuts_in_from_either_side(hand: str, of: str) -> None:
     assert found["speed_mps"] == pytest.approx(13.0, abs=0.2)
 
 
+@pytest.mark.ci
 def test_what_is_no_cut_in() -> None:
     """Out of the lane; behind the ego; far ahead; a wobble of 0.25 m; the ego's own change; one that turns in across."""
     way = marked("rht", lanes=2)
@@ -82,6 +83,7 @@ def test_a_cut_in_that_is_taken_back_and_made_again_is_two() -> None:
     assert [(row["occurrence"], row["in_place_ns"] is None) for row in found] == [(0, True), (1, False)]
 
 
+@pytest.mark.ci
 def test_where_it_was_not_seen_to_come() -> None:
     way = marked("rht", lanes=2)
     t = times(14.0)
@@ -109,6 +111,7 @@ def test_each_ego_has_its_own_cut_ins() -> None:
     assert [(row["ego_id"], row["object_id"]) for row in found] == [("a", "x")]
 
 
+@pytest.mark.ci
 def test_where_it_cannot_be_told_who_is_ahead_somebody_may_have_come_in() -> None:
     way = marked("rht", lanes=2)
     t = times(14.0)

@@ -101,6 +101,7 @@ def test_a_cyclist_in_the_lane_is_followed_until_it_is_about_to_be_passed(
     assert {row["follows"] for row in kept} == {True}, "as fast as the ego it is followed"
 
 
+@pytest.mark.ci
 @HANDS
 def test_astride_for_longer_than_a_lane_change_takes_is_following(hand: str) -> None:
     """The ego weaves along the line between two lanes, 8 m behind one that does so too: that is no lane change for ever."""

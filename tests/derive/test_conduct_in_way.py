@@ -56,6 +56,7 @@ def test_braking_and_stopping_for_somebody_in_the_lane_is_no_breach(hand: str, k
     assert decided == []
 
 
+@pytest.mark.ci
 @HANDS
 def test_without_anybody_the_same_braking_and_stopping_is_one(hand: str) -> None:
     way, d = motorway(hand)
@@ -67,7 +68,7 @@ def test_without_anybody_the_same_braking_and_stopping_is_one(hand: str) -> None
         assert "fail" in verdicts(drive([ego, far], way.environment), rule), rule
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=2)
 @HANDS
 @pytest.mark.parametrize(("kind", "rule"), [("animal", "stvo.rg2"), ("pedestrian", "stvo.rg2"), (None, "stvo.rg2")])
 def test_who_runs_across_is_a_reason_by_his_velocity_not_by_his_heading(hand: str, kind: str | None, rule: str) -> None:
@@ -127,6 +128,7 @@ def test_the_reason_lasts_a_little_longer_than_he_does(hand: str) -> None:
     assert "fail" in verdicts(drive([ego, early], way.environment), "stvo.rg2")
 
 
+@pytest.mark.ci
 @HANDS
 def test_a_breakdown_says_so_with_its_hazard_lights(hand: str) -> None:
     way, d = motorway(hand)

@@ -88,6 +88,7 @@ def test_a_map_without_markings_does_not_say() -> None:
     assert {(row["marking"], row["forbidden"], row["beyond"]) for row in found} == {(None, None, "opposing")}
 
 
+@pytest.mark.ci
 def test_over_the_edge() -> None:
     t = times(1.0)
     for beyond, what in ((None, None), ("shoulder", "shoulder"), ("none", None)):
@@ -170,6 +171,7 @@ def accesses(way: Road, ego: Actor) -> set[bool | None]:
     return {row["access"] for row in found if off - 25 < x[row["t_ns"]] < off + 10}
 
 
+@pytest.mark.ci
 @HANDS
 def test_access_to_a_way_beside_the_road(hand: str) -> None:
     """Slowly round a corner to the other side of the road is access; before that by more than 30 m it is none."""
@@ -211,6 +213,7 @@ def test_along_the_verge_and_back_is_no_access() -> None:
     assert True in {row["access"] for row in rows(tables(way, there), "FROM line_step")}
 
 
+@pytest.mark.ci
 @HANDS
 def test_who_comes_back_from_over_the_line_was_on_no_way_beyond_it(hand: str) -> None:
     """A log of 40 m: over the line by 0.5 m in its middle, and back; where the log ends before that, nobody knows."""
@@ -305,6 +308,7 @@ def test_who_leaves_room_enough_is_no_reason_to_cross(hand: str, reach: float, e
     )
 
 
+@pytest.mark.ci
 @HANDS
 def test_parked_cars_do_not_excuse_overtaking_one_that_drives(hand: str) -> None:
     """Both stand or drive in the lane; overtaking the one that drives needs the line all along."""
@@ -384,6 +388,7 @@ def test_neither_a_wobble_nor_an_overtake_is_a_lane_change() -> None:
     assert not rows(tables(way, ego, standing("x", way, t, 140, way.own)), "FROM lane_change")
 
 
+@pytest.mark.ci
 def test_who_may_be_there_is_said() -> None:
     way = marked("rht", lanes=2)
     t = times(14.0)
@@ -399,6 +404,7 @@ def test_who_may_be_there_is_said() -> None:
     assert found["follower_decel_mps2"] == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.ci
 def test_cut_by_the_log_or_by_a_hole() -> None:
     way = marked("rht", lanes=2)
     t = times(14.0)

@@ -196,6 +196,7 @@ def test_who_follows_in_each_lane(hand: str) -> None:
     assert len(rows(con, "FROM follower")) == 3 * len(t)
 
 
+@pytest.mark.ci
 def test_nobody_behind_is_said_and_only_where_it_is_known() -> None:
     way = road()
     t = times(3.0)
@@ -238,6 +239,7 @@ def test_each_ego_has_its_own_follower() -> None:
     assert [tuple(row.values()) for row in found] == [("b", "a"), ("c", "b")]
 
 
+@pytest.mark.ci
 def test_one_that_comes_in_the_egos_lane_is_ahead_and_one_that_touches_the_line_is_not() -> None:
     """Head on in the lane it is the nearest; 0.1 m over the middle line it hides nobody whom the ego follows."""
     way = road(lanes=(1, 1))
@@ -330,6 +332,7 @@ def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
         assert "pass" not in {row["verdict"] for row in worst}
 
 
+@pytest.mark.ci
 @HANDS
 def test_who_crosses_the_egos_way_by_a_lane_of_his_own_is_no_lead(hand: str) -> None:
     """The ego waits to turn across those who come straight on; one who stands there, or comes along the ego's own way, is ahead."""
@@ -351,7 +354,7 @@ def test_who_crosses_the_egos_way_by_a_lane_of_his_own_is_no_lead(hand: str) -> 
     assert {(row["object_id"], row["oncoming"]) for row in wrong} == {("w", True)}
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize(
     ("linked", "s", "d", "told"),
     [
@@ -376,7 +379,7 @@ def test_beyond_a_lane_whose_link_is_missing_nobody_knows_who_leads(
     assert {row["object_id"] for row in found} == told
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize(
     ("s", "d", "told"), [(147.0, -1.75, set()), (160.0, -1.75, {"x"}), (140.0, -1.75, {"x"}), (147.0, 2.5, {None})]
 )

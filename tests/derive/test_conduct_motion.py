@@ -71,6 +71,7 @@ def test_slopes_are_those_of_numpy(period: float) -> None:
         assert np.isfinite(mean).any()
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("seed", range(4))
 def test_the_jerk_does_not_depend_on_the_rate(seed: int) -> None:
     """A drive of smooth random accelerations, at 20, 10 and 5 Hz."""

@@ -130,6 +130,7 @@ def test_who_brakes_as_the_ego_goes_out_was_faster_just_before(hand: str) -> Non
     assert found["rear_ttc_s"] == pytest.approx(10 / (25 - 12), rel=0.05)
 
 
+@pytest.mark.ci
 def test_whose_speed_just_before_is_not_known_may_have_been_faster() -> None:
     """It comes up at 11 m/s behind the ego at 12 m/s; half a second before t0 its velocity is not known, and a place is."""
     way = road()
@@ -155,6 +156,7 @@ def test_who_may_come_is_not_ruled_out() -> None:
     assert (found["rear_id"], found["rear_known"]) == (None, False)
 
 
+@pytest.mark.ci
 @HANDS
 def test_the_junction_ahead(hand: str) -> None:
     """The tee's junction begins at 200 m; the ego's front is at 102 m or so when it goes out."""
@@ -189,7 +191,7 @@ def sign(s: float, code: str, number: int = 1) -> str:
     )
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(0, ci=3)
 @pytest.mark.parametrize(
     ("signs", "holds"),
     [
@@ -210,6 +212,7 @@ def test_a_sign_that_forbids_it(signs: str, holds: bool | None) -> None:
     assert found["no_overtaking"] is holds
 
 
+@pytest.mark.ci
 def test_a_sign_before_which_the_ego_turns_back() -> None:
     """It goes out at 100 m, and comes back behind a vehicle that goes as fast as itself: it passes nobody after the sign."""
     way = signed(sign(60, "280") + sign(140, "276", 2))
@@ -220,6 +223,7 @@ def test_a_sign_before_which_the_ego_turns_back() -> None:
     assert found["no_overtaking"] is False
 
 
+@pytest.mark.ci
 @HANDS
 def test_the_line_that_is_crossed_out_and_back(hand: str) -> None:
     """Of a double line the one nearer to where the ego is: out of its own lane it is the one, back the other."""

@@ -18,6 +18,7 @@ def as_driven(actors: list[Actor], way: Road) -> dict[str, Any]:
     return row
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lost", [False, True])
 def test_what_was_driven_ends_where_both_stand(lost: bool) -> None:
     """Both stand from 19.2 s on, nose to nose. A shorter film of the wreck changes nothing. `lost`: the oncoming car is lost at 15 s."""

@@ -102,6 +102,7 @@ def test_the_rule_of_the_last_exit_sign(lit: tuple[float, float] | None, verdict
     assert [row["verdict"] for row in found] == [verdict]
 
 
+@pytest.mark.ci
 def test_the_exit_of_a_reference_map() -> None:
     """Lane -3 begins at 100 m and leaves at 300 m; the two through lanes and the opposite side are no exits."""
     source = shared("maps/ut_highway_exit.xodr")

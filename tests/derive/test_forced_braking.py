@@ -79,6 +79,7 @@ def test_at_every_rate(period: float) -> None:
     assert verdicts(scene, GAP) == [("fail", "o")]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_eases_off_or_was_far_away_is_not_forced(hand: str) -> None:
     # 1.4 m/s2 all the way
@@ -102,6 +103,7 @@ def test_who_stops_before_the_ego_moves_off_lets_it_go() -> None:
     assert all(verdict != "fail" for verdict, _ in verdicts(scene, GAP))
 
 
+@pytest.mark.ci
 def test_who_brakes_for_somebody_before_it_is_in_doubt() -> None:
     ways = cross()
     t = times(END)
@@ -192,6 +194,7 @@ def crashing(hand: str, by: float) -> Drive:
     return drive([ego, parked, other], way.environment)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_the_deceleration_of_a_crash_is_no_braking(hand: str) -> None:
     """Who did not brake is not said to have, though it lost 12 m/s; who braked by 3 m/s2 is not said to have braked harder."""
@@ -238,6 +241,7 @@ def test_who_slows_early_and_goes_on_or_stops_far_off_does_not_wait_for_the_ego(
 GENTLY: dict[str, Any] = {"by": 1.4, "at": 8.5, "from_m": 405.0, "v": 12.0}
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_stops_gently_and_waits_for_the_ego_is_forced(hand: str) -> None:
     """It goes on 20 s into the log; one that goes on much later, or stands on, stands there for something else."""
@@ -253,6 +257,7 @@ def test_who_stops_gently_and_waits_for_the_ego_is_forced(hand: str) -> None:
         assert verdicts(scene, GIVE_WAY) == [("pass", "p")]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_whether_it_waited_may_not_be_clear(hand: str) -> None:
     """The log ends while it stands; it is a bus; somebody walks across before it."""
@@ -269,6 +274,7 @@ def test_whether_it_waited_may_not_be_clear(hand: str) -> None:
     assert verdicts(scene, GIVE_WAY) == [("unknown", "p")]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_stops_gently_far_off_or_while_the_ego_keeps_its_lane_does_not_wait(hand: str) -> None:
     far = {**GENTLY, "from_m": 560.0}
@@ -297,6 +303,7 @@ def test_who_comes_by_with_hardly_any_room(hand: str, evades: float, verdict: st
     assert verdicts(drive([ego, parked, other], way.environment), GIVE_WAY) == [(verdict, "p")]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_who_comes_without_a_place_may_have_come_too_near(hand: str) -> None:
     """It meets the ego 2 s after that is back; its heading or its position is lost while the ego is out, or once they have passed."""
@@ -316,6 +323,7 @@ def test_who_comes_without_a_place_may_have_come_too_near(hand: str) -> None:
     assert found(replace(other, yaw=np.where(t > 26, np.nan, other.yaw))) == [("pass", "p")]
 
 
+@pytest.mark.ci
 def test_without_a_heading_or_a_size_it_is_in_doubt() -> None:
     for lacks in ({"length": None}, {"yaw": np.full(len(times(END)), np.nan)}):
         scene = turning(**lacks)

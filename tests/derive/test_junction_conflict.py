@@ -151,6 +151,7 @@ def test_out_of_the_egos_way_and_back_into_it_are_two_places() -> None:
     assert found[0]["angle_rad"] > 0.35 > -0.35 > found[1]["angle_rad"]
 
 
+@pytest.mark.ci
 def test_who_has_no_position_heading_or_size_is_left_to_passage_conflict() -> None:
     other = across(-40 + 5 * times(12))
     there = np.abs(other.y) < 8
@@ -177,6 +178,7 @@ def test_how_hard_the_other_braked_before_it_came(braking: float, seen: float) -
     assert row["decel_mps2"] == pytest.approx(seen, abs=0.01)
 
 
+@pytest.mark.ci
 def test_braking_is_unknown_where_it_was_not_seen_whole() -> None:
     t = times(14)
     other = across(-70 + 10 * t, end=14)
@@ -288,6 +290,7 @@ meetings = st.builds(
 )
 
 
+@pytest.mark.ci
 @settings(max_examples=3)
 @given(st.lists(meetings, min_size=14, max_size=14))
 @example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])

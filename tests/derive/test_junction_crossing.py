@@ -167,6 +167,7 @@ def test_the_other_half_counts_while_its_middle_is_not_past(hand: str, out: floa
     assert (row["on_id"], row["coming_known"]) == (on, on is None)
 
 
+@pytest.mark.ci
 def test_who_waits_between_the_halves_or_has_no_class_or_is_a_car() -> None:
     way = zebra()
     t = times(18)
@@ -204,6 +205,7 @@ def test_somebody_waits_at_its_end(hand: str, y: float, x: float, waits: bool) -
     assert row["waiting_id"] == ("w" if waits else None)
 
 
+@pytest.mark.ci
 def test_who_walks_by_or_came_late_does_not_wait() -> None:
     way = zebra()
     t = times(14)
@@ -218,6 +220,7 @@ def test_who_walks_by_or_came_late_does_not_wait() -> None:
     assert row["waiting_id"] == "w"
 
 
+@pytest.mark.ci
 def test_somebody_who_cannot_be_placed() -> None:
     way = zebra()
     t = times(14)
@@ -241,6 +244,7 @@ def test_somebody_who_cannot_be_placed() -> None:
     assert (row["known"], row["on_id"]) == (False, None)
 
 
+@pytest.mark.ci
 def test_a_track_that_begins_or_ends_nearby() -> None:
     way = zebra()
     t = times(14)
@@ -251,6 +255,7 @@ def test_a_track_that_begins_or_ends_nearby() -> None:
     assert row["known"] is True
 
 
+@pytest.mark.ci
 def test_a_log_that_begins_or_ends_on_it_and_holes() -> None:
     way = zebra()
     (row,) = passages(drive([going(way, s0=99.0, end=5.0)], way.environment))
@@ -323,6 +328,7 @@ def test_rolling_back_a_hand_s_breadth_past_it_is_no_passage() -> None:
     assert len(passages(drive([ego], way.environment))) == 1
 
 
+@pytest.mark.ci
 def test_the_light_for_vehicles() -> None:
     way = zebra(said="", lights=(("1", signal("light", 98.0, "1000001")),))
     (row,) = passages(lit(drive([going(way)], way.environment), "light", (0.0, "green"), (9.6, "amber"), (10.0, "red")))

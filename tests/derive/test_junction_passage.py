@@ -56,6 +56,7 @@ def test_every_way_through_a_crossroads(hand: str, name: str) -> None:
     assert (row["control"], row["minor"]) == (None, None)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("deep", [1.5, 3.0])
 def test_a_turn_that_cuts_the_corner_is_that_turn_however_deep(hand: str, deep: float) -> None:
@@ -109,6 +110,7 @@ def test_first_and_last_step_are_exact() -> None:
     assert row["t_first_ns"] == min(r["t_ns"] for r in steps if r["x_m"] >= -R)
 
 
+@pytest.mark.ci
 def test_a_log_that_begins_or_ends_inside() -> None:
     way = cross()["ws"]
     (row,) = passages(going(way, s0=190.0, end=8.0), way=way)
@@ -148,6 +150,7 @@ def standing_in_it(hand: str, name: str, *, end: float = 26.7, rolls: bool = Fal
     return str(found[0]["verdict"])
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("rolls", [False, True])
 def test_straight_on_into_a_junction_behind_a_queue(hand: str, rolls: bool) -> None:
@@ -203,6 +206,7 @@ def test_what_governs_the_way_in(hand: str, code: str, control: str, minor: bool
     assert (row["control"], row["minor"]) == (control, minor)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("of", "control"), [("1", "traffic_light"), ("3", None)])
 def test_a_map_without_signs_tells_only_of_lights(of: str, control: str | None) -> None:
     """A light on the way in governs it; where it stands on another way in, a sign may stand on this one."""
@@ -223,6 +227,7 @@ def test_only_what_holds_for_the_last_fifty_metres(s: float, orientation: str, c
     assert row["control"] == control
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
     ("code", "begins", "control"),
@@ -260,6 +265,7 @@ def test_each_ego_by_its_own_way() -> None:
     assert [(r["ego_id"], r["turn"]) for r in found] == [("ego", "left"), ("other", "straight")]
 
 
+@pytest.mark.ci
 def test_with_the_handedness_unknown_nobody_knows_which_turn_crosses_the_traffic() -> None:
     way = cross()["wn"]
     table = way.environment.tables["environment"]

@@ -281,6 +281,7 @@ def test_who_was_too_far_away_to_come_is_in_no_doubt() -> None:
     assert found["oncoming"]["pet_s"] is None
 
 
+@pytest.mark.ci
 def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
     ways = cross()
     t = times(24)
@@ -294,6 +295,7 @@ def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
     assert answers(going(ways["wn"]), near.keep(t > 2), way=ways["we"])["oncoming"]["reason"] is None
 
 
+@pytest.mark.ci
 def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_there() -> None:
     """The ego is in the junction from 7.8 to 11.4 s; they come 40 m and more from its middle."""
     ways = cross()
@@ -313,6 +315,7 @@ def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_
     assert answers(going(ways["wn"]), backwards.keep(t < 9), way=ways["we"])["oncoming"]["reason"] is None
 
 
+@pytest.mark.ci
 def test_the_log_must_go_on_for_a_while() -> None:
     """The rear leaves the junction at 11.4 s."""
     ways = cross()

@@ -49,6 +49,7 @@ def test_a_stop_on_the_open_road() -> None:
     assert row["ahead_known"] is True
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_how_far_it_has_to_go_to_be_out(hand: str) -> None:
     """The junction ends at 215 m, the crossing at 103 m; the rear is 4.8 m behind the front."""
@@ -95,6 +96,7 @@ def test_a_hole_parts_two() -> None:
     assert two["occurrence"] == 1
 
 
+@pytest.mark.ci
 def test_an_unknown_speed_does_not_hide_it() -> None:
     """One step in two has no speed: its way stands in. Without a position either, nobody knows."""
     way = cross()["we"]

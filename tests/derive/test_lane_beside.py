@@ -115,7 +115,7 @@ def divided(hand: str, kind: str, width: float, road_type: str = "rural", centre
     return Road(load_map(MapSource(name, text.encode())), ((600.0, 0.0),))
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(0, ci=2)
 @HANDS
 @pytest.mark.parametrize(
     ("kind", "width", "expected"),
@@ -147,6 +147,7 @@ def test_a_narrow_strip_between_the_directions_is_looked_through(
         assert said(motorway, wobble(motorway)) == {"pass"}
 
 
+@pytest.mark.ci
 @HANDS
 @pytest.mark.parametrize("gap", [0.0, 0.9])
 def test_over_a_solid_line_between_two_roads(hand: str, gap: float) -> None:
@@ -156,6 +157,7 @@ def test_over_a_solid_line_between_two_roads(hand: str, gap: float) -> None:
     assert said(apart(hand, gap, "broken"), wobble(way)) == {"pass"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_over_a_solid_line_with_nothing_beyond(hand: str) -> None:
     """It may be the middle of the road, or its edge; the directions of a motorway are apart."""
@@ -171,6 +173,7 @@ def test_over_a_solid_line_with_nothing_beyond(hand: str) -> None:
     assert said(part, wobble(part, start=400.0)) == {"fail"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_an_overtake_on_such_a_map_is_one_in_an_opposing_lane(hand: str) -> None:
     """The same verdicts as on a map that names the opposing lane."""
@@ -195,6 +198,7 @@ def test_an_overtake_on_such_a_map_is_one_in_an_opposing_lane(hand: str) -> None
         assert one[2] == pytest.approx(other[2], abs=0.1)
 
 
+@pytest.mark.ci
 def test_two_roads_side_by_side_are_a_single_carriageway() -> None:
     """Out of town a road of one direction is half of a dual carriageway, unless the other half touches it."""
     for gap, kind, carriageway in (
@@ -213,6 +217,7 @@ def test_two_roads_side_by_side_are_a_single_carriageway() -> None:
 HARD = "ukhc.r269.hard-shoulder"
 
 
+@pytest.mark.ci
 @HANDS
 @pytest.mark.parametrize(("share", "verdict"), [(1.0, "fail"), (0.6, "fail"), (0.0, "pass")])
 def test_a_drive_on_the_hard_shoulder_fits_the_map_and_is_judged(hand: str, share: float, verdict: str) -> None:
@@ -290,6 +295,7 @@ def test_the_lane_furthest_from_the_edge_where_the_map_ends(  # noqa: PLR0917
     assert {row["verdict"] for row in judged([told], rules=[BAN])} == verdict
 
 
+@pytest.mark.ci
 @HANDS
 def test_where_only_the_two_directions_go_on_there_is_no_junction(hand: str) -> None:
     way = jointed(hand)

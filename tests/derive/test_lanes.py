@@ -58,6 +58,7 @@ def test_in_a_junction_it_is_on_the_lanelet_that_leads_on(way: str) -> None:
     assert rows(con, "SELECT count(DISTINCT chain_id) AS n FROM chain")[0]["n"] == 1
 
 
+@pytest.mark.ci
 def test_what_says_the_limit_or_that_there_is_none() -> None:
     way = road(((100.0, 0.0),))
     said = [(0.0, 30.0, None, "unread"), (30.0, 60.0, 14.0, "sign"), (60.0, 80.0, None, "road_type")]
@@ -135,6 +136,7 @@ def test_several_laps_of_a_ring_are_one_way() -> None:
     assert [row["t_first_ns"] / 1e9 for row in visits] == pytest.approx([0.0, 39.75, 79.75], abs=0.21)
 
 
+@pytest.mark.ci
 def test_without_a_link_the_chain_ends_and_another_begins() -> None:
     way = road(cuts=(200.0, 400.0))
     broken = blinding.without_links(way.environment, "broken", "1.1.-1")
@@ -206,6 +208,7 @@ def test_registration_is_checked_before_blame(lateral: float, wrong_way: bool, o
     assert (found["n_on_lane"] == len(t)) is (lateral < 1.77)
 
 
+@pytest.mark.ci
 def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_direction() -> None:
     """Neither the ego nor another vehicle that drives so says that the map is wrong."""
     way, t = road(), times(30.0)

@@ -38,6 +38,7 @@ def verdicts(scene: Drive, *rules: str) -> set[str]:
     return {row["verdict"] for row in said(scene, *rules)}
 
 
+@pytest.mark.ci
 @HANDS
 def test_a_car_on_the_bridge_is_no_collision(hand: str) -> None:
     """By height, by the map's heights, or by a map that does not say."""
@@ -52,6 +53,7 @@ def test_a_car_on_the_bridge_is_no_collision(hand: str) -> None:
         assert not rows(derived(scene, tables=["conflict"]), "FROM conflict")
 
 
+@pytest.mark.ci
 @HANDS
 def test_on_one_level_it_is_one(hand: str) -> None:
     """The log's heights are the same, or the map's: there is a crossing without a junction."""
@@ -76,6 +78,7 @@ def test_who_follows_the_ego_s_own_road_under_the_bridge_is_met(hand: str) -> No
     assert verdicts(crash, CRASH) == {"fail"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_who_stands_on_the_bridge_is_not_nobody(hand: str) -> None:
     """It stands over the ego's lane 100 m ahead: neither a lead nor a free road."""
@@ -130,6 +133,7 @@ def test_a_height_that_nobody_measured_says_nothing(hand: str) -> None:
         assert verdicts(lifted(crossing(hand), heights), CRASH) == {"unknown"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_without_a_map_height_alone_decides(hand: str) -> None:
     bare = replace(crossing(hand), environment=None)
@@ -159,6 +163,7 @@ def test_who_falls_through_the_ground_is_on_no_level(hand: str) -> None:
     assert sunk(60.0) == {"unknown"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_without_heights_nothing_more_passes(hand: str) -> None:
     """The law: heights taken away, no pass appears; nobody is taken for one who is not there."""

@@ -24,6 +24,7 @@ def lost(drive_: Drive) -> list[tuple[str, str]]:
     return [(row["object_id"], row["code"]) for row in found]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("in_sight", [True, False])
 def test_who_is_lost_on_its_way_to_the_ego_may_have_touched_it(in_sight: bool) -> None:
     """The oncoming car is lost 79 m ahead, where the ego is about to pass a slower car, which hides part of the road later."""
@@ -58,12 +59,14 @@ def struck(hole: tuple[float, float] | None = None, start: float = 0.0) -> dict[
     return row
 
 
+@pytest.mark.ci
 def test_who_stood_for_3_s_was_struck() -> None:
     assert "it was struck" in struck()["reason"]
     assert "it was struck" in struck(start=4.9)["reason"]
     assert "it was struck" in struck(hole=(2.0, 4.5))["reason"]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("unseen", [{"hole": (5.0, 7.55)}, {"hole": (5.0, 8.25)}, {"start": 7.0}])
 def test_who_struck_whom_is_not_known_of_an_ego_that_is_not_seen_for_the_3_s_before(unseen: dict[str, Any]) -> None:
     assert "who struck whom is not known" in struck(**unseen)["reason"]

@@ -150,6 +150,7 @@ def cut_road() -> Road:
     return Road(blinding.without_links(way.environment, "cut"), way.pieces)
 
 
+@pytest.mark.ci
 def test_behind_a_missing_link_nothing_is_claimed() -> None:
     """The corridor ends at 300 m: with nobody there, only what is left of it is free."""
     way = cut_road()
@@ -161,6 +162,7 @@ def test_behind_a_missing_link_nothing_is_claimed() -> None:
     assert {row["object_id"] for row in found} == {None}
 
 
+@pytest.mark.ci
 def test_behind_a_missing_link_an_oncoming_vehicle_is_met_where_it_comes_in() -> None:
     way = cut_road()
     t = times(10.0)

@@ -46,6 +46,7 @@ def verdict(
     return next(v for v in ("fail", "unknown", "pass", "not_applicable") if v in {row["verdict"] for row in rows})
 
 
+@pytest.mark.ci
 @HANDS
 def test_against_a_one_way_street(hand: str) -> None:
     assert verdict(hand) == "fail"
@@ -53,6 +54,7 @@ def test_against_a_one_way_street(hand: str) -> None:
     assert verdict(hand, other="against") == "unknown"
 
 
+@pytest.mark.ci
 @HANDS
 def test_what_does_not_tell(hand: str) -> None:
     """The hand is not stated, the road is two-way, or the ego was there for a moment."""

@@ -132,6 +132,7 @@ def test_an_overtake_that_begins_before_the_log(start: float) -> None:
         assert {row["da_m"] for row in one(late, way, "overtake_sda")} == {None}
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("hand", "lost_s", "n"), [("rht", 0.4, 1), ("lht", 0.4, 1), ("rht", 0.7, 2), ("lht", 0.7, 2)])
 def test_a_short_hole_over_the_line_does_not_part_an_overtake(hand: str, lost_s: float, n: int) -> None:
     way, actors = scene(hand)
@@ -147,6 +148,7 @@ def test_a_short_hole_over_the_line_does_not_part_an_overtake(hand: str, lost_s:
         }
 
 
+@pytest.mark.ci
 def test_a_hole_before_t0_hides_where_it_began() -> None:
     way, actors = scene()
     (whole,) = one(actors, way, "overtake")
@@ -215,6 +217,7 @@ def test_nobody_ahead_is_no_overtake_but_a_departure() -> None:
     ]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand: str) -> None:
     """Its corner is 0.7 m over the line for seven seconds, its centre never; nobody is passed."""
@@ -254,6 +257,7 @@ def test_an_ego_that_stays_at_the_line_overtakes_when_it_pulls_out(hand: str, re
     assert nominal["sda_m"] is not None
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lacks", ["yaw", "length", "width"])
 def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
     """Nearer than another who is placed: the overtake is not that one's alone."""
@@ -276,6 +280,7 @@ def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
     assert not one([ego, unknown, ov], way, "overtake")
 
 
+@pytest.mark.ci
 def test_who_comes_into_the_log_later_and_is_passed_was_there() -> None:
     way, (ego, vbp, ov) = scene()
     (whole,) = one([ego, vbp, ov], way, "overtake")
@@ -302,6 +307,7 @@ def test_who_comes_into_the_log_later_towards_the_ego_is_not_overtaken(stops: bo
     assert [(row["vbp_id"], row["vbp_placed"]) for row in found] == [("vbp", True)]
 
 
+@pytest.mark.ci
 def test_what_may_be_an_overtake_is_not_surely_one() -> None:
     """The ego passes somebody, turns back behind it, or sways over the line for an oncoming car while one ahead is lost."""
     way, (ego, vbp, ov) = scene()
@@ -357,6 +363,7 @@ def safe_distance(  # noqa: PLR0917 - the formula's own symbols
     return w / math.tan(beta) + v_av * passing + w / math.tan(theta) + stopping + v_ov * (pull + passing + cut)
 
 
+@pytest.mark.ci
 @settings(max_examples=8, deadline=None)
 @example(
     14.5, 13.5, 17.0, 8.0, 12.0
@@ -494,7 +501,7 @@ def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
     return drive([ego, vbp, ov], way.environment)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
@@ -719,6 +726,7 @@ def test_an_aborted_overtake_fails_where_even_what_was_driven_of_it_was_too_long
     assert (row["zone"], row["sda_m"] is None) == (("A", False) if nearer else (None, True))
 
 
+@pytest.mark.ci
 def test_a_profile_that_is_named_is_the_only_one() -> None:
     way, actors = scene()
     for asked in ([], ["relaxed"], ["nominal"], ["aggressive", "relaxed"]):

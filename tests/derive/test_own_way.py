@@ -154,6 +154,7 @@ def test_in_a_bend_the_lead_is_found_by_the_way_and_who_stands_straight_on_is_no
     assert [row["gap_m"] for at, row in found.items() if at < 10] == pytest.approx([15.2] * 100, abs=1.0)
 
 
+@pytest.mark.ci
 def test_beyond_the_end_of_the_own_way_who_is_far_is_unknown_and_who_is_near_is_the_lead() -> None:
     way = road()
     t = times(5.0)
@@ -163,6 +164,7 @@ def test_beyond_the_end_of_the_own_way_who_is_far_is_unknown_and_who_is_near_is_
     assert ids(leads(None, ego, standing("x", way, t, 60, way.own))) == {None}
 
 
+@pytest.mark.ci
 def test_without_a_heading_or_backwards_nothing_is_ahead() -> None:
     way = road()
     t = times(5.0)

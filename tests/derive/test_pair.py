@@ -24,6 +24,7 @@ def outline(x: float, y: float, yaw: float, length: float, width: float) -> Poly
     return affinity.translate(affinity.rotate(upright, yaw, origin=(0, 0), use_radians=True), x, y)
 
 
+@pytest.mark.ci
 @settings(max_examples=12, deadline=None)
 @given(st.floats(0, 20), ANGLE, st.lists(BOXES, min_size=40, max_size=40))
 def test_clearance_is_the_distance_between_the_boxes(far: float, yaw: float, others: list[tuple[float, ...]]) -> None:

@@ -45,6 +45,7 @@ def test_a_row_of_cones_in_the_lane(hand: str, share: float) -> None:
     assert past(hand, ROW, share=share) == "pass"
 
 
+@pytest.mark.ci
 @HANDS
 def test_what_is_no_reason(hand: str) -> None:
     assert past(hand, []) == "fail"

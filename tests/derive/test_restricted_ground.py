@@ -53,6 +53,7 @@ def verdict(
     return next(v for v in ("fail", "unknown", "pass", "not_applicable") if v in {row["verdict"] for row in rows})
 
 
+@pytest.mark.ci
 @HANDS
 def test_a_change_out_of_it_is_not_overlooked(hand: str) -> None:
     assert verdict(hand, "stvo.rg6", "motorway", back=True) == "unknown"

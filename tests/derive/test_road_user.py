@@ -171,7 +171,7 @@ def cycle_road(hand: str, between: str | None, mark: str = "broken") -> Road:
     return Road(load_map(MapSource("cycle.xodr", text.encode())), ((600.0, 0.0),))
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(0, ci=2)
 @HANDS
 @pytest.mark.parametrize(
     ("between", "mark", "cycle_lane", "on_strip", "british", "german"),

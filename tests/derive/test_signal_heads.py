@@ -122,6 +122,7 @@ def test_heads_that_are_not_recorded_or_differ(hand: str, heads: Heads, way: str
     assert crossed(told(road, heads))["state"] == state
 
 
+@pytest.mark.ci
 @HANDS
 def test_a_log_that_ends_before_the_turn_leaves_open_which_head_it_was(hand: str) -> None:
     """Over the line at 7.2 s, into the junction at 7.9 s with the front and at 8.2 s with the centre."""
@@ -131,6 +132,7 @@ def test_a_log_that_ends_before_the_turn_leaves_open_which_head_it_was(hand: str
         assert crossed(told(road, heads, end=7.6))["state"] == state
 
 
+@pytest.mark.ci
 @HANDS
 @pytest.mark.parametrize("full", [None, "red"])
 def test_heads_of_connecting_lanelets(hand: str, full: str | None) -> None:

@@ -57,6 +57,7 @@ def test_the_trailer_is_the_ego(hand: str, kind: str | None, hitch: float, lengt
         assert parts(scene) == {}
 
 
+@pytest.mark.ci
 @HANDS
 def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
     """Who stands in its way is struck though the ego is past, and the ego's rear is the trailer's."""
@@ -179,6 +180,7 @@ def test_who_is_no_trailer(hand: str, what: str, gap: float, kind: str, how: str
     assert there(derived(scene, tables=["pair"])) == {"x"}
 
 
+@pytest.mark.ci
 @HANDS
 def test_a_tailgater_round_a_bend_is_none_either(hand: str) -> None:
     """Its box follows the lane, not the ego's hitch, and does not touch."""
@@ -210,6 +212,7 @@ def renamed(
     return [whole.keep(early), replace(whole.keep(late), actor_id="next", **more)]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("overlap", [-1, 0, 1, 2])
 @pytest.mark.parametrize("ego", ["ego", "next"])
 @HANDS

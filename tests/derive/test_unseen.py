@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 FOLLOWING = ("criticality.ttc", "criticality.thw", "ukhc.r126.thinking-gap")
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("gap", [52.0, 99.0])
 def test_a_braking_lead_that_is_lost_is_not_nobody(hand: str, gap: float) -> None:
@@ -62,6 +62,7 @@ def test_one_that_leaves_over_the_end_of_the_map_is_beyond_it() -> None:
     assert all(r["ahead"] and r["least_m"] >= r["end_m"] - 12 - 1e-6 for r in found if r["end_m"] > 0)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_a_fast_vehicle_that_appears_behind_just_after_t0_may_have_been_overtaking(hand: str) -> None:
     """The ego pulls out at 11 m/s; a car at 33 m/s is seen first 53 m behind it, 0.3 s later."""

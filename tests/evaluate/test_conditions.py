@@ -51,7 +51,7 @@ def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
     return scene | ({} if at is None else {"exit_taken": {"t_s": at}})
 
 
-@pytest.mark.sample(12)
+@pytest.mark.sample(3, ci=9)
 @pytest.mark.parametrize(
     ("applies", "given", "expected"),
     [

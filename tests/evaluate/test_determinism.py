@@ -90,6 +90,7 @@ def crowd(rules: list[Rule]) -> dict[str, list[tuple[Any, ...]]]:
         return result(con, rules)
 
 
+@pytest.mark.ci
 def test_the_scene_has_every_kind_of_verdict(crowd: dict[str, list[tuple[Any, ...]]]) -> None:
     kinds = {value for row in crowd["verdict"] for value in row if value in ("pass", "fail", "unknown")}
     assert kinds == {"pass", "fail", "unknown"}
@@ -105,6 +106,7 @@ def test_order_of_rows_and_number_of_threads_do_not_matter(
         assert result(con, rules[::-1]) == crowd
 
 
+@pytest.mark.ci
 def test_a_drive_alone_has_the_same_rows_as_in_a_crowd(
     crowd: dict[str, list[tuple[Any, ...]]], rules: list[Rule]
 ) -> None:

@@ -33,7 +33,7 @@ def judged(rule: Rule, out: Path | None = None) -> dict[str | None, dict[str, An
         return {row["object_id"]: row for row in rows(con, "FROM verdict")}
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("kind", ["VARCHAR", "INTEGER", "DOUBLE", "DECIMAL(9, 1)"])
 def test_an_actor_that_the_rule_left_out_is_unknown(tmp_path: Path, kind: str) -> None:
     sql = f"""SELECT drive_id, ego_id, t_ns, object_id::VARCHAR::{kind} AS object_id, clearance_m AS observed, 1.0 AS required

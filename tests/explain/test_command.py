@@ -45,6 +45,7 @@ def test_text_is_for_people(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd
     assert "Traceback" not in err
 
 
+@pytest.mark.ci
 def test_json_is_for_programs(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     args = ("no-collision", "--in", str(folder), "--samples", "0", "--format", "json")
     code, out, err = ran(monkeypatch, capfd, *args)

@@ -89,6 +89,7 @@ def test_a_value_that_is_nearly_nothing_keeps_its_digits() -> None:
     assert told == "Distance 0.0042 m at 7.70 s, object 3.1234 where more than -1.23 m/s2 is required"
 
 
+@pytest.mark.ci
 def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not(folder: Path, tmp_path: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     change = next(c for c in found.changes if c.name == "nominal.pull_out_headroom_m")
@@ -186,6 +187,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert "SELECT" not in text
 
 
+@pytest.mark.ci
 def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path) -> None:
     rule = tmp_path / "packs" / "mine" / "wet.sql"
     rule.parent.mkdir(parents=True)
@@ -204,6 +206,7 @@ def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path)
     assert re.search(rf"ego_state:(?:\n   .*)*\n +lanelet_id +{re.escape(state.rows[0]['lanelet_id'])}", shown)
 
 
+@pytest.mark.ci
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     """The oncoming car has no place for two seconds, long enough to have been anywhere: there the margin is not known."""
     lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
@@ -325,6 +328,7 @@ def test_the_kept_database_says_the_same_as_the_log(folder: Path, tmp_path: Path
             assert getattr(read, part) == getattr(kept, part), part
 
 
+@pytest.mark.ci
 def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path) -> None:
     log = tmp_path / "drive.csv"
     shutil.copy(OVERTAKE / "near_miss.csv", log)
@@ -353,6 +357,7 @@ def test_a_folder_that_moves_with_its_logs_still_finds_them(tmp_path: Path) -> N
     assert of(tmp_path / "b" / "out", "r126.ds").verdict["judged_anew"] == "fail"
 
 
+@pytest.mark.ci
 def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     rule = tmp_path / "packs" / "mine" / "near.sql"
     rule.parent.mkdir(parents=True)
@@ -421,6 +426,7 @@ def test_the_whole_name_of_a_log_goes_before_the_beginning_of_another() -> None:
         _meant("near", known, "drive")
 
 
+@pytest.mark.ci
 def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> None:
     found = of(folder, "no-collision")
     assert found.verdict["drive_id"].startswith("collision")

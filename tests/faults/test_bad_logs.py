@@ -30,6 +30,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[dict[str
     return log, rows
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("names", [[name for name in drives.WRITERS if name != "csv"], ["csv"]], ids=["most", "csv"])
 def test_the_drive_is_sound_in_every_format(names: list[str], tmp_path: Path) -> None:
     result = checked(
@@ -71,7 +72,7 @@ def of_sound(result: drivelint.CheckResult) -> list[dict[str, Any]]:
     return [row for row in result.verdicts.arrow().to_pylist() if row["drive_id"].startswith("sound")]
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(3, ci=5)
 @pytest.mark.parametrize("bad", BAD_LOGS, ids=id_of)
 def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:
     good, alone = sound

@@ -206,6 +206,7 @@ def compared(base: Result, new: Result, tags: tuple[dict[str, str], dict[str, st
         return compare(con, **more)
 
 
+@pytest.mark.ci
 def test_planted_changes_and_only_they(checked: Checked) -> None:
     base = load_result(checked(*RULES_OF_BASE))
     rows = base.findings.to_pylist()
@@ -340,6 +341,7 @@ def changes(seeded: duckdb.DuckDBPyConnection) -> list[list[RateChange]]:
     return [rate_changes(sides[0][fleet], sides[1][fleet]) for fleet in sides[0]]
 
 
+@pytest.mark.ci
 def test_a_difference_of_nothing_is_called_in_at_most_5_percent_of_fleets(changes: list[list[RateChange]]) -> None:
     assert len(changes) == FLEETS
     assert {len(fleet) for fleet in changes} == {RULES}
@@ -348,6 +350,7 @@ def test_a_difference_of_nothing_is_called_in_at_most_5_percent_of_fleets(change
     assert uncorrected > 0.1, "without the correction it would be: the test can fail"
 
 
+@pytest.mark.ci
 def test_the_exact_test_is_poissons_given_the_sum(changes: list[list[RateChange]]) -> None:
     """Independently: the chances of all ways to share the findings, by two Poisson distributions of the same rate."""
     for change in changes[0]:
@@ -361,6 +364,7 @@ def test_the_exact_test_is_poissons_given_the_sum(changes: list[list[RateChange]
         assert change.p_value == pytest.approx(rarer, rel=1e-6)
 
 
+@pytest.mark.ci
 def test_a_true_difference_is_called_and_shared_logs_are_left_out(seeded: duckdb.DuckDBPyConnection) -> None:
     cursor = seeded.cursor()
     cursor.execute(

@@ -202,6 +202,7 @@ def seeded() -> Any:
         return rates(con, "fleet"), true_km, true_occasion, (seen[kept].sum(), (true_km[:, None] * km)[kept].sum())
 
 
+@pytest.mark.ci
 def test_intervals_cover_the_true_rate(seeded: Any) -> None:
     found, true_km, true_occasion, _ = seeded
     per_km = [r for r in found if r.rule_id == "by-km"]
@@ -218,6 +219,7 @@ def test_intervals_cover_the_true_rate(seeded: Any) -> None:
     assert np.mean([(r.at_least_per_100km or 0) <= 100 * truth[r.tag_value][0] for r in per_km]) >= 0.975
 
 
+@pytest.mark.ci
 def test_the_rate_has_no_bias_though_one_finding_decides_and_a_pass_needs_every_step(seeded: Any) -> None:
     """The mean of the estimates is the truth; that of the other ways to count is not, so this test can tell them apart."""
     found, true_km, _, (events_if_outcome_decides, expected_if_outcome_decides) = seeded

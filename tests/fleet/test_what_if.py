@@ -53,6 +53,7 @@ def own_rules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "values",
     [

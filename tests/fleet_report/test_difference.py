@@ -19,6 +19,8 @@ from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
 
+pytestmark = pytest.mark.ci
+
 
 def compared(base: Path, new: Path, *more: str) -> dict[str, Any]:
     found: dict[str, Any] = json.loads(ran("diff", base, new, "--format", "json", *more).out)

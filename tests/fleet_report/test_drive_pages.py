@@ -25,6 +25,8 @@ from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.report.synthetic import rule
 
+pytestmark = pytest.mark.ci
+
 SEVERITIES = ("critical", "major", "minor")
 
 

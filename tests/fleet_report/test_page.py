@@ -54,6 +54,7 @@ def rows(of: Any, n: int = 0) -> list[dict[str, str]]:
     ]
 
 
+@pytest.mark.ci
 def test_the_headline_counts_what_the_tables_have(written: Any, filled: lake.Lake) -> None:
     found = table(filled.folder, "findings")
     n = [found["severity"].count(severity) for severity in ("critical", "major", "minor")]
@@ -64,6 +65,7 @@ def test_the_headline_counts_what_the_tables_have(written: Any, filled: lake.Lak
     assert f"{filled.n_not_judged} could not be judged" in written.xpath("//header")[0].text_content()
 
 
+@pytest.mark.ci
 def test_a_rate_is_that_of_the_wholly_judged_drives(written: Any, filled: lake.Lake) -> None:
     """Against a sum of my own over the tables, and the interval from the chi-square distribution."""
     told = {row["rule"].split()[-1]: row for row in rows(section(written, "rates"))}
@@ -95,12 +97,14 @@ def test_a_rate_is_that_of_the_wholly_judged_drives(written: Any, filled: lake.L
     assert n_partly > 5
 
 
+@pytest.mark.ci
 def test_rules_with_findings_come_first_and_by_severity(written: Any) -> None:
     told = rows(section(written, "rates"))
     order = [(row["findings"] == "0", ["critical", "major", "minor"].index(row["severity"].split()[0])) for row in told]
     assert order == sorted(order)
 
 
+@pytest.mark.ci
 def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(written: Any, filled: lake.Lake) -> None:
     worst = section(written, "worst-drives")
     told = rows(worst)
@@ -111,6 +115,7 @@ def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(written: Any, 
     assert f"{left:,} more drives have findings" in worst.text_content()
 
 
+@pytest.mark.ci
 def test_tags_have_a_table_per_rule_and_rare_values_are_counted(written: Any, filled: lake.Lake) -> None:
     site, vehicle = section(written, "by-1"), section(written, "by-2")
     assert [row["site"] for row in rows(site)] == ["hull", "leeds", "york"]
@@ -124,6 +129,7 @@ def test_tags_have_a_table_per_rule_and_rare_values_are_counted(written: Any, fi
     assert n == most
 
 
+@pytest.mark.ci
 def test_what_is_missing_says_what_it_would_decide(written: Any, filled: lake.Lake) -> None:
     (signal,) = rows(section(written, "open"))
     rules = pq.read_table(filled.folder / "rules.parquet").to_pydict()
@@ -141,6 +147,7 @@ def test_what_is_missing_says_what_it_would_decide(written: Any, filled: lake.La
     assert all("cannot be read" in row["why"] for row in lost)
 
 
+@pytest.mark.ci
 def test_the_map_shows_every_finding_or_says_how_many_not(written: Any, filled: lake.Lake) -> None:
     marks = section(written, "map").xpath(".//circle/title/text()")
     drawn = sum(int(mark.replace(",", "")) for mark in marks)
@@ -151,6 +158,7 @@ def test_the_map_shows_every_finding_or_says_how_many_not(written: Any, filled: 
     assert xs[-1] > 800  # Leeds in the west, Hull in the east
 
 
+@pytest.mark.ci
 def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     made = []
     for _ in range(2):
@@ -160,6 +168,7 @@ def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     assert made[0] == made[1]
 
 
+@pytest.mark.ci
 def test_markdown_has_the_same_rates(filled: lake.Lake, written: Any) -> None:
     done = ran("report", filled.folder, "--to", "markdown")
     assert done.code == 0
@@ -170,6 +179,7 @@ def test_markdown_has_the_same_rates(filled: lake.Lake, written: Any) -> None:
         assert f"`{row['rule'].split()[-1]}` | {row['severity']} | {row['findings'].replace(',', '')} |" in text
 
 
+@pytest.mark.ci
 def test_the_command_of_the_worst_drive_opens_it(
     audited: Audited, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -200,6 +210,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     assert log.name in section(written, "open").text_content()
 
 
+@pytest.mark.ci
 def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     out = tmp_path / "out"
@@ -209,6 +220,7 @@ def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> Non
     assert "Not complete" in page_of(out).text_content()
 
 
+@pytest.mark.ci
 def test_a_baseline_says_what_is_new(audited: Audited) -> None:
     ran("report", audited.new, "--baseline", audited.base)
     since = section(page_of(audited.new), "since")
@@ -235,6 +247,7 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
     assert (large.folder / "fleet.html").stat().st_size < 10_000_000
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("words", "said"),
     [

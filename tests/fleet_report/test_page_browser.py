@@ -12,7 +12,7 @@ from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.report.browser import CHROMIUM, Page
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+pytestmark = [pytest.mark.ci, pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")]
 
 
 @pytest.fixture(scope="module", params=[1280, 400])

@@ -18,6 +18,8 @@ from tests.evaluate.packs import invariant
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 
+pytestmark = pytest.mark.ci
+
 OWN = invariant(
     "SELECT drive_id, ego_id, t_ns, $factor * speed_mps AS observed, $limit AS required FROM ego_state",
     status="stable",

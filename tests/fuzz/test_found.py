@@ -163,7 +163,7 @@ def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
         read(folder)
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(0, ci=3)
 @pytest.mark.parametrize(
     ("kind", "number"),
     [

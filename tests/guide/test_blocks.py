@@ -170,6 +170,7 @@ def test_files_of_the_repository_are_shown_as_they_are() -> None:
         assert shown[name] == (ROOT / name).read_text(encoding="utf-8")
 
 
+@pytest.mark.ci
 def test_readmes_command_prints_what_readme_shows(folder: Path) -> None:
     readme = blocks(ROOT / "README.md")
     (command,) = (block.body.strip() for block in readme if block.mark == "command: run")

@@ -67,6 +67,7 @@ def test_nothing_is_fetched_and_no_script_runs(pages: Path) -> None:
     assert "@import" not in (pages / html.STYLESHEET).read_text(encoding="utf-8")
 
 
+@pytest.mark.ci
 def test_the_same_bytes_twice(pages: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "50")
     monkeypatch.setattr(sys, "argv", ["drivelint", "docs", "--html", str(tmp_path / "again")])
@@ -148,7 +149,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
         site.write(tmp_path / "file", ())
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1280])
 def test_pages_fit_the_screen(pages: Path, tmp_path: Path, width: int) -> None:

@@ -45,6 +45,7 @@ def test_every_element_of_a_page_is_ours(nasty: Nasty) -> None:
         assert sum(MARK in text for text in page.texts) > 2, file.name
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 def test_nothing_runs_in_a_browser(nasty: Nasty, tmp_path: Path) -> None:
     for no, file in enumerate(pages(nasty)):

@@ -33,6 +33,7 @@ def pack(nasty: Nasty, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.ci
 def test_it_stands(nasty: Nasty, pack: Path) -> None:
     done = ran("verify", pack, "--trace", nasty.files.log, "--map", nasty.files.road)
     assert (done.code, done.err) == (
@@ -46,6 +47,7 @@ def test_it_stands(nasty: Nasty, pack: Path) -> None:
     assert subject["name"] == f"{FILE}.parquet"
 
 
+@pytest.mark.ci
 def test_inputs_of_such_a_name_are_refused_or_found_again(nasty: Nasty, tmp_path: Path) -> None:
     """A name with a line's end would be a line of the manifest."""
     done = ran("pack", nasty.result, "--out", tmp_path / "pack", "--with-inputs")
@@ -54,6 +56,7 @@ def test_inputs_of_such_a_name_are_refused_or_found_again(nasty: Nasty, tmp_path
     assert not (tmp_path / "pack").exists()
 
 
+@pytest.mark.ci
 def test_the_sql_of_each_finding_is_ours_and_gives_its_numbers(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     told = json.loads((pack / "data" / "evidence.json").read_bytes())["findings"]
     assert any(each["rule_id"] == "evil.near" for each in told)
@@ -70,7 +73,7 @@ def test_the_sql_of_each_finding_is_ours_and_gives_its_numbers(pack: Path, monke
         assert (observed, required, margin, holds) == (each["observed"], each["required"], each["margin"], False)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize(
     ("word", "where"),
     [

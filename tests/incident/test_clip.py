@@ -113,6 +113,7 @@ def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pyte
     assert same(judged_alone(written.path, row["rule_id"]), row)
 
 
+@pytest.mark.ci
 def test_another_log_is_refused(folder: Path, tmp_path: Path) -> None:
     request = ConvertRequest(str(OVERTAKE / "safe.csv"), "mcap", tmp_path)
     with pytest.raises(UsageError, match="not the log of the finding"):
@@ -162,6 +163,7 @@ def test_what_holds_at_the_start_stays() -> None:
         cut_trace(trace, 10**15, 10**16)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("to", ["mcap", "parquet"])
 def test_a_clip_names_the_log_that_it_was_cut_from(
     folder: Path, tmp_path: Path, to: Literal["mcap", "parquet"]
@@ -201,6 +203,7 @@ def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_f
     assert "y and heading turned, as the mapping 'carla-testbench' says: the log's frame is left-handed" in lines[0]
 
 
+@pytest.mark.ci
 def test_the_same_clip_has_the_same_bytes(folder: Path, tmp_path: Path) -> None:
     for out in ("a", "b"):
         request = ConvertRequest(str(OVERTAKE / "collision.csv"), "parquet", tmp_path / out)

@@ -63,6 +63,7 @@ def test_a_recording_that_ends_in_the_impact_gives_a_bound() -> None:
     assert found.is_least
 
 
+@pytest.mark.ci
 def test_words(case_of: CaseOf) -> None:
     trace, motion = case_of("no-collision@collision").drive.trace, struck((-1.0, 0.0), (0.5, 0.0))
 
@@ -84,6 +85,7 @@ def test_words(case_of: CaseOf) -> None:
     assert unknown == "not known: its velocity is missing in part, from \u22120.10 s to +0.30 s"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("after", "told"),
     [

@@ -64,7 +64,7 @@ def labels_are_legible(page: Page) -> None:
     assert all(8 <= px < 20 for _, px in shown), shown
 
 
-@pytest.mark.sample(1)
+@pytest.mark.ci
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) -> None:
     html = tmp_path / "sheet.html"
@@ -109,6 +109,7 @@ def crowded(case: Case) -> Case:
     return replace(case, again=judged, others=judged, asked=asked)
 
 
+@pytest.mark.ci
 def test_a_crowded_case_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
     page_bytes = render(crowded(case_of(NAMES[0])))
@@ -153,6 +154,7 @@ def crowded_first_page(case: Case) -> Case:
     return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
 
 
+@pytest.mark.ci
 def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
     page_bytes = render(crowded_first_page(case_of("contact-signature@collision")))
@@ -171,6 +173,7 @@ def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
         labels_are_legible(page)
 
 
+@pytest.mark.ci
 def test_pdf_has_two_pages_and_no_clock(case_of: CaseOf) -> None:
     html = render(case_of(NAMES[0]))
     browser = pdf.find_browser()

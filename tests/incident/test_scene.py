@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 S = 1_000_000_000
 
 
+@pytest.mark.ci
 def test_actors_are_drawn_where_they_are_at_the_moment(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     row, states = case.finding.row, case.drive.trace.tables["actor_state"]
@@ -44,6 +45,7 @@ def test_actors_are_drawn_where_they_are_at_the_moment(case_of: CaseOf) -> None:
     assert scene_at(scene, seldom, 345 * S // 100)["actors"] == []
 
 
+@pytest.mark.ci
 def test_the_place_of_a_contact_is_that_of_its_first_step(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     row, first = case.finding.row, case.finding.row["t_start_ns"]

@@ -60,12 +60,14 @@ def numbers(text: str) -> list[float]:
     return [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", text)]
 
 
+@pytest.mark.ci
 def test_contact_is_where_the_boxes_first_overlap(collision: dict[str, Any], recorded: Log) -> None:
     assert collision["contact"]
     assert collision["when"] == f"{first_contact(recorded):.2f} s"
     assert collision["rests"] == ""
 
 
+@pytest.mark.ci
 def test_speeds_are_those_before_the_contact(collision: dict[str, Any], recorded: Log) -> None:
     at = round(first_contact(recorded) - 0.1, 3)
     for party, actor in zip(collision["parties"], ("ego", "oncoming"), strict=True):
@@ -81,6 +83,7 @@ def test_speeds_are_those_before_the_contact(collision: dict[str, Any], recorded
     assert numbers(collision["closing"])[0] == pytest.approx(by_places, abs=0.3)
 
 
+@pytest.mark.ci
 def test_table_second_by_second(collision: dict[str, Any], recorded: Log) -> None:
     contact = first_contact(recorded)
     rows = [row for row in collision["seconds"] if not row["last_before"]]
@@ -121,6 +124,7 @@ def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     assert total == result.rules.num_rows
 
 
+@pytest.mark.ci
 def test_it_says_that_the_log_gives_the_same_finding(collision: dict[str, Any]) -> None:
     assert collision["again"]["finding_id"] == collision["row"]["finding_id"]
 
@@ -141,6 +145,7 @@ def test_commands_give_the_same_sheet_again(
     assert written[0].read_bytes() == render(case_of("no-collision@collision"))  # files are named without their folders
 
 
+@pytest.mark.ci
 def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     stable = case.result.rules["rule_id"].to_pylist()
@@ -155,6 +160,7 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     assert selected(stable[:1]) == ["--rules", stable[0]]
 
 
+@pytest.mark.ci
 def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -> None:
     at = round(first_contact(recorded) - 0.1, 3)
     ego, other = recorded["ego"][at], recorded["oncoming"][at]
@@ -171,6 +177,7 @@ def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -
     assert free == pytest.approx(gap(recorded["ego"][round(t, 3)], recorded["oncoming"][round(t, 3)]), abs=0.006)
 
 
+@pytest.mark.ci
 def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
     """A title is true where its rule is kept: unquoted, "rule broken: No collision" reads as none."""
     page = render(case_of("no-collision@collision")).decode()
@@ -182,17 +189,20 @@ def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
     assert "required 0.00 m" not in text
 
 
+@pytest.mark.ci
 def test_who_was_only_hit(collision: dict[str, Any]) -> None:
     told = {party["id"]: party["only_hit"] for party in collision["conduct"]}
     assert told["ego"] is False
     assert all(certain in " ".join(collision["conduct"][0]["broken"].shown) for certain in ("; sure,", " of "))
 
 
+@pytest.mark.ci
 def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -> None:
     lines = [line for party in collision["conduct"] for line in party["broken"].shown]
     assert not any("braked" in line for line in lines)
 
 
+@pytest.mark.ci
 def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     trace, said = case.drive.trace, "size as the mapping 'mapping' says, not recorded"
@@ -204,6 +214,7 @@ def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
     assert [size_source(by_user, who) for who in ("ego", "other")] == ["said", ""]
 
 
+@pytest.mark.ci
 def test_a_clip_says_so(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     drive = {**case.finding.drive, "file_name": "collision-clip-0a1b2c3d.mcap"}
@@ -229,6 +240,7 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
     assert told["contacts"].shown  # the same two touch later in that drive
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("stays", "said"), [(None, "not examined"), (53, "<b>possible</b>"), (99, "<b>sure</b>")])
 def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> None:
     case = case_of("no-collision@collision")
@@ -244,11 +256,13 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
     assert ("Possible contact" in page) is (stays == 53)
 
 
+@pytest.mark.ci
 def test_a_verdict_that_is_no_finding(folder: Path) -> None:
     with pytest.raises(UsageError, match=r"is pass, and no finding: .* failed there \(ukhc\."):
         open_case(IncidentRequest("no-collision@safe", folder))
 
 
+@pytest.mark.ci
 def test_pdf_without_a_browser(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(UsageError, match="install chromium"):
@@ -329,6 +343,7 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert _rests_on(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
 
 
+@pytest.mark.ci
 def test_a_rule_that_several_drives_broke_is_said_to_mean_the_worst(folder: Path) -> None:
     """A sheet of another drive than the one that was meant must not be filed unseen."""
     every = load_result(folder).findings.select(["rule_id", "drive_id", "finding_id"]).to_pylist()

@@ -34,12 +34,14 @@ def text(case_of: CaseOf) -> str:
     return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", page)))
 
 
+@pytest.mark.ci
 def test_nothing_is_kept_that_the_sheet_contradicts(collision: dict[str, Any], text: str) -> None:
     for party in collision["conduct"]:
         assert not any("ollision" in line or "ithin its lane" in line for line in party["kept"].shown)
     assert "Kept:" not in text
 
 
+@pytest.mark.ci
 def test_both_parties_breaches_have_their_certainty(collision: dict[str, Any]) -> None:
     for party in collision["conduct"]:
         lines = [line for line in party["broken"].shown if ", critical" in line or ", major" in line]
@@ -47,11 +49,13 @@ def test_both_parties_breaches_have_their_certainty(collision: dict[str, Any]) -
         assert all(re.search(r"(sure|possible), \d+ of \d+$|findings: .*\d (sure|possible)", line) for line in lines)
 
 
+@pytest.mark.ci
 def test_assumed_errors_are_named(text: str) -> None:
     assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place" in text
     assert "95% of the copies or more" in text
 
 
+@pytest.mark.ci
 def test_when_the_recording_begins_and_ends(collision: dict[str, Any], case_of: CaseOf, text: str) -> None:
     finding = case_of("no-collision@collision").finding
     before, after = (float(collision["span"][name]) for name in ("before", "after"))
@@ -63,6 +67,7 @@ def test_when_the_recording_begins_and_ends(collision: dict[str, Any], case_of: 
     assert "local time and its zone: not in the log" in text
 
 
+@pytest.mark.ci
 def test_overtake_lanes_and_who_else_was_there(collision: dict[str, Any], text: str) -> None:
     (overtaken,) = re.findall(r"A was overtaking (\w+), in the oncoming lane; A left its lane", collision["story"])
     assert overtaken not in {party["id"] for party in collision["parties"]}
@@ -72,6 +77,7 @@ def test_overtake_lanes_and_who_else_was_there(collision: dict[str, Any], text: 
     assert re.search(rf"Others: {overtaken}: car, [\d.]+ x [\d.]+ m, (standing|at [\d.]+ m/s), [\d.]+ m from A", text)
 
 
+@pytest.mark.ci
 def test_no_unit_is_written_in_two_ways(text: str) -> None:
     assert "m/s2" not in text.partition("To check it")[0]
 
@@ -86,12 +92,14 @@ def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None
     assert sum(bool(line["legend"]) for line in limits) == 1
 
 
+@pytest.mark.ci
 def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
     assert "not examined" in content(replace(case, others=None))["parties"][1]["lane"]
 
 
+@pytest.mark.ci
 def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case_of: CaseOf, text: str) -> None:
     """What the log or the map lacks, it lacks for both parties, and is told once."""
     case = case_of("no-collision@collision")
@@ -110,6 +118,7 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     assert "Not decided of either, for the same reasons: " in text
 
 
+@pytest.mark.ci
 def test_warnings_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     checks = [{"check_id": "c", "severity": "warning", "message": f"warning {n}: {'word ' * 20}"} for n in range(9)]
@@ -121,6 +130,7 @@ def test_warnings_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     assert "word ... (in full in report.html)</p>" in page
 
 
+@pytest.mark.ci
 def test_contacts_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     case = case_of("safe-distance-ahead@collision")
     rows = case.result.findings
@@ -131,6 +141,7 @@ def test_contacts_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     assert f"And {n + 2 * touched.num_rows - 2} more contact" in render(more).decode()
 
 
+@pytest.mark.ci
 def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     said = "cut from collision.csv, SHA-256 0123abcd: 0.00 s to 9.00 s of it"
@@ -141,6 +152,7 @@ def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
     assert "Warnings on the log" not in page  # it is none
 
 
+@pytest.mark.ci
 def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert coordinates(case).startswith("the recording's coordinates")
@@ -154,6 +166,7 @@ def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -
     assert coordinates(replace(case, finding=replace(case.finding, drive=drive))) == "the clip's coordinates"
 
 
+@pytest.mark.ci
 def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert case.drive.environment is not None
@@ -174,6 +187,7 @@ def test_side_of_the_road_that_nobody_gave(source: str, *, said: bool) -> None:
     assert told.startswith("Left-hand traffic: ") is said
 
 
+@pytest.mark.ci
 def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dict[str, Any], text: str) -> None:
     for party in collision["conduct"]:
         n = sum(party["n"].values()) + len(party["beside"]) + party["elsewhere"] + party["never"]

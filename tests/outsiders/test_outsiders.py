@@ -5,17 +5,12 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import pytest
 
 from drivelint import catalogue
-from tests.outsiders.judging import FAILS, PERSONS, Judged, judge
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from tests.outsiders.log import Scene
+from tests.outsiders.judging import FAILS, PERSONS, Judged, drives, judge
 
 KNOWN: Final = {
     "overtake_begun_and_given_up ukhc.r162.safe-distance-ahead": "given up, it has no course of its own to judge; as planned it had room",
@@ -77,27 +72,25 @@ KNOWN: Final = {
     "walk_stops_v ukhc.h2.turn-pedestrian": "whether somebody on foot stopped for the ego, nobody can tell",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
-QUICK: Final = PERSONS[-1:]
-"""Of whom every run judges the scenes; the others take half a minute each."""
+BY_CI: Final = PERSONS[-1:]
+"""Whose scenes .ci/run judges; each takes half a minute."""
 
 
-def marks(person: ModuleType) -> list[pytest.MarkDecorator]:
-    return [] if person in QUICK else [pytest.mark.slow]
+def marks(person: str) -> list[pytest.MarkDecorator]:
+    return [pytest.mark.ci if person in BY_CI else pytest.mark.slow]
 
 
-by_person = pytest.mark.parametrize(
-    "person", [pytest.param(p, marks=marks(p), id=p.__name__.rpartition(".")[-1]) for p in PERSONS]
-)
+by_person = pytest.mark.parametrize("person", [pytest.param(p, marks=marks(p)) for p in PERSONS])
 
 
 @cache
-def judged(person: ModuleType) -> Judged:
+def judged(person: str) -> Judged:
     with TemporaryDirectory() as folder:
         return judge(person, Path(folder))
 
 
 @by_person
-def test_the_verdicts_are_those_that_the_outsider_expected(person: ModuleType) -> None:
+def test_the_verdicts_are_those_that_the_outsider_expected(person: str) -> None:
     scenes = {scene.name: scene.what for scene in judged(person).scenes}
     differs = {f"{name} {rule}": f"{scenes[name]}: {what}" for (name, rule), what in judged(person).differing().items()}
     known = {key for key in KNOWN if key.partition(" ")[0] in scenes}
@@ -106,7 +99,7 @@ def test_the_verdicts_are_those_that_the_outsider_expected(person: ModuleType) -
 
 
 @by_person
-def test_no_breach_passes(person: ModuleType) -> None:
+def test_no_breach_passes(person: str) -> None:
     """Not even one that is known."""
     passed = {
         (scene.name, rule): scene.what
@@ -118,7 +111,7 @@ def test_no_breach_passes(person: ModuleType) -> None:
 
 
 @by_person
-def test_the_grave_fails_are_those_on_record(person: ModuleType) -> None:
+def test_the_grave_fails_are_those_on_record(person: str) -> None:
     """A new false alarm shows as a new line; who has looked at each writes the file anew: python -m tests.outsiders."""
     names = {scene.name for scene in judged(person).scenes}
     recorded = [line for line in FAILS.read_text(encoding="utf-8").splitlines() if line.partition(" ")[0] in names]
@@ -127,7 +120,7 @@ def test_the_grave_fails_are_those_on_record(person: ModuleType) -> None:
 
 @pytest.mark.slow
 def test_every_scene_has_a_name_of_its_own_and_asks_for_rules_that_there_are() -> None:
-    drawn: list[Scene] = [drive.scene for person in PERSONS for drive in person.drives()]
+    drawn = [drive.scene for person in PERSONS for drive in drives(person)]
     names = {scene.name for scene in drawn}
     assert len(names) == len(drawn)
     assert {rule for scene in drawn for rule in scene.expect} <= catalogue.load_rules().keys()

@@ -53,6 +53,8 @@ if TYPE_CHECKING:
     Tamper = Callable[[Path, PackedAudit], tuple[str, str]]
     """Changes a pack; returns the kind of problem that is found, and what is named."""
 
+pytestmark = pytest.mark.ci
+
 
 @pytest.fixture(scope="module")
 def packed(tmp_path_factory: pytest.TempPathFactory) -> PackedAudit:

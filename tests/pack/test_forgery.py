@@ -65,6 +65,7 @@ FILES = (
 )  # fmt: skip
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("name", [*FILES, "the log", "the SQL", "the rows"])
 def test_a_byte_of_each_class_of_file(name: str, packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
@@ -350,6 +351,7 @@ def pipe_added(pack: Path, _p: Packed) -> tuple[str, str]:
     return "not a file", "data/pipe"
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("name", [*SEEN, *UNSEEN])
 def test_what_was_forged_is_named(name: str, packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
@@ -362,6 +364,7 @@ def test_what_was_forged_is_named(name: str, packed: Packed, tmp_path: Path) -> 
     assert done.returncode == (1 if name in SEEN else 0), done.stdout
 
 
+@pytest.mark.ci
 def test_the_key_in_the_pack_tells_nothing_as_key(packed: Packed, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="comes with the pack"):
         verify(VerifyRequest(packed.pack, packed.pack / KEY))

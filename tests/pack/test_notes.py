@@ -6,6 +6,8 @@ import shutil
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import pytest
+
 from drivelint.pack import VerifyRequest, verify
 from drivelint.report.outputs import write
 from drivelint.resources import folder
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from tests.pack.conftest import Packed
 
 
+@pytest.mark.ci
 def test_what_is_the_packs_own_is_said(packed: Packed, tmp_path: Path) -> None:
     """A profile of the pack has the name of one of drivelint's: verdicts by it come out again, and are not what the name says."""
     own = tmp_path / "rules" / "own"

@@ -41,6 +41,7 @@ def by_all_rules(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_pack(out / "result", out / "pack")
 
 
+@pytest.mark.ci
 def test_any_duckdb_gives_the_numbers_of_every_finding(by_all_rules: Path) -> None:
     findings = pq.read_table(by_all_rules / "data/result/findings.parquet").to_pylist()
     assert len({row["rule_id"] for row in findings}) >= 10
@@ -57,6 +58,7 @@ def test_any_duckdb_gives_the_numbers_of_every_finding(by_all_rules: Path) -> No
         ], row["rule_id"]
 
 
+@pytest.mark.ci
 def test_the_rows_are_few_and_decide(by_all_rules: Path, tmp_path: Path) -> None:
     """A contact is judged by one row of one pair; with another number in that row, the SQL gives another margin."""
     findings = pq.read_table(by_all_rules / "data/result/findings.parquet").to_pylist()
@@ -118,6 +120,7 @@ def test_a_check_packs_its_evidence_in_one_go(packed: Packed, tmp_path: Path, mo
     assert files(tmp_path / "pack") == files(make_pack(tmp_path / "result", tmp_path / "again", packed.key))
 
 
+@pytest.mark.ci
 def test_sha256sum_finds_nothing_wrong(packed: Packed) -> None:
     for manifest in ("manifest-sha256.txt", "tagmanifest-sha256.txt"):
         done = subprocess.run(["sha256sum", "--strict", "--quiet", "-c", manifest], cwd=packed.pack, check=False)
@@ -130,6 +133,7 @@ def test_sha256sum_finds_nothing_wrong(packed: Packed) -> None:
     assert "Bagging-Date" not in info
 
 
+@pytest.mark.ci
 def test_the_statement_says_what_the_tables_say(packed: Packed) -> None:
     told = statement_of(packed.pack)
     assert told["_type"] == "https://in-toto.io/Statement/v1"
@@ -153,6 +157,7 @@ def test_the_statement_says_what_the_tables_say(packed: Packed) -> None:
     assert check["profiles"] == ["relaxed", "nominal"]
 
 
+@pytest.mark.ci
 def test_openssl_finds_the_signature_good(packed: Packed, tmp_path: Path) -> None:
     envelope = json.loads((packed.pack / "statement.dsse.json").read_bytes())
     kind, payload = envelope["payloadType"], base64.b64decode(envelope["payload"])
@@ -178,6 +183,7 @@ def test_openssl_finds_the_signature_good(packed: Packed, tmp_path: Path) -> Non
     assert "Signature Verified Successfully" in done.stdout, done.stderr
 
 
+@pytest.mark.ci
 def test_the_same_command_gives_the_same_bytes(packed: Packed, tmp_path: Path) -> None:
     again = make_pack(packed.result, tmp_path / "again", packed.key, with_inputs=True)
     assert files(again) == files(packed.pack)
@@ -190,6 +196,7 @@ def run_cli(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:
     return int(end.value.code or 0)
 
 
+@pytest.mark.ci
 def test_commands(
     packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -211,6 +218,7 @@ def test_commands(
     assert run_cli(monkeypatch, "pack", packed.result, "--out", out, "--overwrite", "--date", "26.11.") == 2
 
 
+@pytest.mark.ci
 def test_incident_sheets_that_stay_out_are_named(
     packed: Packed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -243,6 +251,7 @@ def test_logs_that_were_moved_are_known_by_their_hash(packed: Packed, tmp_path: 
     assert "judged again: the same bytes" in found.sentence
 
 
+@pytest.mark.ci
 def test_an_out_folder_of_somebody_is_left_alone(packed: Packed, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match="no evidence pack"):
@@ -250,6 +259,7 @@ def test_an_out_folder_of_somebody_is_left_alone(packed: Packed, tmp_path: Path)
     assert (tmp_path / "thesis.txt").read_text("utf-8") == "mine"
 
 
+@pytest.mark.ci
 def test_a_result_that_was_changed_since_is_not_packed(packed: Packed, tmp_path: Path) -> None:
     """Its log is another one now."""
     for name in ("collision.csv", "road.xodr", "mapping.toml"):

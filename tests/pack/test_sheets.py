@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from tests.pack.conftest import Packed
 
+pytestmark = pytest.mark.ci
+
 
 @pytest.fixture(scope="module")
 def result(packed: Packed) -> Path:

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
     from tests.pack.conftest import Packed
     from tests.pack.packed import Tamper
+
+pytestmark = pytest.mark.ci
 VERDICTS, SUMMARY, EVIDENCE = "data/result/verdicts.parquet", "data/result/summary.json", "data/evidence.json"
 BY_SIGNER: dict[str, Tamper] = {}
 

@@ -239,6 +239,7 @@ def test_the_script_is_short() -> None:
     assert len([line for line in block.body.splitlines() if line]) <= 30
 
 
+@pytest.mark.ci
 def test_an_untouched_pack(packed: Packed, tmp_path: Path) -> None:
     found = verify(VerifyRequest(packed.pack, packed.public))
     assert (found.problems, found.notes) == ([], [])
@@ -250,6 +251,7 @@ def test_an_untouched_pack(packed: Packed, tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, "untouched since it was signed\n"), done.stderr
 
 
+@pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("name", TAMPERED)
 def test_what_was_changed_is_named(name: str, packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
@@ -265,6 +267,7 @@ def test_there_are_more_than_twenty() -> None:
     assert len(TAMPERED) > 20
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("change", "kind"),
     [
@@ -301,6 +304,7 @@ def test_rows_of_a_finding_that_its_signer_changed_are_not_reproduced(packed: Pa
     assert verify(VerifyRequest(pack, packed.public)).problems == [("result not reproduced", inner(pack, sql_of(pack)))]
 
 
+@pytest.mark.ci
 def test_a_link_in_the_place_of_a_file_is_named(packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
     (pack / VERDICTS).rename(tmp_path / "verdicts.parquet")
@@ -308,6 +312,7 @@ def test_a_link_in_the_place_of_a_file_is_named(packed: Packed, tmp_path: Path) 
     assert ("link", VERDICTS) in verify(VerifyRequest(pack, packed.public)).problems
 
 
+@pytest.mark.ci
 def test_a_manifest_that_leads_outside_is_named(packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
     with (pack / MANIFEST).open("a", encoding="utf-8") as file:

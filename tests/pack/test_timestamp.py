@@ -17,6 +17,8 @@ from tests.pack.packed import make_pack, rehash, script
 if TYPE_CHECKING:
     from tests.pack.conftest import Packed
 
+pytestmark = pytest.mark.ci
+
 CONFIG = """
 [req]
 distinguished_name = name

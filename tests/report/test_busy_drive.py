@@ -15,7 +15,7 @@ from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import page
 from tests.shared_data import shared
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+pytestmark = [pytest.mark.ci, pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")]
 TYPICAL = 3_000_000
 """Bytes that the page of one drive may have."""
 BEYOND = """[...document.querySelectorAll('.card, table')].filter(e => {

@@ -15,7 +15,7 @@ from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
 from tests.report.pages import page
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+pytestmark = [pytest.mark.ci, pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")]
 
 TOO_WIDE = """[...document.querySelectorAll('table, .card *')].filter(e => {
   const box = e.getBoundingClientRect(), room = (e.closest('.card') || e.closest('section')).getBoundingClientRect();

@@ -152,6 +152,7 @@ def test_danger_spaces_are_kept_along_the_ways(result: Result) -> None:
         assert max(np.diff(sorted(times))) < 1.5 * 200_000_000
 
 
+@pytest.mark.ci
 def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Path) -> None:
     settings = CheckOptions(
         (str(FIXTURE / "collision.csv"),),

@@ -177,6 +177,7 @@ def test_a_real_map_whose_reference_is_a_placeholder(name: str) -> None:
     assert row["geo_usable"] is False
 
 
+@pytest.mark.ci
 def test_a_lanelet2_map_against_its_own_latitudes() -> None:
     """A node of the map that bounds a lane has a latitude and a longitude in the file, and x and y in our tables."""
     pytest.importorskip("lanelet2")

@@ -103,7 +103,7 @@ def loops(plan: dict[str, Any], statement: str = "") -> Iterator[Loop]:
         yield from loops(child, statement)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("margins", [False, True])
 def test_no_statement_compares_all_rows_with_all(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, margins: bool

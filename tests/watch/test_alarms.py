@@ -24,11 +24,11 @@ VERDICTS = pa.schema([
     ("ref_id", pa.int32()),
     ("t_ref_ns", pa.int64()),
 ])  # fmt: skip
-QUICK = ("collision-25mph", "exit-omitted")
+BY_CI = ("collision-25mph", "exit-omitted")
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in SCENES]
+    "name", [pytest.param(name, marks=pytest.mark.ci if name in BY_CI else pytest.mark.slow) for name in SCENES]
 )
 def test_alarms_are_the_findings(name: str) -> None:
     options = WatchOptions(source=f"{name}.mcap", map=FOLDER / f"{SCENES[name]}.xodr", every_s=0.5)
@@ -36,7 +36,7 @@ def test_alarms_are_the_findings(name: str) -> None:
     assert [each for each in watched.windows if isinstance(each, Exception)] == []
     assert (told([alarm.row for alarm in watched.false]), told(watched.missed)) == ([], [])
     assert told(watched.revised) == []
-    assert name not in QUICK or watched.alarms
+    assert name not in BY_CI or watched.alarms
 
 
 def finding(

@@ -102,6 +102,7 @@ def jolts(look: ContactLook, log: Trace) -> list[tuple[float, float]]:
     ]
 
 
+@pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
     ("gap_m", "loss_mps", "expected"),
     [
@@ -227,6 +228,7 @@ def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook)
     assert log.take(window(10.1, []), None, None).withdrawn == [alarm]
 
 
+@pytest.mark.ci
 def test_a_contact_is_said_before_its_window_is_judged() -> None:
     """A log of 11.6 s, judged every 9 s and at its end: the contact at 9.7 s is in the second window."""
     asked = WatchOptions(
@@ -259,6 +261,7 @@ class Going(Replay):
         return [Frame(int(t_ns), None, 0) for t_ns in part]
 
 
+@pytest.mark.ci
 def test_the_latency_of_an_alarm_counts_what_came_while_its_window_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = WatchOptions(
         source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,)

@@ -66,6 +66,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, Any
     return watched(*options(*RULES), "--warn", "--advise", "--on", on, "--out", out, every=2.0), out
 
 
+@pytest.mark.ci
 def test_the_result_is_that_of_check(result: tuple[list[dict[str, Any]], Path]) -> None:
     _, out = result
     asked = run.CheckOptions((str(LOG),), map=ROAD, rules=RULES, robustness=False)
@@ -74,11 +75,13 @@ def test_the_result_is_that_of_check(result: tuple[list[dict[str, Any]], Path]) 
         assert (out / f"{name}.parquet").read_bytes() == parquet_bytes(getattr(checked, name), table)
 
 
+@pytest.mark.ci
 def test_a_command_gets_the_alarm(result: tuple[list[dict[str, Any]], Path]) -> None:
     told = json.loads(result[1].with_name("told.json").read_text(encoding="utf-8"))
     assert told == next(each for each in of_type(result[0], "alarm") if each["rule_id"] == "ukhc.no-collision")
 
 
+@pytest.mark.ci
 def test_every_alarm_is_a_finding_and_every_finding_has_one(result: tuple[list[dict[str, Any]], Path]) -> None:
     messages, _ = result
     alarms, end = of_type(messages, "alarm"), messages[-1]
@@ -90,6 +93,7 @@ def test_every_alarm_is_a_finding_and_every_finding_has_one(result: tuple[list[d
     assert end["exit_code"] == 1
 
 
+@pytest.mark.ci
 def test_the_alarm_of_the_contact_is_said_with_the_next_window(result: tuple[list[dict[str, Any]], Path]) -> None:
     (alarm,) = (each for each in of_type(result[0], "alarm") if each["rule_id"] == "ukhc.no-collision")
     assert (alarm["t_s"], alarm["severity"], alarm["object_id"]) == (9.7, "critical", "3")
@@ -97,11 +101,13 @@ def test_the_alarm_of_the_contact_is_said_with_the_next_window(result: tuple[lis
     assert alarm["said_s"] == pytest.approx(alarm["t_s"] + alarm["latency_s"])
 
 
+@pytest.mark.ci
 def test_the_overtake_is_alarmed_before_the_contact(result: tuple[list[dict[str, Any]], Path]) -> None:
     said = {(each["rule_id"], each["profile"]): each["said_s"] for each in of_type(result[0], "alarm")}
     assert said["ukhc.r162.safe-distance-ahead", "nominal"] < 9.7 <= said["ukhc.no-collision", None]
 
 
+@pytest.mark.ci
 def test_the_verdicts_are_those_of_the_table(result: tuple[list[dict[str, Any]], Path]) -> None:
     import pyarrow.parquet as pq
 
@@ -112,6 +118,7 @@ def test_the_verdicts_are_those_of_the_table(result: tuple[list[dict[str, Any]],
     ]
 
 
+@pytest.mark.ci
 def test_advice_names_the_most_relaxed_profile_that_is_kept(result: tuple[list[dict[str, Any]], Path]) -> None:
     (mode,) = of_type(result[0], "mode")
     assert mode["mode"] is None  # no way of overtaking has so much room
@@ -124,6 +131,7 @@ def test_advice_names_a_profile_that_has_room() -> None:
     assert [each["mode"] for each in of_type(near, "mode")] == ["aggressive"]
 
 
+@pytest.mark.ci
 def test_it_halts_within_a_step_and_says_so(tmp_path: Path) -> None:
     out = tmp_path / "out"
     messages = watched(*options("ukhc.no-collision"), "--halt-on", "critical", "--out", out, every=2.5)

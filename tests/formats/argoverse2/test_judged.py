@@ -42,6 +42,7 @@ def test_a_collision_is_found(tmp_path: Path) -> None:
     assert "fail" in {verdict for verdict, _ in verdicts(log)}
 
 
+@pytest.mark.ci
 def test_a_car_that_is_not_placed_where_the_vehicle_hits_it_is_no_pass(tmp_path: Path) -> None:
     """The boxes touch from step 20 to 38: while the poses are missing nobody knows where the two are."""
     hit = {stamp(k) for k in range(17, 43)}
@@ -74,6 +75,7 @@ def test_inspect_says_what_is_there_and_what_is_not(tmp_path: Path) -> None:
     assert {"indicator", "speed_limits", "road_types"} <= missing.keys()
 
 
+@pytest.mark.ci
 def test_a_converted_log_has_the_same_verdicts(tmp_path: Path) -> None:
     log = sensor_log(tmp_path / "log", parked(20.0), drive(N), STREET)
     convert(ConvertRequest(trace=str(log), to="parquet", out=tmp_path / "twin"))
@@ -83,6 +85,7 @@ def test_a_converted_log_has_the_same_verdicts(tmp_path: Path) -> None:
         assert first.equals(second)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["av2/adcf7d18", "av2/3b3570b4", "av2_forecasting"])
 def test_published_logs_are_judged_on_their_maps(name: str) -> None:
     result = check(CheckOptions((str(shared(f"perception/{name}")),), robustness=False), Silent())

@@ -234,6 +234,7 @@ def boxes(path: Path, step: int) -> list[shapely.Polygon]:
     return found
 
 
+@pytest.mark.ci
 def test_the_scenario_of_a_public_report_has_no_contact() -> None:
     """By commonroad-io 2026.1: box centres 20 and 126.8 m at step 0, 218 and 225.8 m at step 99, where the boxes are 1.00 m apart."""
     path = shared("reported/commonroad_origin_shift/A_free.xml")

@@ -251,7 +251,7 @@ def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
     return found
 
 
-@pytest.mark.sample(1)
+@pytest.mark.ci
 @pytest.mark.parametrize("mapping", ["video-detections", "video-detections-sampled"])
 def test_the_timeline_of_table_2(tmp_path: Path, mapping: str) -> None:
     found = judged(tmp_path, mapping)
@@ -269,6 +269,7 @@ def test_the_timeline_of_table_2(tmp_path: Path, mapping: str) -> None:
     assert all(first[frame] is False for frame in sampled if frame != 203)
 
 
+@pytest.mark.ci
 def test_every_frame_with_the_vehicle_in_it_is_judged_by_its_distance(tmp_path: Path) -> None:
     """An independent reading of the same file: whoever is detected nearer than the stopping distance is in danger."""
     found = judged(tmp_path, "video-detections")
@@ -284,6 +285,7 @@ def test_every_frame_with_the_vehicle_in_it_is_judged_by_its_distance(tmp_path: 
             assert found[number][frame] is expected, (frame, number)
 
 
+@pytest.mark.ci
 def test_stages_begin_at_their_frames(tmp_path: Path) -> None:
     settings = run.CheckOptions(
         traces=(str(shared(CLIP)),), mapping="video-detections", rules=("ukhc.r126.ds-vbp*",), out=tmp_path, keep_db=True,

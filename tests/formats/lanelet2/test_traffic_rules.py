@@ -199,6 +199,7 @@ def test_a_lanelet_that_is_driven_both_ways_does_not_vote_against_the_map() -> N
     assert len(one_way_lanes(lane_with_tags(one_way="no")[1]).lines) == 1
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("y", "ok"), [(41.75, True), (1.75, False)])
 def test_the_drive_of_a_public_report_turned_round(y: float, ok: bool, tmp_path: Any) -> None:
     """Lanelet 104 is `one_way:vehicle=no`, lanelet 100 has one direction: only there, to drive to the west is to drive against the lane."""

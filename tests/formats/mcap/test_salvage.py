@@ -303,6 +303,7 @@ mutations = st.lists(
 )
 
 
+@pytest.mark.ci
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(changes=mutations)
 def test_nothing_is_missing_unsaid_and_nothing_else_is_read(whole: Path, changes: list[tuple[str, float, int]]) -> None:

@@ -87,6 +87,7 @@ def test_bounds_are_those_that_the_authors_derived(theirs: str, ours: str) -> No
         assert mine[other].project(start) > mine[other].project(end)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("run", ["safe", "near_miss", "collision"])
 def test_logs_drive_on_lanes_in_their_direction(run: str) -> None:
     lines = points(road(REGISTRATION))

@@ -137,6 +137,7 @@ def test_the_map_of_a_public_report() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.ci
 def test_the_drive_of_a_public_report_is_too_fast() -> None:
     """It keeps 72 km/h all along: from 4.5 s on, at s = 100 m, 30 mph is the limit."""
     folder = shared("reported/opendrive_signs")

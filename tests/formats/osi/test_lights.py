@@ -64,6 +64,7 @@ def test_only_changes_of_the_headlights_are_told_and_what_is_not_known_is_one(tm
     ]
 
 
+@pytest.mark.sample(1, ci=3)
 @pytest.mark.parametrize(("head", "verdict"), [(ON, "pass"), (OFF, "fail"), (UNKNOWN, "unknown"), (None, "unknown")])
 def test_headlights_at_night_are_judged(tmp_path: Path, head: int | None, verdict: str) -> None:
     trace = read(write(tmp_path, osi_log.drive(30, head=head)), conditions=NIGHT)

@@ -75,6 +75,7 @@ def test_what_can_be_decided(tmp_path: Path, scene: drive.Scene, whole: list[ros
     assert lacking(found).keys() < lacking(before).keys()
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("left_out", "signal"), [*zip(NEW, ("road_users", "signals", "ego_size"), strict=True)])
 def test_each_topic_counts(
     tmp_path: Path, scene: drive.Scene, whole: list[ros.Message], left_out: str, signal: str
@@ -110,6 +111,7 @@ def red_but_for_the_left(_: float) -> list[dict[str, Any]]:
     return [element(RED), element(GREEN, LEFT)]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("shows", "verdict"), [(drive.changing, "pass"), (red, "fail"), (red_but_for_the_left, "unknown")]
 )

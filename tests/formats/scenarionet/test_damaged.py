@@ -74,6 +74,7 @@ CONTENT = whole()
 PLACES = [path for path in places(CONTENT) if len(path) < 6]
 
 
+@pytest.mark.sample(30, ci=999)
 @pytest.mark.parametrize("dataset", ["waymo", "nuscenes"])
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: "/".join(map(str, path)))
 @pytest.mark.filterwarnings("error")
@@ -94,6 +95,7 @@ def test_anything_in_any_place(path: tuple[Any, ...], dataset: str, tmp_path: Pa
     assert [text for text in refused if "\n" in text] == []
 
 
+@pytest.mark.ci
 @pytest.mark.filterwarnings("error")
 def test_damaged_bytes(tmp_path: Path) -> None:
     content = pickle.dumps(CONTENT, 4)

@@ -152,6 +152,7 @@ HOSTILE = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(4, ci=99)
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_pickles_take_neither_time_nor_memory(name: str) -> None:
     """In a process of its own, which may take 512 MiB beyond what Python and numpy take: two of these crash or fill `pickle` itself."""

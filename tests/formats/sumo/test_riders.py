@@ -193,6 +193,7 @@ def reported_rows(file: Path) -> tuple[set[tuple[float, str]], int]:
     return there, riding
 
 
+@pytest.mark.ci
 def test_the_reported_ride_has_no_contact() -> None:
     log, net = shared("reported/sumo_riders/ride.fcd.xml"), shared("reported/sumo_riders/net.net.xml")
     environment = load_map(MapSource(net.name, net.read_bytes()))
