@@ -78,7 +78,6 @@ jerk_sample AS (
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
         END AS jerk_mps3,
-        2 * line_through(count(a) OVER near, sum(age_ns::HUGEINT) FILTER (a IS NOT NULL) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) FILTER (a IS NOT NULL) OVER near, sum(a * a) OVER near).error AS jerk_error_mps3,
         -- Noise is noise of a stretch: by chance, the few samples of one window may lie on a line.
         greatest(2 * max(v_line.error) OVER near_noise, contradiction(accel_mps2, place_line.slope, place_line.error)) AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
@@ -111,7 +110,7 @@ SELECT
     0.7 * peak_rise(accel_mps2, half_window_before.accel, half_window_after.accel) AS accel_peak_mps2,
     0.7 * peak_rise(lat_accel_mps2, half_window_before.lat, half_window_after.lat) AS lat_peak_mps2,
     accel_error_mps2, lat_error_mps2,
-    -- An acceleration that is off at one end of the window of the jerk.
-    greatest(jerk_error_mps3, 1e9 * accel_error_mps2 / jerk_half_ns()) AS jerk_error_mps3,
+    -- The jerk is off if the acceleration is at one end of its window.
+    1e9 * accel_error_mps2 / (2 * jerk_half_ns()) AS jerk_error_mps3,
     CASE WHEN age_ns >= 1_000_000_000 THEN 1e9 * (accel_error_mps2 + at_1s.error) / (t_ns - at_1s.t_ns) END AS jerk_1s_error_mps3
 FROM window_sample

@@ -64,3 +64,6 @@ beside_way AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id
 FROM beside_way b
 ANTI JOIN (FROM beside_way WHERE is_course_held) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
+-- Nor does the ego pass by whom it overtakes on the side of the oncoming traffic: until it pulls out it is behind that vehicle.
+ANTI JOIN (FROM excursion WHERE overtaking AND begin_seen AND over_against AND max_out_m >= surely_out_m()) x
+    ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns
