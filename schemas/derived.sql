@@ -590,7 +590,7 @@ CREATE TABLE vehicle_ahead (
     joined_ns BIGINT,                 -- since when it is the lead, if one of the two then changed lanes; of another the last cut-in of it or lane change of the ego; NULL: it was ahead before, or how it came was not seen {position}
     let_in_ns BIGINT,                 -- joined_ns, where it was not the ego that changed lanes; of another than the lead its last cut-in {position}
     passes_by BOOLEAN,                -- at the present velocities the two boxes pass each other by: where lanes turn or cross, who is ahead along the lane is not in the way; NULL: it takes over 3 s, or is not known {position}
-    grazes BOOLEAN,                   -- at the present velocities the boxes miss each other by less than those and the lane leave open: whether they pass each other by is not known {position, heading, size}
+    grazes BOOLEAN,                   -- at the present velocities the boxes miss each other by less than those and the lane leave open, or meet by less than headings tell: whether they pass each other by is not known {position, heading, size}
     free_m DOUBLE,                    -- where not known: nobody is nearer to the ego's front in its lane than this {position, heading, size}
     free_mps DOUBLE                   -- where not known: nobody comes nearer faster than this: one that stands, or one that comes at 70 mph, unless it goes the ego's way {velocity}
 );

@@ -102,19 +102,19 @@ relative_motion AS (
     CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS east_m, p.y_m - e.y_m AS north_m, p.yaw_rad - e.yaw_rad AS turn_rad) f
     WHERE t.gap_m >= 0 AND p.speed_mps IS NOT NULL
 ),
--- The boxes touch while they overlap along each of the four directions of their sides. This is checked for the boxes as they are, and with
--- room_m around them (see relative_motion).
+-- The boxes touch while they overlap along each of the four directions of their sides. This is checked for the boxes as they are, with
+-- room_m around them (see relative_motion), and for boxes that are smaller by as little as two may be apart.
 box_contact AS (
-    SELECT drive_id, ego_id, t_ns, object_id, with_room, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS is_miss
+    SELECT drive_id, ego_id, t_ns, object_id, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS is_miss
     FROM (
         SELECT
-            drive_id, ego_id, t_ns, object_id, with_room,
+            drive_id, ego_id, t_ns, object_id,
             [
                 time_within(dx, motion_x_mps, m + ego_half_length_m + object_half_length_m * abs(c) + object_half_width_m * abs(s)), time_within(dy, motion_y_mps, m + ego_half_width_m + object_half_length_m * abs(s) + object_half_width_m * abs(c)),
                 time_within(dx * c + dy * s, motion_x_mps * c + motion_y_mps * s, m + object_half_length_m + ego_half_length_m * abs(c) + ego_half_width_m * abs(s)),
                 time_within(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
             ] AS w
-        FROM relative_motion CROSS JOIN LATERAL (VALUES (false, 0.0), (true, room_m)) AS v(with_room, m)
+        FROM relative_motion CROSS JOIN LATERAL (VALUES (0.0), (room_m), (-least_apart_m())) AS v(m)
         WHERE ttc_s < drift_s()
     )
     WHERE w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -73,3 +74,14 @@ def test_without_a_heading_or_a_velocity_it_is_not_known() -> None:
     ego.vx[:], ego.vy[:] = np.nan, np.nan
     con = derived(drive([ego, other], WAY.environment), tables=["vehicle_ahead"])
     assert {row["passes_by"] for row in rows(con, "FROM vehicle_ahead")} <= {None}
+
+
+@pytest.mark.parametrize(("overlap", "verdict"), [(0.05, "unknown"), (0.25, "fail")])
+@pytest.mark.parametrize("side", [1, -1])
+def test_boxes_that_meet_by_a_few_centimetres_may_pass_each_other(overlap: float, verdict: str, side: int) -> None:
+    """Two narrow cars in one lane, the other to the left or right, a metre wide, their middles 1 m apart less the overlap."""
+    apart = side * (1.0 - overlap) / 2
+    ego = replace(heading("ego", 100.0, -1.75 - apart, 0.0, 8.0), width=1.0)
+    other = replace(heading("x", 112.0, -1.75 + apart, 0.0, 1.0), width=1.0)
+    found = judged([drive([ego, other], WAY.environment)], rules=["criticality.ttc"])
+    assert {row["verdict"] for row in found} == {verdict}
