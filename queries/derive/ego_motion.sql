@@ -81,7 +81,7 @@ jerk_sample AS (
         -- Noise is noise of a stretch: by chance, the few samples of one window may lie on a line.
         greatest(2 * max(v_line.error) OVER near_noise, contradiction(accel_mps2, place_line.slope, place_line.error)) AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
-            ELSE abs(v_long_mps) * greatest(2 * max(yaw_line.error) OVER near_noise, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) END AS lat_error_mps2
+            ELSE abs(v_long_mps) * greatest(2 * max(yaw_line.error) OVER near_turn, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) END AS lat_error_mps2
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
@@ -89,6 +89,9 @@ jerk_sample AS (
     ), near_noise AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
         RANGE BETWEEN 1_000_000_000 PRECEDING AND 1_000_000_000 FOLLOWING
+    ), near_turn AS (
+        PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
+        RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND coalesce(half_ns, 0) FOLLOWING
     )
 ),
 -- A mean acceleration is the change of speed divided by the time: samples between the two ends cannot alter it.
@@ -112,5 +115,5 @@ SELECT
     accel_error_mps2, lat_error_mps2,
     -- The jerk is off if the acceleration is at one end of its window.
     1e9 * accel_error_mps2 / (2 * jerk_half_ns()) AS jerk_error_mps3,
-    CASE WHEN age_ns >= 1_000_000_000 THEN 1e9 * (accel_error_mps2 + at_1s.error) / (t_ns - at_1s.t_ns) END AS jerk_1s_error_mps3
+    CASE WHEN age_ns >= 1_000_000_000 THEN 1e9 * sqrt(accel_error_mps2 ** 2 + at_1s.error ** 2) / (t_ns - at_1s.t_ns) END AS jerk_1s_error_mps3
 FROM window_sample

@@ -42,6 +42,19 @@ way_place AS (
     )
     GROUP BY drive_id, ego_id, t_ns, object_id
 ),
+-- The bend of the way where the ego is. (A window and no ASOF join: for few rows DuckDB compares all with all there.)
+bend_at_step AS (
+    SELECT drive_id, ego_id, t_ns, bend_per_m
+    FROM (
+        SELECT * REPLACE (last_value(bend_per_m IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns, is_step ROWS UNBOUNDED PRECEDING) AS bend_per_m)
+        FROM (
+            SELECT drive_id, ego_id, seg, t_from_ns AS t_ns, bend_per_m, false AS is_step FROM own_way WHERE t_from_ns IS NOT NULL
+            UNION ALL
+            SELECT drive_id, ego_id, seg, t_ns, NULL, true FROM step
+        )
+    )
+    WHERE is_step AND bend_per_m IS NOT NULL
+),
 -- The most acceleration across its way with which the ego drove in the next two seconds.
 across_soon AS (
     SELECT drive_id, ego_id, t_ns, max(abs(lat_accel_mps2)) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND 2_000_000_000 FOLLOWING) AS most_mps2
@@ -55,7 +68,7 @@ beside_way AS (
             AND abs(arc_offset_m(c.dx, c.dy, s.bend_per_m)) < c.ego_width_m / 2 + box_half_across_m(c.length_m, c.width_m, c.yaw_rad - c.ego_yaw_rad - s.bend_per_m * c.dx) AS is_course_held
     FROM candidate c
     JOIN way_place w USING (drive_id, ego_id, t_ns, object_id)
-    ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.seg = c.seg AND s.t_from_ns <= c.t_ns
+    JOIN bend_at_step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
     LEFT JOIN across_soon m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.t_ns = c.t_ns
     -- A vehicle that moves towards the way may be in it soon.
     WHERE abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m)
