@@ -7,16 +7,21 @@
 -- legal = "must"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["ego_condition", "ego_state", "step", "stop_line_crossing"]
+-- reads = ["data_log", "ego_condition", "ego_state", "step", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size", "traffic_lights", "signals"]
 --
 -- [params.line_m]
--- default = 1.0
+-- default = 0.4
 -- unit = "m"
 -- why = "our default: maps, boxes and places together do not tell more exactly whether a vehicle that stands at the line stands behind it"
 --
 -- [reasons.stands_at_line]
 -- says = "the light was {state}, and the ego stood no more than {line_m:g} m further on: whether behind the line is not known so exactly"
+--
+-- [params.seen_line_m]
+-- default = 1.0
+-- unit = "m"
+-- why = "our default: the same where the sensors of a recorder saw the ego"
 --
 -- [params.turn_m]
 -- default = 30.0
@@ -40,9 +45,9 @@ SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.
     c.t_state_ns > c.t_ns - s.dt_ns AS changed,
     EXISTS (
         FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
-        WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + $line_m
+        WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + m.line_m
             AND e.speed_mps <= standstill_mps()
-    ) AS stands,
+    ) AS stands, m.line_m,
     -- North America drives on the right and turns right on red.
     CASE WHEN g.nation IN ('us', 'ca') AND EXISTS (
         FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -51,6 +56,8 @@ SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.
     ) THEN g.nation END AS turns_right_in
 FROM stop_line_crossing c
 JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
+LEFT JOIN data_log d ON d.drive_id = c.drive_id
+CROSS JOIN LATERAL (SELECT CASE WHEN d.sensor_range_m IS NULL THEN $line_m ELSE $seen_line_m END AS line_m) m
 LEFT JOIN ego_state a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.t_ns = c.t_ns
 LEFT JOIN ego_condition g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.t_ns = c.t_ns
 WHERE c.control = 'traffic_light'
@@ -66,6 +73,6 @@ SELECT drive_id, ego_id, t_ns, ref_id,
         WHEN state = 'off' AND forbids(state_before) THEN why('red_then_off')
         WHEN changed THEN why('light_turned', {'state': state})
         WHEN turns_right_in IS NOT NULL AND forbids(state) THEN why('right_on_red', {'state': state, 'nation': turns_right_in})
-        WHEN stands AND forbids(state) THEN why('stands_at_line', {'state': state, 'line_m': $line_m})
+        WHEN stands AND forbids(state) THEN why('stands_at_line', {'state': state, 'line_m': line_m})
         ELSE why('light_was', {'state': state}) END AS reason
 FROM reference
