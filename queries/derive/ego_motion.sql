@@ -13,7 +13,8 @@
 -- A mean over half a second flattens a peak. The *_peak columns say by how much at most the true peak may be higher, where the value stands
 -- out over both of the values half a window away (see peak_rise).
 --
--- The *_error columns say how far off a value may be: twice the standard error of the slope, by how far the samples lie off their line, and
+-- The *_error columns say how far off a value may be: three times the mean standard error of the slopes of two seconds, by how far the
+-- samples lie off their lines (where the motion changes they do for a moment, in noise always), or twice the greatest one nearby, and
 -- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
 -- by the course. They are NULL where there are too few samples to tell.
 --
@@ -78,10 +79,10 @@ jerk_sample AS (
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
         END AS jerk_mps3,
-        -- Noise is noise of a stretch: by chance, the few samples of one window may lie on a line.
-        greatest(2 * max(v_line.error) OVER near_noise, contradiction(accel_mps2, place_line.slope, place_line.error)) AS accel_error_mps2,
+        CASE WHEN abs(accel_mps2) > tyre_mps2() THEN 'inf'::DOUBLE
+            ELSE greatest(3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
-            ELSE abs(v_long_mps) * greatest(2 * max(yaw_line.error) OVER near_turn, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) END AS lat_error_mps2
+            ELSE abs(v_long_mps) * greatest(3e-9 * avg(round(1e9 * yaw_line.error)::HUGEINT) OVER near_noise, 2 * max(yaw_line.error) OVER just_here, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) END AS lat_error_mps2
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
@@ -89,7 +90,7 @@ jerk_sample AS (
     ), near_noise AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
         RANGE BETWEEN 1_000_000_000 PRECEDING AND 1_000_000_000 FOLLOWING
-    ), near_turn AS (
+    ), just_here AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns
         RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND coalesce(half_ns, 0) FOLLOWING
     )
