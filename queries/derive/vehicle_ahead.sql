@@ -115,7 +115,8 @@ box_contact AS (
                 time_within(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
             ] AS w
         FROM relative_motion CROSS JOIN LATERAL (VALUES (0.0), (room_m), (-least_apart_m())) AS v(m)
-        WHERE ttc_s < drift_s()
+        -- Whether they meet by a hand's breadth matters where that is near.
+        WHERE ttc_s < drift_s() AND (m >= 0 OR ttc_s < late_s())
     )
     WHERE w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL
 ),
