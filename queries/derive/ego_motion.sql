@@ -16,11 +16,16 @@
 -- The *_error columns say how far off a value may be: three times the mean standard error of the slopes of two seconds, by how far the
 -- samples lie off their lines (where the motion changes they do for a moment, in noise always), or twice the greatest one nearby, and
 -- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
--- by the course. They are NULL where there are too few samples to tell.
+-- by the course. They are NULL where there are too few samples to tell. Of an ego that the sensors of somebody else measured they are at least
+-- what a place that is off by a decimetre makes of it, and such an ego does not gain speed faster than engines let it.
 --
 -- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
 -- in the table.
-WITH sample AS (
+WITH chosen AS (
+    SELECT drive_id, list(actor_id) FILTER (check_id = 'ego_chosen') AS by_user, list(actor_id) FILTER (check_id = 'egos_chosen') AS of_recorder, bool_or(check_id = 'egos_chosen') AS are_all
+    FROM quality WHERE check_id IN ('ego_chosen', 'egos_chosen') GROUP BY drive_id
+),
+sample AS (
     SELECT
         st.drive_id, st.ego_id, st.seg, st.t_ns,
         s.vx_mps * cos(s.yaw_rad) + s.vy_mps * sin(s.yaw_rad) AS v_long_mps,
@@ -31,9 +36,12 @@ WITH sample AS (
         round(1e9 * course.rad)::BIGINT AS course,
         round(1e9 * wrap_rad(course.rad - lag(course.rad) OVER w))::BIGINT AS course_turned,
         st.t_ns - min(st.t_ns) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg) AS age_ns,
-        CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns
+        CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns,
+        g.sensor_range_m IS NOT NULL AND coalesce(CASE WHEN o.are_all THEN NOT coalesce(list_contains(o.of_recorder, st.ego_id), false) ELSE list_contains(o.by_user, st.ego_id) END, false) AS is_measured
     FROM step st
     JOIN clock c USING (drive_id, ego_id)
+    JOIN data_log g ON g.drive_id = st.drive_id
+    LEFT JOIN chosen o ON o.drive_id = st.drive_id
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered') q ON q.drive_id = st.drive_id AND q.actor_id = st.ego_id
     -- Who hardly moves has no course.
@@ -50,7 +58,7 @@ unwrapped_sample AS (
 ),
 slope_sample AS (
     SELECT
-        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns,
+        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured,
         CASE WHEN whole_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near, half_ns) THEN
             CASE WHEN count(v) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(v) OVER near, sum(age_ns * v) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
@@ -79,10 +87,10 @@ jerk_sample AS (
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
         END AS jerk_mps3,
-        CASE WHEN abs(accel_mps2) > tyre_mps2() THEN 'inf'::DOUBLE
-            ELSE greatest(3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
+        CASE WHEN abs(accel_mps2) > tyre_mps2() OR is_measured AND accel_mps2 > engine_mps2() THEN 'inf'::DOUBLE
+            ELSE greatest(CASE WHEN is_measured THEN measured_mps2() END, 3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
-            ELSE abs(v_long_mps) * greatest(3e-9 * avg(round(1e9 * yaw_line.error)::HUGEINT) OVER near_noise, 2 * max(yaw_line.error) OVER just_here, contradiction(yaw_rate_radps, course_line.slope, course_line.error)) END AS lat_error_mps2
+            ELSE greatest(CASE WHEN is_measured THEN measured_mps2() END, abs(v_long_mps) * greatest(3e-9 * avg(round(1e9 * yaw_line.error)::HUGEINT) OVER near_noise, 2 * max(yaw_line.error) OVER just_here, contradiction(yaw_rate_radps, course_line.slope, course_line.error))) END AS lat_error_mps2
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)
     WINDOW near AS (
         PARTITION BY drive_id, ego_id, seg ORDER BY t_ns

@@ -53,3 +53,7 @@ CREATE OR REPLACE MACRO reservation_m() AS 1.0;
 -- vehicles are good to some 0.1 to 0.3 m, and their speeds to some 3 %.
 CREATE OR REPLACE MACRO measured_share() AS 0.05;
 CREATE OR REPLACE MACRO measured_m() AS 0.1;
+-- An acceleration of somebody whose places are off by measured_m() to one side, to the other, and back, half a second apart.
+CREATE OR REPLACE MACRO measured_mps2() AS 4 * measured_m() / 0.5 ** 2;
+-- Cars for the road gain speed no faster (0 to 100 km/h in 4.6 s); a few sports cars do, and are taken for badly measured.
+CREATE OR REPLACE MACRO engine_mps2() AS 6.0;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from tests.scenes import Actor, derived, drive, judged, rows, times
@@ -69,3 +70,33 @@ def test_a_heading_that_turns_where_the_way_does_not_is_no_bend(turns: int) -> N
     vx, vy = 9 * np.cos(bend), 9 * np.sin(bend)
     driven = Actor("ego", T, np.cumsum(vx) * 0.1, np.cumsum(vy) * 0.1, bend, vx, vy)
     assert "comfort.lateral" in fails(driven)
+
+
+@pytest.mark.parametrize(
+    ("sensor_range_m", "chosen", "fails_at"),
+    [
+        (None, [("egos_chosen", "somebody")], 2.8),  # ground truth
+        (50.0, [], 2.8),  # the recorder's own ego
+        (50.0, [("egos_chosen", "ego")], 2.8),  # it again, among all
+        (50.0, [("egos_chosen", "somebody")], 4.3),
+        (50.0, [("egos_chosen", None)], 4.3),
+        (50.0, [("ego_chosen", "ego")], 4.3),
+    ],
+)
+def test_whom_sensors_measured_accelerates_by_1_6_mps2_more_or_less(
+    sensor_range_m: float | None, chosen: list[tuple[str, str | None]], fails_at: float
+) -> None:
+    """nuPlan's bound is 2.4 m/s2."""
+
+    def fails_by(mps2: float) -> bool:
+        scene = drive([straight(2 + mps2 * T)], None, sensor_range_m=sensor_range_m)
+        tables, schema = scene.trace.tables, scene.trace.tables["quality"].schema
+        about = [
+            {"drive_id": "d", "check_id": check_id, "actor_id": name, "severity": "info", "message": "", "n": 1}
+            for check_id, name in chosen
+        ]
+        tables["quality"] = pa.Table.from_pylist(about, schema=schema)
+        return any(row["verdict"] == "fail" for row in judged([scene], rules=["comfort.nuplan"]))
+
+    assert fails_by(fails_at)
+    assert not fails_by(fails_at - 0.6)
