@@ -9,9 +9,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import duckdb
-
 import drivelint
+from drivelint.sql import store
 from tests.shared_data import DATA
 from tests.waymo_json import write
 
@@ -49,8 +48,7 @@ class Result(NamedTuple):
     def rows(self, query: str) -> list[dict[str, Any]]:
         """Return the rows of a query in which `{name}` stands for a table of the results."""
         tables = {path.stem: f"read_parquet('{path}')" for path in self.folder.glob("*.parquet")}
-        with duckdb.connect() as con:
-            con.execute("LOAD spatial")
+        with store.open_as_is() as con:
             answer = con.execute(query.format(**tables))
             names = [column[0] for column in answer.description or ()]
             return [dict(zip(names, row, strict=True)) for row in answer.fetchall()]

@@ -6,10 +6,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import duckdb
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+
+from drivelint.sql import store
 
 Floats = NDArray[np.float64]
 NO_SIZE = {"pedestrian": (0.6, 0.6), "bicycle": (1.8, 0.6), "cyclist": (1.8, 0.6), "motorcycle": (2.2, 0.8)}
@@ -78,8 +79,7 @@ class Recording(NamedTuple):
 @lru_cache(maxsize=3)
 def recording(folder: Path) -> Recording:
     """Return what a judged log has recorded; times are seconds since its start."""
-    with duckdb.connect(str(folder / "drivelint.duckdb"), read_only=True) as con:
-        con.execute("LOAD spatial")
+    with store.open_as_is(folder / "drivelint.duckdb", read_only=True) as con:
         states = con.execute(
             """
             SELECT actor_id, any_value(actor_class), any_value(length_m), any_value(width_m),
