@@ -549,7 +549,8 @@ CREATE TABLE passed_by (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL        -- a vehicle ahead that the map puts into the running lane, and beside which the ego's own way passes by 0.2 m or more: it stands, and leaves the middle of the lane free, or the two have no room beside each other in one lane; not one that the ego swerves round in the last 2 s, nor one for whom it leaves its lane
+    object_id VARCHAR NOT NULL,       -- a vehicle ahead that the map puts into the running lane, and beside which the ego's own way passes by 0.2 m or more: it stands, and leaves the middle of the lane free, or the two have no room beside each other in one lane; not one that the ego swerves round in the last 2 s, nor one for whom it leaves its lane
+    is_sure BOOLEAN NOT NULL          -- false: sensors measured the places, and the way meets the vehicle by less than they tell, or passes by less than 0.2 m
 );
 
 -- lifetime: part

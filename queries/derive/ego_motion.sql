@@ -17,7 +17,8 @@
 -- samples lie off their lines (where the motion changes they do for a moment, in noise always), or twice the greatest one nearby, and
 -- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
 -- by the course. They are NULL where there are too few samples to tell. Of an ego that the sensors of somebody else measured they are at least
--- what a place that is off by a decimetre makes of it, and such an ego does not gain speed faster than engines let it.
+-- what a place that is off by a decimetre makes of it, or a speed that is not that of the places; such an ego does not gain speed faster
+-- than engines let it, and is not believed within a second of a change that no tyre makes.
 --
 -- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
 -- in the table.
@@ -58,7 +59,7 @@ unwrapped_sample AS (
 ),
 slope_sample AS (
     SELECT
-        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured,
+        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured, abs(avg(v - v_of_places) OVER near) / (2 * half_ns) AS off_places_mps2,
         CASE WHEN whole_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near, half_ns) THEN
             CASE WHEN count(v) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(v) OVER near, sum(age_ns * v) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
@@ -87,8 +88,8 @@ jerk_sample AS (
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
         END AS jerk_mps3,
-        CASE WHEN abs(accel_mps2) > tyre_mps2() OR is_measured AND accel_mps2 > engine_mps2() THEN 'inf'::DOUBLE
-            ELSE greatest(CASE WHEN is_measured THEN measured_mps2() END, 3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
+        CASE WHEN abs(accel_mps2) > tyre_mps2() OR is_measured AND (accel_mps2 > engine_mps2() OR max(abs(accel_mps2)) OVER near_noise > tyre_mps2()) THEN 'inf'::DOUBLE
+            ELSE greatest(CASE WHEN is_measured THEN greatest(measured_mps2(), off_places_mps2) END, 3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
             ELSE greatest(CASE WHEN is_measured THEN measured_mps2() END, abs(v_long_mps) * greatest(3e-9 * avg(round(1e9 * yaw_line.error)::HUGEINT) OVER near_noise, 2 * max(yaw_line.error) OVER just_here, contradiction(yaw_rate_radps, course_line.slope, course_line.error))) END AS lat_error_mps2
     FROM (SELECT *, round(1e9 * accel_mps2)::HUGEINT AS a FROM slope_sample)

@@ -77,11 +77,12 @@ on_course AS (
 -- The object's centre is in the lane, or the object is in the ego's way. A vehicle that only reaches over the line must not hide the
 -- vehicle that the ego follows.
 SELECT
-    drive_id, ego_id, t_ns, object_id, CASE WHEN NOT is_unsure THEN actor_class END AS actor_class, gap_m, speed_mps, oncoming, across_m, ego_across_mps, across_mps, soon, outside
+    o.drive_id, o.ego_id, o.t_ns, o.object_id, CASE WHEN NOT o.is_unsure AND b.is_sure IS NULL THEN o.actor_class END AS actor_class, o.gap_m, o.speed_mps, o.oncoming, o.across_m, o.ego_across_mps,
+    o.across_mps, o.soon, o.outside
 FROM object_ahead o
 -- Whom the ego's own way passes beside, it neither meets nor follows.
-ANTI JOIN passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
-WHERE is_centre_in_lane OR soon
+LEFT JOIN passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
+WHERE (o.is_centre_in_lane OR o.soon) AND b.is_sure IS DISTINCT FROM true
 UNION ALL BY NAME
 SELECT c.* EXCLUDE (is_course_held) FROM on_course c
 ANTI JOIN object_ahead o ON o.drive_id = c.drive_id AND o.ego_id = c.ego_id AND o.t_ns = c.t_ns AND o.object_id = c.object_id

@@ -2,7 +2,7 @@
 -- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre was over the line. Less than that is a wobble, if all
 -- of it was seen. Every further vehicle that is passed in the same excursion counts, too.
 WITH overtaking_excursion AS (
-    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
+    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
@@ -30,6 +30,8 @@ ahead AS (
     WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
         AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
+        -- An ego with room to pass within its lane, and part of it still in it, is not over the line for one that stands beside its way.
+        AND NOT coalesce(p.speed_mps <= standing_mps() AND NOT g.centre_over AND p.half_width_m - g.side * p.d_m - p.lat_half_m >= g.width_m + room_beside_standing_m(), false)
 ),
 -- Vehicles first seen after t0 that come towards the ego are not the overtaken vehicle.
 oncoming_object AS (

@@ -20,11 +20,15 @@ encounter AS (
             (e.x_m + e.length_m / 2 * cos(e.yaw_rad) - s.x_m) * cos(s.yaw_rad) + (e.y_m + e.length_m / 2 * sin(e.yaw_rad) - s.y_m) * sin(s.yaw_rad)
                 + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
             true
-        )) AS is_driven
+        )) AS is_driven,
+        -- Who leaves the ground in the ego's direction, late enough, turned into the same road behind it.
+        coalesce(c.pet_s >= merging_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
     FROM passage p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
     ASOF LEFT JOIN state_dynamics s ON s.drive_id = c.drive_id AND s.actor_id = c.object_id AND s.t_ns <= c.t_ego_in_ns
+    LEFT JOIN ego_state b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.t_ns = c.t_ego_out_ns
+    LEFT JOIN state_dynamics o ON o.drive_id = c.drive_id AND o.actor_id = c.object_id AND o.t_ns = c.t_object_out_ns
     WHERE ((c.t_ego_out_ns >= p.t_enter_ns AND e.t_ns <= p.t_leave_ns)
             OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + mouth_m() AND e.travel_m >= p.travel_in_m - mouth_m()))
         -- An actor into which the ego went counts, too: it was still there.
@@ -43,9 +47,13 @@ approach AS (
 encounter_by_relation AS (
     SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, actor_class, pet_s, decel_mps2 FROM encounter WHERE is_on_foot
     UNION ALL
-    SELECT m.drive_id, m.ego_id, m.occurrence, unnest(relations_of(c.from_rad, m.straightest_rad)), m.object_id, m.actor_class, m.pet_s, m.decel_mps2
-    FROM encounter m JOIN approach c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
-    WHERE m.is_driven
+    SELECT * EXCLUDE (merges)
+    FROM (
+        SELECT m.drive_id, m.ego_id, m.occurrence, unnest(relations_of(c.from_rad, m.straightest_rad)) AS relation, m.object_id, m.actor_class, m.pet_s, m.decel_mps2, m.merges
+        FROM encounter m JOIN approach c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
+        WHERE m.is_driven
+    )
+    WHERE NOT (merges AND relation = 'oncoming')
 ),
 nearest_encounter AS (
     SELECT drive_id, ego_id, occurrence, relation, min({'pet_s': pet_s, 'object_id': object_id, 'actor_class': actor_class, 'decel_mps2': decel_mps2}) AS other

@@ -3,6 +3,8 @@
 -- way. Two kinds are listed: a vehicle that stands and leaves the middle of the lane free, and one that moves, not towards that way, is not
 -- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
 --
+-- Where sensors measured the places, who is met by less than `measured_meeting_m` is listed as well, as one of whom that is not sure.
+--
 -- A vehicle that stands in the ego's way, and that the ego swerves round at the last moment, is not listed at any step: the ego's lane and the bend that it
 -- drove, both held, led into that vehicle less than `late_s` before it, and the ego got off that course faster than in a change of lane. Beyond the end of what
 -- the ego drove, it is taken to hold its bend, and passes beside only whom it would pass if it bent otherwise.
@@ -10,13 +12,15 @@ WITH candidate AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
         e.yaw_rad AS ego_yaw_rad, e.speed_mps AS ego_speed_mps, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
-        (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy
+        (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy,
+        CASE WHEN g.sensor_range_m IS NOT NULL THEN measured_meeting_m() ELSE 0.0 END AS may_meet_m
     FROM pair p
+    JOIN data_log g USING (drive_id)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     WHERE p.s_m > e.s_m AND p.distance_m < lost_near_m() + 2 * drift_s() * e.speed_mps AND may_be_vehicle(p.actor_class) AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
         AND CASE WHEN p.speed_mps <= standing_mps() THEN true
-            ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m AND p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m END
+            ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m - may_meet_m AND p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m END
 ),
 segment_cell AS (
     SELECT w.*, cell_key(floor((x0_m + x1_m) / 8) + i.i, floor((y0_m + y1_m) / 8) + j.j) AS cell
@@ -62,7 +66,7 @@ across_soon AS (
 ),
 beside_way AS (
     SELECT
-        c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns,
+        c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns, a.apart_m >= a.least_m AS is_sure,
         c.across_m < 0 AND (c.dx - (c.length_m + c.ego_length_m) / 2) / nullif(c.ego_speed_mps, 0) BETWEEN steering_s() AND late_s()
             AND (m.most_mps2 >= swerves_from_mps2() OR 2 * abs(w.there.d_m - arc_offset_m(c.dx, c.dy, s.bend_per_m)) >= changes_lane_mps2() * (c.dx / nullif(c.ego_speed_mps, 0)) ** 2)
             AND abs(arc_offset_m(c.dx, c.dy, s.bend_per_m)) < c.ego_width_m / 2 + box_half_across_m(c.length_m, c.width_m, c.yaw_rad - c.ego_yaw_rad - s.bend_per_m * c.dx) AS is_course_held
@@ -70,13 +74,16 @@ beside_way AS (
     JOIN way_place w USING (drive_id, ego_id, t_ns, object_id)
     JOIN bend_at_step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
     LEFT JOIN across_soon m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.t_ns = c.t_ns
-    -- A vehicle that moves towards the way may be in it soon.
-    WHERE abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m)
-        >= passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END
+    CROSS JOIN LATERAL (
+        SELECT abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m) AS apart_m,
+            -- A vehicle that moves towards the way may be in it soon.
+            passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END AS least_m
+    ) a
+    WHERE a.apart_m >= a.least_m OR c.may_meet_m > 0 AND a.apart_m BETWEEN -c.may_meet_m AND passes_beside_m()
 )
-SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id
+SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, b.is_sure
 FROM beside_way b
-ANTI JOIN (FROM beside_way WHERE is_course_held) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
+ANTI JOIN (FROM beside_way WHERE is_course_held AND is_sure) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
 -- Nor does the ego pass by whom it overtakes on the side of the oncoming traffic: until it pulls out it is behind that vehicle.
 ANTI JOIN (FROM excursion WHERE overtaking AND begin_seen AND over_against AND max_out_m >= surely_out_m()) x
     ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns

@@ -5,6 +5,8 @@ CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
 -- A corner that is over a boundary by less than this may not have left the lane: boundaries without a marking are not surveyed, and boxes
 -- are estimates.
 CREATE OR REPLACE MACRO surely_out_m() AS 0.3;
+-- Half a metre on either side: who has it passes a standing vehicle without leaving the lane.
+CREATE OR REPLACE MACRO room_beside_standing_m() AS 1.0;
 -- Half width of the strip in which the corridor gives positions, and how far the strip reaches ahead of and behind the ego's way.
 CREATE OR REPLACE MACRO strip_m() AS 15.0;
 CREATE OR REPLACE MACRO corridor_ahead_m() AS 1000.0;
@@ -53,6 +55,8 @@ CREATE OR REPLACE MACRO reservation_m() AS 1.0;
 -- vehicles are good to some 0.1 to 0.3 m, and their speeds to some 3 %.
 CREATE OR REPLACE MACRO measured_share() AS 0.05;
 CREATE OR REPLACE MACRO measured_m() AS 0.1;
+-- Two boxes that meet by less than this across may as well pass each other, where sensors measured them.
+CREATE OR REPLACE MACRO measured_meeting_m() AS 0.3;
 -- An acceleration of somebody whose places are off by measured_m() to one side, to the other, and back, half a second apart.
 CREATE OR REPLACE MACRO measured_mps2() AS 4 * measured_m() / 0.5 ** 2;
 -- Cars for the road gain speed no faster (0 to 100 km/h in 4.6 s); a few sports cars do, and are taken for badly measured.

@@ -50,7 +50,7 @@ def test_nobody_is_certain_where_everybody_is_placed() -> None:
     [
         ("we", "sn", "from_right"), ("we", "ns", "from_left"), ("nw", "we", None), ("sn", "we", "from_left"),
         ("wn", "ew", "oncoming"), ("ws", "ew", None), ("en", "we", None), ("nw", "sn", None),
-        ("se", "we", "from_left"), ("ws", "ns", "from_left"), ("wn", "en", "oncoming"),
+        ("se", "we", "from_left"), ("ws", "ns", "from_left"), ("wn", "en", None),
     ],
 )  # fmt: skip
 def test_where_they_came_from(hand: str, ego: str, other: str, relation: str | None) -> None:
@@ -122,6 +122,20 @@ def test_the_one_with_the_least_pet() -> None:
     alone = answers(going(ways["wn"]), near, way=ways["we"])["oncoming"]
     assert both == alone
     assert both["object_id"] == "z"
+
+
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+@pytest.mark.parametrize(("s0", "hit"), [(110.0, True), (92.0, False)])
+def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_follows_it(
+    hand: str, s0: float, hit: bool
+) -> None:
+    """Both leave the ground in one direction: 1 s or more behind the ego, the other follows."""
+    ways = cross(hand)
+    ego, other = ("wn", "en") if hand == "rht" else ("ws", "es")
+    found = answers(going(ways[ego]), going(ways[other], s0=s0, name="other"), way=ways["we"])
+    assert seen(found) == ({"oncoming": "other"} if hit else {})
+    if hit:
+        assert 0 < found["oncoming"]["pet_s"] < 1
 
 
 def test_how_hard_the_other_had_to_brake() -> None:

@@ -187,6 +187,16 @@ def test_a_parked_car_is_passed_whichever_way_it_stands(turned: float, counts: b
     assert [(row["vbp_id"], row["status"], row["ov_id"]) for row in found] == [("parked", "completed", "ov")]
 
 
+@pytest.mark.parametrize("hand", ["rht", "lht"])
+def test_beside_a_parked_car_that_leaves_room_in_the_lane_the_ego_is_over_the_line_for_another_reason(hand: str) -> None:
+    """The ego, 1.8 m wide, is 0.5 m over the line beside a car that leaves it 2.9 m of its lane, or 2.5 m."""
+    way, (ego, _, ov) = scene(hand)
+    astride = moving("ego", way, ego.t_s, ego.x, swing(way, ego.x, 170, 230, share=0.386))
+    for reaches_in, passed in ((0.6, []), (1.0, ["parked"])):
+        parked = standing("parked", way, ego.t_s, 200, np.sign(way.own) * (LANE + 0.9 - reaches_in))
+        assert [row["vbp_id"] for row in one([astride, parked, ov], way, "overtake")] == passed
+
+
 def test_the_one_parked_the_wrong_way_round_is_no_oncoming_vehicle() -> None:
     way, (ego, _, _) = scene()
     parked = standing("parked", way, ego.t_s, 200, way.own, turned=math.pi)

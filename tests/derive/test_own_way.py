@@ -22,9 +22,10 @@ KERB = 0.67
 """Clearance of the parked car in these scenes."""
 
 
-def leads(way: Road | None, *actors: Actor) -> dict[float, Row]:
+def leads(way: Road | None, *actors: Actor, sensor_range_m: float | None = None) -> dict[float, Row]:
     """Return the rows of `lead` by the time of their step."""
-    con = derived(drive(list(actors), None if way is None else way.environment), tables=["lead"])
+    scene = drive(list(actors), None if way is None else way.environment, sensor_range_m=sensor_range_m)
+    con = derived(scene, tables=["lead"])
     return {round(row["t_ns"] / 1e9, 1): row for row in rows(con, "FROM lead")}
 
 
@@ -71,6 +72,18 @@ def test_swerved_round_at_the_last_moment_it_was_the_lead_or_may_have_been(hand:
         assert all(near)
     else:
         assert near == [None] * len(near)
+
+
+@HANDS
+def test_met_by_less_than_sensors_tell_it_is_the_lead_only_perhaps(hand: str) -> None:
+    """The ego stops behind a car at the kerb that reaches 0.15 m into its way, or 0.75 m."""
+    way = road(hand=hand)
+    t = times(8.0)
+    ego = moving("ego", way, t, 150 + 10 * t - np.clip(t - 1, 0, 6) ** 2 / 1.2 - 10 * np.clip(t - 7, 0, None), way.own)
+    for reaches_in, sensor_range_m, lead in ((1.0, 80.0, None), (1.0, None, "p"), (1.6, 80.0, "p")):
+        found = leads(way, ego, parked(way, t, reaches_in=reaches_in), sensor_range_m=sensor_range_m)
+        near = [found.get(round(at, 1)) for at in np.arange(3.0, 6.5, 0.1)]
+        assert {row["object_id"] if row else None for row in near} == {lead}
 
 
 @HANDS

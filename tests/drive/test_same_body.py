@@ -109,6 +109,18 @@ def test_boxes_that_begin_in_each_other_are_not_exact(
     assert {(row["quantity"], row["t_from_ns"], row["t_to_ns"]) for row in rows} <= {("position", 0, 999_999_999)}
 
 
+@pytest.mark.parametrize(("aside_m", "until_ns"), [(1.2, 2_499_999_999), (0.4, 1_099_999_999)])
+def test_who_may_drive_beside_the_other_is_doubted_as_long_as_it_stays_there(
+    tmp_path: Path, aside_m: float, until_ns: int
+) -> None:
+    """Cars 1.8 m wide, 0.8 m in each other along: after 1.1 s they are as far apart. Who is 1.2 m aside draws away to 2.5 m."""
+    cars = begun(0.8)
+    cars["rear"]["y_m"] = np.where(np.arange(len(cars["rear"]["y_m"])) < 25, aside_m, aside_m + 2.0)
+    trace = drive(tmp_path, **cars)
+    rows = [row for row in trace.tables["doubt"].to_pylist() if row["code"] == "begin_overlap"]
+    assert {(row["quantity"], row["t_from_ns"], row["t_to_ns"]) for row in rows} == {("position", 0, until_ns)}
+
+
 def test_who_collides_after_the_begin_is_not_doubted(tmp_path: Path) -> None:
     cars = begun(-1.0, closing=2.0)
     assert not {row for row in doubts(drive(tmp_path, **cars)) if row[2] == "begin_overlap"}

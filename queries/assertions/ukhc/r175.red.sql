@@ -52,10 +52,12 @@ SELECT c.drive_id, c.ego_id, c.t_ns, c.occurrence, c.signal_id, c.begin_seen, c.
     CASE WHEN g.nation IN ('us', 'ca') AND EXISTS (
         FROM step n JOIN ego_state e USING (drive_id, ego_id, t_ns)
         WHERE n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.t_ns >= c.t_ns AND n.travel_m <= s.travel_m + $turn_m
-            AND wrap_rad(e.yaw_rad - a.yaw_rad) < -pi() / 6
+            -- At the end of the log a turn may have only begun.
+            AND wrap_rad(e.yaw_rad - a.yaw_rad) < CASE WHEN l.travel_m < s.travel_m + $turn_m THEN -pi() / 36 ELSE -pi() / 6 END
     ) THEN g.nation END AS turns_right_in
 FROM stop_line_crossing c
 JOIN step s ON s.drive_id = c.drive_id AND s.ego_id = c.ego_id AND s.t_ns = c.t_ns
+LEFT JOIN (SELECT drive_id, ego_id, max(travel_m) AS travel_m FROM step GROUP BY drive_id, ego_id) l ON l.drive_id = c.drive_id AND l.ego_id = c.ego_id
 LEFT JOIN data_log d ON d.drive_id = c.drive_id
 CROSS JOIN LATERAL (SELECT CASE WHEN d.sensor_range_m IS NULL THEN $line_m ELSE $seen_line_m END AS line_m) m
 LEFT JOIN ego_state a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.t_ns = c.t_ns

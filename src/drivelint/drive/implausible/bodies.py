@@ -65,6 +65,8 @@ class _Boxes(NamedTuple):
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
 """Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
+BESIDE_M: Final = 0.1
+"""Places tremble by so much from one sample to the next."""
 HIT_MPS: Final = 1.5
 """A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
 HELD_NS: Final = 2_000_000_000
@@ -237,7 +239,8 @@ def _coupled(one: _Boxes, other: _Boxes) -> bool:
 
 def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
     """Say in which of their first samples (n) two tracks that move overlap, deep at once, or are hardly apart, without an impact."""
-    depth, speeds = _overlap(one, other)[0].min(axis=0), np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
+    across, depth = _overlap(one, other)[0][1], _overlap(one, other)[0].min(axis=0)
+    speeds = np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
@@ -245,6 +248,9 @@ def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
     # places that are off by so much are not believed before the boxes are as far apart as they overlapped
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
+    if across[0] <= min(one.half[1][0], other.half[1][0]):  # half a width: they may drive beside each other
+        most = across[together].max() + BESIDE_M
+        near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
 
 
