@@ -3,10 +3,13 @@
 An episode is a run of steps in which one object is in the strip that the ego's box really swept, at most 3 s ahead of its front.
 It is found here with numpy from the recorded boxes alone, not by the program's own tables of who is ahead. A rule decides it if
 its verdicts at that time are pass or fail, or if it does not apply, and none of them is unknown.
+
+Where `tests.trial` judged every vehicle of a log, its recorder's episodes count alone.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 from collections import Counter
 from pathlib import Path
@@ -57,9 +60,11 @@ def corners(x: float, y: float, yaw: float, length: float, width: float) -> Floa
     return found
 
 
-def episodes(con: duckdb.DuckDBPyConnection) -> Iterator[tuple[str, str, str, int, int]]:
-    """Yield drive, ego, object, first and last time of each episode."""
+def episodes(con: duckdb.DuckDBPyConnection, recorders: list[str] | None) -> Iterator[tuple[str, str, str, int, int]]:
+    """Yield drive, ego, object, first and last time of each episode. `recorders`: the only egos that count; None: all do."""
     for drive_id, ego_id in con.execute("SELECT DISTINCT drive_id, ego_id FROM step ORDER BY ALL").fetchall():
+        if recorders is not None and ego_id not in recorders:
+            continue
         select = """
             SELECT t_ns, x_m, y_m, speed_mps, length_m, width_m FROM ego_state
             WHERE drive_id = ? AND ego_id = ? AND x_m IS NOT NULL ORDER BY t_ns
@@ -106,8 +111,10 @@ def main(folders: list[str]) -> int:
     """Print, by rule, how many episodes pass, fail, stay unknown and are outside the rule's conditions."""
     sums: dict[str, Counter[str]] = {rule: Counter() for rule in RULES}
     for folder in folders:
+        known = Path(folder) / "recorders.json"
+        recorders = json.loads(known.read_text(encoding="utf-8")) if known.exists() else None
         with duckdb.connect(str(Path(folder) / "drivelint.duckdb"), read_only=True) as con:
-            found = list(episodes(con))
+            found = list(episodes(con, recorders))
             columns = "rule_id, verdict, object_id, t_start_ns, t_end_ns, drive_id, ego_id"
             rows = con.execute(f"SELECT {columns} FROM verdict").to_arrow_table().to_pylist()
         for drive_id, ego_id, object_id, start, end in found:
