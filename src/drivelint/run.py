@@ -25,6 +25,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.phrases import plural
+from drivelint.pictures import Camerawork, chosen_rows, planned_shots
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.joining import join
@@ -53,6 +54,8 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    pictures: bool = True
+    """Show frames of the cameras that logs have, where evidence is gathered."""
     evidence: bool = False
     """Gather what reports show without `out`, too."""
     threads: int | None = None
@@ -105,6 +108,8 @@ class JudgedLogs:
     result: Result
     notes: tuple[LogNote, ...]
     refused: tuple[RefusedLog, ...]
+    cameras: Mapping[str, tuple[str, ...]]
+    """drive_id -> topics of the cameras, of the drives with cameras."""
 
 
 def check(
@@ -164,6 +169,9 @@ def judge_logs(
         observers: list[BatchObserver] = []
         if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
+        cameras = Camerawork() if settings.pictures and (settings.out or settings.evidence) else None
+        if cameras is not None:
+            observers.append(cameras)
         if settings.out and settings.annotate:
             from drivelint.annotate import Annotator  # what it writes with takes a tenth of a second to import
 
@@ -225,7 +233,13 @@ def judge_logs(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
-        return JudgedLogs(result, tuple(notes.notes), tuple(refused))
+        if cameras is not None and cameras.topics:
+            progress.doing("taking pictures from cameras")
+            pictures, troubles = cameras.take(result)
+            result = replace(result, pictures=pictures)
+            for trouble in troubles:
+                notes.add(LogNote(trouble.path, trouble.text, once=True))
+        return JudgedLogs(result, tuple(notes.notes), tuple(refused), {} if cameras is None else cameras.topics)
 
 
 def conclude(
@@ -235,7 +249,11 @@ def conclude(
 
     Notes are in the order of the logs. Errors: as `check`, if no drive could be judged.
     """
-    result = parts[0].result if len(parts) == 1 else join([part.result for part in parts])
+    result = parts[0].result
+    if len(parts) > 1:
+        result = join([part.result for part in parts])
+        cameras = {drive: topics for part in parts for drive, topics in part.cameras.items()}
+        result = replace(result, pictures=chosen_rows(result.pictures, planned_shots(result, cameras)))
     place = {path: n for n, path in enumerate(paths)}
     notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
     result = replace(result, notes=tuple(note.told for note in told_once(notes)))

@@ -63,6 +63,10 @@ def check(
         bool,
         option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
     ] = True,
+    pictures: Annotated[
+        bool,
+        option("--pictures/--no-pictures", None, "With --out: show frames of the log's own cameras beside findings."),
+    ] = True,
     robustness: Annotated[
         bool | None,
         options.robustness(
@@ -169,6 +173,7 @@ def check(
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
+        pictures=pictures,
         robustness=robustness,
         memory=values.parse_memory(memory),
         rule_timeout=rule_timeout,

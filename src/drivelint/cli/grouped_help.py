@@ -20,6 +20,7 @@ _GROUPS: Final = {
         "margins",
         "keep_db",
         "annotate",
+        "pictures",
         "evidence",
         "sign",
         "verbose",

@@ -16,7 +16,7 @@ from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED
 from drivelint.result.counts import SEVERITIES, unrecorded
 from drivelint.result.gate import NOT_FIXED
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import conform, empty_table
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class ExitStatus(NamedTuple):
 class Result:
     """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
 
-    `scenes` to `opportunities`: the evidence for pictures and charts, empty where none was gathered.
+    `scenes` to `opportunities`: the evidence for drawings and charts, empty where none was gathered; so `pictures`, from cameras.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
     `interrupted`: the run was, before all drives were judged.
@@ -65,6 +65,7 @@ class Result:
     tracks: pa.Table = field(default_factory=lambda: empty_table("track"))
     overtakes: pa.Table = field(default_factory=lambda: empty_table("overtake_record"))
     opportunities: pa.Table = field(default_factory=lambda: empty_table("opportunity_record"))
+    pictures: pa.Table = field(default_factory=lambda: empty_table("picture"))
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
@@ -78,7 +79,7 @@ class Result:
     ended_early: str | None = None
 
     def __post_init__(self) -> None:
-        for name, table in TABLE_OF_FILE.items():
+        for name, table in {**TABLE_OF_FILE, **PICTURES}.items():
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
