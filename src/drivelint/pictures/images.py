@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 MOST_PX: Final = (640, 480)
 """Width and height that a picture has at most."""
 MOST_BYTES: Final = 30_000
-"""A picture that is larger is encoded with a lower quality."""
-_QUALITIES: Final = (70, 35, 10)
+"""A picture that is larger is encoded with a lower quality; noise may then still be a little larger."""
+_QUALITY, _LESS, _LEAST = 70, 35, 10
 _FORMATS: Final = ("JPEG", "PNG", "WEBP")
 _MOST_PIXELS: Final = 100_000_000
 _PLAIN: Final = {
@@ -49,12 +49,16 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
         small = whole.reduce(times) if (times := _times_too_large(whole)) > 1 else whole
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
-    for quality in _QUALITIES:
-        sink = io.BytesIO()
-        small.save(sink, "JPEG", quality=quality, exif=b"", comment=b"")
-        if sink.tell() <= MOST_BYTES:
-            break
-    return Jpeg(sink.getvalue(), *small.size)
+    data = _encoded(small, _QUALITY)
+    if len(data) > MOST_BYTES:
+        data = _encoded(small, _LESS if len(data) < 2 * MOST_BYTES else _LEAST)
+    return Jpeg(data, *small.size)
+
+
+def _encoded(image: Image.Image, quality: int) -> bytes:
+    sink = io.BytesIO()
+    image.save(sink, "JPEG", quality=quality, exif=b"", comment=b"")
+    return sink.getvalue()
 
 
 def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:

@@ -1,8 +1,4 @@
-"""This module copies a recorded MCAP file into an annotated one, and adds the indexes that it lacks.
-
-Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes
-behind a chunk, and a chunk around messages that stand outside of any.
-"""
+"""A recorded MCAP file as it is copied into an annotated one."""
 
 from __future__ import annotations
 
@@ -13,61 +9,42 @@ import os
 import struct
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, BinaryIO, Final, Self
 
-import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import AttachmentIndex, Channel, Chunk, ChunkIndex, Footer, MetadataIndex, Schema, Statistics
+from mcap.records import Channel, Chunk, Footer, Schema, Statistics
 from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import ChangedLogError, TraceError
+from drivelint.formats.mcap.bag import is_bag, mcap_files
+from drivelint.formats.mcap.part_copy import PartCopy, Record, index_arrays
 from drivelint.formats.mcap.resume import MAGIC
 from drivelint.formats.mcap.summary import summary_is_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
+    from drivelint.formats.mcap.part_copy import ChunkMessageIndex
     from drivelint.formats.mcap.writer import Sink
 
-ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
-
 _HEAD: Final = struct.Struct("<BQ")
-_TIMES: Final = struct.Struct("<QQ")
 _MESSAGE: Final = struct.Struct("<HIQ")
 _INDEX: Final = struct.Struct("<HI")
-_LOOSE: Final = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE})
-_SUMMARY: Final = frozenset({
-    Opcode.DATA_END, Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX, Opcode.STATISTICS,
-    Opcode.SUMMARY_OFFSET,
-})  # fmt: skip
-LOOSE_CHUNK_BYTES: Final = 4 << 20
-"""Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
-_HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
-
-
-class Record(NamedTuple):
-    """A record: its opcode, where it begins (its head included), where its body begins, where it ends."""
-
-    opcode: int
-    at: int
-    body: int
-    end: int
 
 
 class Original:
     """An MCAP file, mapped into memory and read by its record heads alone wherever that is enough.
 
-    The file was read and checked by ingest; `sha256` is what it was then. `indexed`: its chunks' message indexes can be relied on.
+    The file was read and checked by ingest; `sha256` is what it was then, None: who copies it holds its hash against that of the whole
+    log. `indexed`: its chunks' message indexes can be relied on.
     Errors: `TraceError` where it is damaged or was changed since.
     """
 
-    def __init__(self, path: Path, sha256: str) -> None:
+    def __init__(self, path: Path, sha256: str | None = None) -> None:
         self.path = path
         self._sha256 = sha256
         self._file = _opened(path)  # closed by leaving the `with` that this object is made for
@@ -85,10 +62,13 @@ class Original:
         self._file.close()
 
     def copy(self, sink: Sink) -> None:
-        """Copy the data into a fresh sink and tell its index what was copied."""
+        """Copy the data into a sink, fresh or with earlier parts of the log, and tell its index what was copied."""
+        if self._sha256 is None:
+            PartCopy(self, sink).run()
+            return
         with ThreadPoolExecutor(max_workers=1) as pool:
             digest = pool.submit(self._digest)
-            _Copy(self, sink).run()
+            PartCopy(self, sink).run()
             if digest.result() != self._sha256:
                 raise ChangedLogError(
                     f"{self.path}: the log changed while it was judged: check it again when it is complete"
@@ -242,10 +222,20 @@ class Original:
         return digest.hexdigest()
 
 
+def copy_log(path: Path, sha256: str, sink: Sink) -> None:
+    """Copy an MCAP file, or all files of a bag one after another, into a fresh sink.
+
+    Errors: `TraceError`; `ChangedLogError` for a file that is not as it was.
+    """
+    for part in mcap_files(path):
+        with Original(part, None if path.is_dir() else sha256) as original:
+            original.copy(sink)
+
+
 def is_mcap(path: Path) -> bool:
-    """Whether a trace is an MCAP file, by its first bytes."""
+    """Whether a trace is an MCAP file, by its first bytes, or a bag of such files."""
     if path.is_dir():
-        return False
+        return is_bag(path)
     with _opened(path) as file:
         return file.read(len(MAGIC)) == MAGIC
 
@@ -259,120 +249,3 @@ def _opened(path: Path) -> BinaryIO:
 
 def _unreadable(path: Path, error: OSError) -> TraceError:
     return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
-
-
-class _Copy:
-    """One copying: bytes wait to be written in one go, from `_from` on, as long as nothing must be put between them."""
-
-    def __init__(self, original: Original, sink: Sink) -> None:
-        self._original = original
-        self._sink = sink
-        self._from = 0
-        self._to = 0
-        self._loose: list[Record] = []
-        self._chunk: tuple[Record, ChunkIndex] | None = None
-
-    def run(self) -> None:
-        """Copy everything before the end of the data."""
-        self._sink.schemas.update(self._original.schemas)
-        self._sink.channels.update(self._original.channels)
-        self._to = len(MAGIC)
-        for record in self._original.records():
-            if record.opcode in _SUMMARY:
-                break
-            if record.opcode != Opcode.MESSAGE_INDEX:
-                self._end_chunk()
-            if record.opcode in _LOOSE:
-                self._loose.append(record)
-                if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
-                    self._end_loose()
-                continue
-            self._end_loose()
-            if record.opcode == Opcode.MESSAGE_INDEX:
-                self._take_index(record)
-            else:
-                with self._original.parsing(record):
-                    self._note(record)
-                self._keep(record)
-        self._end_chunk()
-        self._end_loose()
-        self._flush()
-
-    def _keep(self, record: Record) -> None:
-        self._to = record.end
-        if self._to - self._from > _BLOCK:
-            self._flush()
-
-    def _flush(self) -> None:
-        for start in range(self._from, self._to, _BLOCK):
-            self._sink.write(self._original.read(start, min(start + _BLOCK, self._to)))
-        self._from = self._to
-
-    def _place(self, at: int) -> int:
-        """Return where a byte of the original that is waiting will be in the copy."""
-        return self._sink.offset + at - self._from
-
-    def _note(self, record: Record) -> None:
-        """Tell the index of a record that will be copied."""
-        start, length = self._place(record.at), record.end - record.at
-        head = self._original.stream(record, _HEAD_BYTES)
-        if record.opcode == Opcode.CHUNK:
-            begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
-            self._chunk = record, ChunkIndex(
-                chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
-                compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
-                message_start_time=begin, uncompressed_size=size,
-            )  # fmt: skip
-        elif record.opcode == Opcode.ATTACHMENT:
-            log_time, create_time = head.read8(), head.read8()
-            name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
-            self._sink.attachments.append(AttachmentIndex(
-                offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
-                name=name, media_type=media_type,
-            ))  # fmt: skip
-        elif record.opcode == Opcode.METADATA:
-            self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=head.read_prefixed_string()))
-
-    def _take_index(self, record: Record) -> None:
-        """Copy a message index that can be relied on; another is left out and found anew."""
-        if self._chunk is None or not self._original.indexed:
-            self._flush()
-            self._from = self._to = record.end
-            return
-        channel, n = self._original.message_index_header(record)
-        self._chunk[1].message_index_offsets[channel] = self._place(record.at)
-        self._chunk[1].message_index_length += record.end - record.at
-        self._sink.counts[channel] += n
-        self._keep(record)
-
-    def _end_chunk(self) -> None:
-        if self._chunk is None:
-            return
-        (record, index), self._chunk = self._chunk, None
-        if self._original.indexed:
-            self._sink.chunks.append(index)
-            return
-        self._flush()
-        self._sink.index_chunk(index, self._original.chunk_message_index(record))
-
-    def _end_loose(self) -> None:
-        """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""
-        if not self._loose:
-            return
-        loose, self._loose = self._loose, []
-        start, end = loose[0].at, loose[-1].end
-        messages = [record for record in loose if record.opcode == Opcode.MESSAGE]
-        if messages:
-            self._flush()
-            index = index_arrays((*self._original.message_header(each), each.at - start) for each in messages)
-            self._sink.add_chunk(self._original.read(start, end), index, compressed=False)
-            self._from = end
-        self._to = end
-
-
-def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
-    """Return the index of messages (channel, sequence number, log time, offset): by channel an array of log time and offset."""
-    entries: dict[int, list[tuple[int, int]]] = {}
-    for channel, _, log_time, at in messages:
-        entries.setdefault(channel, []).append((log_time, at))
-    return {channel: np.array(pairs, np.uint64) for channel, pairs in sorted(entries.items())}
