@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint import catalogue
+from drivelint.drive.trace import NOT_IN_FOLDER
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
@@ -54,6 +56,8 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    min_judged: float | None = None
+    """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
     """Show frames of the cameras that logs have, where evidence is gathered."""
     evidence: bool = False
@@ -228,6 +232,7 @@ def judge_logs(
             fail_on=settings.fail_on,
             strict=settings.strict,
             required=required,
+            min_judged=settings.min_judged,
             interrupted=bool(missed),
             asked=RunRequest.from_options(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
@@ -329,6 +334,13 @@ def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
             told.add(note.text)
 
 
+def _without_map(drive: Drive) -> list[str]:
+    """Return that no map of the folder of maps is of the drive's place, if it is so."""
+    quality = drive.trace.tables["quality"]
+    texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER))["message"].to_pylist()
+    return texts
+
+
 def _judge_copies(session: JudgingSession, progress: Progress) -> None:
     """Judge the copies that wait; of an interrupted run too."""
     if session.n_waiting:
@@ -358,6 +370,8 @@ def _judge(
             drives.append(item)
             for text in item.trace.notes:
                 notes.add(LogNote(item.trace.path, text, once=True))
+            for text in _without_map(item):
+                notes.add(LogNote(item.trace.path, text))
     progress.doing(f"judging {plural(len(drives), 'drive')}")
     n_unread = len(refused) - n_before
     try:

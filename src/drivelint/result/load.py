@@ -44,6 +44,7 @@ def load_result(folder: Path) -> Result:
             fail_on=summary["fail_on"],
             strict=summary["strict"],
             required=tuple(summary.get("required", ())),  # older results say neither
+            min_judged=summary.get("min_judged"),
             interrupted=summary.get("interrupted", False),
             halted=summary.get("halted"),
             ended_early=summary.get("ended_early"),
