@@ -9,7 +9,8 @@ import pytest
 from mcap.records import Schema
 
 import drivelint
-from drivelint.formats.mcap.copy import Original, copy_log
+from drivelint.formats.mcap.copy import copy_log, copy_original
+from drivelint.formats.mcap.original import Original
 from drivelint.formats.mcap.writer import Sink
 from tests.annotate.files import KINDS, log, seeking, streaming, verify
 from tests.pictures.camera_bag import write_bag
@@ -39,7 +40,7 @@ def other_numbers(path: Path) -> Path:
         sink.announce_schema(Schema(1, b"", "jsonschema", "some.Other"))
         for channel in reversed(list(original.channels.values())):
             sink.add_channel(f"{channel.topic}/x", "json", Schema(0, b"{}", "jsonschema", "some.Type"))
-        original.copy(sink)
+        copy_original(original, sink)
         sink.finish()
     path.unlink()
     return out

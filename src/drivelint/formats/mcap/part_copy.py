@@ -10,27 +10,23 @@ from __future__ import annotations
 import io
 import struct
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
-import numpy as np
 from mcap.data_stream import ReadDataStream, RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import AttachmentIndex, Channel, ChunkIndex, MetadataIndex, Schema
 
+from drivelint.formats.mcap.original import index_arrays
 from drivelint.formats.mcap.resume import MAGIC
 from drivelint.formats.mcap.writer import free_id
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
-
-    from drivelint.formats.mcap.copy import Original
+    from drivelint.formats.mcap.original import Original, Record
     from drivelint.formats.mcap.writer import Sink
 
 T = TypeVar("T", Schema, Channel)
-ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
-
 _HEAD: Final = struct.Struct("<BQ")
 _MESSAGE: Final = struct.Struct("<HIQ")
 _NUMBER: Final = struct.Struct("<H")
@@ -43,15 +39,6 @@ LOOSE_CHUNK_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
 _HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
-
-
-class Record(NamedTuple):
-    """A record: its opcode, where it begins (its head included), where its body begins, where it ends."""
-
-    opcode: int
-    at: int
-    body: int
-    end: int
 
 
 class Numbers:
@@ -239,11 +226,3 @@ class PartCopy:
             self._sink.add_chunk(self._original.read(start, end), index, compressed=False)
             self._from = end
         self._to = end
-
-
-def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
-    """Return the index of messages (channel, sequence number, log time, offset): by channel an array of log time and offset."""
-    entries: dict[int, list[tuple[int, int]]] = {}
-    for channel, _, log_time, at in messages:
-        entries.setdefault(channel, []).append((log_time, at))
-    return {channel: np.array(pairs, np.uint64) for channel, pairs in sorted(entries.items())}
