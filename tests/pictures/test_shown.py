@@ -14,6 +14,7 @@ import drivelint
 from drivelint.report import html
 from drivelint.result.load import load_result
 from tests.pictures.camera_bag import FRONT, LEFT, T0, number_in, taken_s, write_bag
+from tests.report.browser import CHROMIUM, Page
 
 pytest.importorskip("rosbags", reason="rosbags is not installed: pip install rosbags")
 
@@ -140,3 +141,19 @@ def test_twenty_findings_of_noise_make_a_page_of_under_six_megabytes_and_a_tenth
     assert result.pictures.num_rows > 100
     assert (out / "report.html").stat().st_size < 6_000_000
     assert spent[0] <= 0.1 * whole, f"{spent[0]:.2f} s of {whole:.2f} s"
+
+
+@pytest.mark.ci
+@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+@pytest.mark.parametrize("width", [1440, 390])
+def test_a_browser_shows_them_and_nothing_is_too_wide(out: Path, tmp_path: Path, width: int) -> None:
+    with Page(tmp_path, (out / "report.html").as_uri(), width) as page:
+        page.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500
+        )
+        assert page.complaints() == []
+        assert page.value("[...document.images].every(image => image.complete && image.naturalWidth > 0)")
+        assert page.value("document.images.length") == load_result(out).pictures.num_rows
+        assert page.value("document.documentElement.scrollWidth <= window.innerWidth")
+        shown = page.value("document.querySelector('.hero').parentElement.querySelectorAll('.shot img').length")
+        assert shown == 6
