@@ -13,6 +13,19 @@ CREATE TABLE scene (
 );
 
 -- lifetime: run
+CREATE TABLE picture (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    t_ns BIGINT NOT NULL,             -- the moment: t_worst_ns of findings and near misses
+    camera VARCHAR NOT NULL,          -- topic of the camera in the log
+    camera_no INTEGER NOT NULL,       -- 0.. in the order in which cameras are shown: those that look ahead first
+    shot VARCHAR NOT NULL,            -- [shot] of the three around the moment
+    t_frame_ns BIGINT NOT NULL,       -- time of the frame: the nearest one that the camera has
+    width_px INTEGER NOT NULL,        -- of the downscaled picture
+    height_px INTEGER NOT NULL,       -- of the downscaled picture
+    jpeg BLOB NOT NULL                -- the picture
+);
+
+-- lifetime: run
 CREATE TABLE lane_shape (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet near a scene

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from drivelint import cli
 from drivelint.errors import UsageError
-from drivelint.settings import read_settings
+from drivelint.gate import waivers
+from drivelint.settings import find_settings, read_settings
 from tests.shared_data import ROOT
 
 OPTIONS = {
@@ -63,6 +66,67 @@ def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
 def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, says: str) -> None:
     with pytest.raises(UsageError, match=rf"drivelint\.toml: .*{says}"):
         read_settings(OPTIONS, written(tmp_path, text))
+
+
+def test_the_nearest_file_upwards_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    below = tmp_path / "a" / "b"
+    below.mkdir(parents=True)
+    monkeypatch.chdir(below)
+    assert find_settings() is None
+    written(tmp_path, 'map = "far.xodr"')
+    assert find_settings() == tmp_path / "drivelint.toml"
+    (tmp_path / "a" / "pyproject.toml").write_text('[tool.drivelint]\nmap = "near.xodr"\n', encoding="utf-8")
+    assert find_settings() == tmp_path / "a" / "pyproject.toml"
+    (below / "pyproject.toml").write_text('[project]\ndependencies = ["drivelint"]\n', encoding="utf-8")
+    assert find_settings() == tmp_path / "a" / "pyproject.toml", "one without our table is of other tools"
+    (below / "drivelint.toml").write_text("", encoding="utf-8")
+    assert find_settings() == Path("drivelint.toml")
+
+
+def test_paths_start_in_the_folder_of_the_file(tmp_path: Path) -> None:
+    file = tmp_path / "pyproject.toml"
+    (tmp_path / "mine.toml").touch()
+    text = '[tool.drivelint]\nmap = "road.xodr"\nmapping = "{}"\nrules-dir = ["mine", "/abs"]\n'
+    options = {"map": ("map", False), "mapping": ("mapping", False), "rules-dir": ("rules_dir", True)}
+    for mapping, expected in (("mine.toml", str(tmp_path / "mine.toml")), ("esmini", "esmini")):
+        file.write_text(text.format(mapping), encoding="utf-8")
+        said = read_settings(options, file, options.keys())
+        assert said == {
+            "map": str(tmp_path / "road.xodr"),
+            "mapping": expected,
+            "rules_dir": [str(tmp_path / "mine"), "/abs"],
+        }
+
+
+def test_waivers_of_a_project(tmp_path: Path) -> None:
+    file = tmp_path / "pyproject.toml"
+    head = '[project]\nname = "x"\n\n[tool.drivelint]\nstrict = true\n\n'
+    waiver = '[[tool.drivelint.waiver]]\nrule = "ukhc.*"\nreason = "a prop"\nowner = "jo"\nexpires = 2099-12-31\n'
+    file.write_text(head + waiver, encoding="utf-8")
+    (found,) = waivers.read(file, only_waivers=False)
+    assert (found.rule, found.where) == ("ukhc.*", f"{file}:7")
+
+
+def test_the_schema_for_editors_is_that_of_the_options(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """drivelint docs settings-schema > schemas/settings.schema.json"""
+    assert run(monkeypatch, "docs", "settings-schema") == 0
+    printed = capfd.readouterr().out
+    assert (ROOT / "schemas" / "settings.schema.json").read_text(encoding="utf-8") == printed
+    schema = json.loads(printed)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    told = {
+        "map": "x.xodr",
+        "profile": ["nominal"],
+        "fail-on": "major",
+        "env": {"nation": "gb", "engaged": True},
+        "min-judged": 0.5,
+    }
+    jsonschema.validate(told, schema)
+    for wrong in ({"fail-on": "nevre"}, {"mpa": "x"}, {"profile": "nominal"}, {"waiver": [{"rule": "x"}]}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate(told | wrong, schema)
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *args: str) -> object:

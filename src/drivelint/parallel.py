@@ -28,7 +28,7 @@ from drivelint.formats.files import file_states
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
 from drivelint.report.progress import Progress
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -174,7 +174,7 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
 def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     """Return a part without these drives, with a note on each instead of those that it has."""
     result, paths = part.result, {} if part.result.asked is None else part.result.asked.traces
-    tables = {name: getattr(result, name) for name in TABLE_OF_FILE}
+    tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *PICTURES)}
     others = {
         name: table.filter(pc.invert(pc.is_in(table["drive_id"], value_set=pa.array(drives, pa.string()))))
         for name, table in tables.items()

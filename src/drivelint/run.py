@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from drivelint import catalogue
+from drivelint.drive.trace import NOT_IN_FOLDER
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
@@ -25,6 +27,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.phrases import plural
+from drivelint.pictures import Camerawork, chosen_rows, planned_shots
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.joining import join
@@ -53,6 +56,10 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    min_judged: float | None = None
+    """The least share of rules that must be decided, see `result.model.decided_share`."""
+    pictures: bool = True
+    """Show frames of the cameras that logs have, where evidence is gathered."""
     evidence: bool = False
     """Gather what reports show without `out`, too."""
     threads: int | None = None
@@ -105,6 +112,8 @@ class JudgedLogs:
     result: Result
     notes: tuple[LogNote, ...]
     refused: tuple[RefusedLog, ...]
+    cameras: Mapping[str, tuple[str, ...]]
+    """drive_id -> topics of the cameras, of the drives with cameras."""
 
 
 def check(
@@ -164,6 +173,9 @@ def judge_logs(
         observers: list[BatchObserver] = []
         if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
+        cameras = Camerawork() if settings.pictures and (settings.out or settings.evidence) else None
+        if cameras is not None:
+            observers.append(cameras)
         if settings.out and settings.annotate:
             from drivelint.annotate import Annotator  # what it writes with takes a tenth of a second to import
 
@@ -220,12 +232,19 @@ def judge_logs(
             fail_on=settings.fail_on,
             strict=settings.strict,
             required=required,
+            min_judged=settings.min_judged,
             interrupted=bool(missed),
             asked=RunRequest.from_options(
                 settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
             ),
         )
-        return JudgedLogs(result, tuple(notes.notes), tuple(refused))
+        if cameras is not None and cameras.topics:
+            progress.doing("taking pictures from cameras")
+            pictures, troubles = cameras.take(result)
+            result = replace(result, pictures=pictures)
+            for trouble in troubles:
+                notes.add(LogNote(trouble.path, trouble.text, once=True))
+        return JudgedLogs(result, tuple(notes.notes), tuple(refused), {} if cameras is None else cameras.topics)
 
 
 def conclude(
@@ -235,7 +254,11 @@ def conclude(
 
     Notes are in the order of the logs. Errors: as `check`, if no drive could be judged.
     """
-    result = parts[0].result if len(parts) == 1 else join([part.result for part in parts])
+    result = parts[0].result
+    if len(parts) > 1:
+        result = join([part.result for part in parts])
+        cameras = {drive: topics for part in parts for drive, topics in part.cameras.items()}
+        result = replace(result, pictures=chosen_rows(result.pictures, planned_shots(result, cameras)))
     place = {path: n for n, path in enumerate(paths)}
     notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
     result = replace(result, notes=tuple(note.told for note in told_once(notes)))
@@ -311,6 +334,13 @@ def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
             told.add(note.text)
 
 
+def _without_map(drive: Drive) -> list[str]:
+    """Return that no map of the folder of maps is of the drive's place, if it is so."""
+    quality = drive.trace.tables["quality"]
+    texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER))["message"].to_pylist()
+    return texts
+
+
 def _judge_copies(session: JudgingSession, progress: Progress) -> None:
     """Judge the copies that wait; of an interrupted run too."""
     if session.n_waiting:
@@ -340,6 +370,8 @@ def _judge(
             drives.append(item)
             for text in item.trace.notes:
                 notes.add(LogNote(item.trace.path, text, once=True))
+            for text in _without_map(item):
+                notes.add(LogNote(item.trace.path, text))
     progress.doing(f"judging {plural(len(drives), 'drive')}")
     n_unread = len(refused) - n_before
     try:

@@ -10,8 +10,8 @@
 
 Waivers may stand there as well, as tables [[waiver]]: see `drivelint.gate.waivers`.
 
-A key is an option's name without its dashes; the command line overrides it. The file is looked for in the current
-folder only, and relative paths in it start there too.
+A key is an option's name without its dashes; the command line overrides it. `pyproject.toml` may hold the same as a table
+[tool.drivelint]. The nearest of these files counts, looked for from the current folder upwards. Relative paths in it start in its folder.
 """
 
 from __future__ import annotations
@@ -23,16 +23,36 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
 SETTINGS_FILE: Final = "drivelint.toml"
+PROJECT_FILE: Final = "pyproject.toml"
+_TOOL: Final = "drivelint"
 
 
-def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE)) -> dict[str, Any]:
-    """Return parameter name -> value from the settings file; nothing if there is none.
+def find_settings() -> Path | None:
+    """Return the settings file that counts in the current folder; None: there is none. Errors: `UsageError` for bad TOML."""
+    here = Path.cwd()
+    for folder in (here, *here.parents):
+        place = Path() if folder == here else folder
+        for file in (place / SETTINGS_FILE, place / PROJECT_FILE):
+            # the project's other tools may be configured there alone
+            if file.is_file() and (file.name == SETTINGS_FILE or (_mentions_us(file) and settings_table(file))):
+                return file
+    return None
 
-    `options`: option name without dashes -> (parameter name, whether it may be given more than once).
-    Errors: `UsageError` with the file for bad TOML, an unknown key (with the nearest), or a value that no option takes.
+
+def _mentions_us(file: Path) -> bool:
+    try:
+        return _TOOL.encode() in file.read_bytes()
+    except OSError:
+        return False
+
+
+def settings_table(file: Path) -> dict[str, Any]:
+    """Return what a settings file holds, of `pyproject.toml` the table [tool.drivelint]; nothing if there is none.
+
+    Errors: `UsageError` for bad TOML.
     """
     import tomllib
 
@@ -40,10 +60,27 @@ def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SET
         content = tomllib.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
+    except OSError as error:
+        raise UsageError(f"{file}: cannot be read: {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
+    if file.name == PROJECT_FILE:
+        tools = content.get("tool")
+        content = tools.get(_TOOL, {}) if isinstance(tools, dict) else {}
+    return content if isinstance(content, dict) else {}
+
+
+def read_settings(
+    options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE), paths: Collection[str] = ()
+) -> dict[str, Any]:
+    """Return parameter name -> value from the settings file; nothing if there is none.
+
+    `options`: option name without dashes -> (parameter name, whether it may be given more than once). `paths`: options whose values are
+    paths, or may be such as `mapping`: relative ones start in the folder of the file.
+    Errors: `UsageError` with the file for bad TOML, an unknown key (with the nearest), or a value that no option takes.
+    """
     values: dict[str, Any] = {}
-    for key, said in content.items():
+    for key, said in settings_table(file).items():
         if key == "waiver":
             continue  # read where the gate is
         if key not in options:
@@ -53,8 +90,18 @@ def read_settings(options: Mapping[str, tuple[str, bool]], file: Path = Path(SET
         texts = isinstance(value, list) and all(isinstance(item, str) for item in value)
         if not (texts if repeatable else isinstance(value, str | bool | int | float)):
             raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
-        values[name] = value if repeatable or isinstance(value, bool) else str(value)
+        value = value if repeatable or isinstance(value, bool) else str(value)
+        values[name] = _from(file.parent, value, is_path=key != "mapping") if key in paths else value
     return values
+
+
+def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
+    """Return paths from a folder on; of what may be something else (not `is_path`), what is a file there."""
+    if isinstance(value, list):
+        return [_from(folder, each, is_path=is_path) for each in value]
+    if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):
+        return value
+    return str(folder / value)
 
 
 def _assignments(table: Mapping[str, Any], file: Path) -> list[str]:

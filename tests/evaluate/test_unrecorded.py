@@ -113,6 +113,7 @@ def test_it_is_counted_and_named_and_no_pass() -> None:
     assert headline(alone).label == "UNKNOWN"
     assert "nothing could be decided" in headline(alone).sentence
     assert "nothing could be decided" in exit_status(alone).why
+    assert exit_status(alone).code == ExitCode.NOT_JUDGED
 
 
 def test_a_finding_is_not_fixed_by_a_log_without_the_signal() -> None:

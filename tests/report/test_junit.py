@@ -149,7 +149,7 @@ def test_what_is_shown_and_does_not_gate_is_no_failure() -> None:
 
 
 def test_only_what_is_required_may_not_be_unknown() -> None:
-    rows = [verdict("unknown"), verdict("unknown", rule_id="ukhc.other")]
+    rows = [verdict("unknown"), verdict("pass", occurrence=1), verdict("unknown", rule_id="ukhc.other")]
     run = result(rows, rules=[rule(), rule("ukhc.other")], required=("ukhc.other",))
     assert outcomes(run) == {f"{SDA} [nominal]": "skipped", "ukhc.other [nominal]": "error"}
 

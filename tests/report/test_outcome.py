@@ -161,7 +161,7 @@ def test_of_many_drives_most_must_be_decided() -> None:
 @pytest.mark.parametrize(
     ("now", "why"),
     [
-        ([verdict("unknown", t_start_ns=None)], "1 unknown now"),
+        ([verdict("unknown", t_start_ns=None), verdict("pass", rule_id="ukhc.spare", profile=None)], "1 unknown now"),
         ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not looked at"),
     ],
 )
@@ -195,7 +195,7 @@ def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_repor
 
 
 def test_what_is_gone_gates_only_where_it_would_have() -> None:
-    unknown = [verdict("unknown", t_start_ns=None)]
+    unknown = [verdict("unknown", t_start_ns=None), verdict("pass", occurrence=1, t_start_ns=None)]
     for before, least in ((finding(severity="minor"), "critical"), (finding(), "never")):
         of = against(result([verdict("fail")], [before]), result(unknown, fail_on=least))
         assert exit_status(of).code == ExitCode.OK

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from drivelint.errors import DriveLintError, ExitCode
+from drivelint.report import junit
 from drivelint.result.model import Result, exit_status
 from drivelint.result.schemas import empty_table
 from tests.report.synthetic import SDA, drive, result, rule, verdict
@@ -73,10 +75,40 @@ def test_an_interrupted_run_says_how_far_it_came() -> None:
     assert exit_status(run).why == "partial: 2 of 3 drives judged, interrupted"
 
 
-def test_it_is_said_that_nothing_could_be_decided() -> None:
-    assert "nothing could be decided" in exit_status(result([verdict("unknown")])).why
+def test_a_run_that_decided_nothing_is_no_success() -> None:
+    """A green tick for a gate that looked at nothing would be a pass that came from not looking."""
+    nothing = result([verdict("unknown")])
+    assert exit_status(nothing).code is ExitCode.NOT_JUDGED
+    assert "nothing could be decided" in exit_status(nothing).why
+    assert exit_status(replace(nothing, fail_on="never")).code is ExitCode.NOT_JUDGED
     for said in ("pass", "not_applicable"):
-        assert "decided" not in exit_status(result([verdict("unknown"), verdict(said, occurrence=1)])).why
+        assert exit_status(result([verdict("unknown"), verdict(said, occurrence=1)])).code is ExitCode.OK
+    assert exit_status(result([])).code is ExitCode.OK
+    drafts = result([verdict("unknown")], rules=[rule(status="draft")])
+    assert exit_status(drafts).code is ExitCode.OK
+    assert "nothing could be decided" in exit_status(drafts).why
+
+
+@pytest.mark.parametrize(("least", "code"), [(0.5, ExitCode.OK), (0.51, ExitCode.NOT_JUDGED), (None, ExitCode.OK)])
+def test_a_share_of_the_rules_must_be_decided_if_it_is_asked_for(least: float | None, code: ExitCode) -> None:
+    """A rule that was decided in one of two episodes is decided, an unknown one is not, and one that never applied does not count."""
+    rows = [
+        verdict("pass"), verdict("unknown", occurrence=1), verdict("unknown", rule_id="ukhc.b"),
+        verdict("not_applicable", rule_id="ukhc.c", object_id=None),
+    ]  # fmt: skip
+    run = replace(result(rows, rules=[rule(), rule("ukhc.b"), rule("ukhc.c")]), min_judged=least)
+    assert exit_status(run).code is code
+    if code is ExitCode.NOT_JUDGED:
+        assert "50 % of the rules that may apply were decided, fewer than 51 % (--min-judged)" in exit_status(run).why
+        assert b'errors="1"' in junit.render(run)
+
+
+def test_a_failure_counts_before_too_little_that_was_decided() -> None:
+    run = replace(
+        result([verdict("fail"), verdict("unknown", rule_id="ukhc.b")], rules=[rule(), rule("ukhc.b")]), min_judged=0.9
+    )
+    assert exit_status(run).code is ExitCode.FAILED
+    assert exit_status(run).why.endswith("fewer than 90 % (--min-judged)")
 
 
 @pytest.mark.parametrize("severity", ["critical", "major", "minor"])

@@ -13,8 +13,10 @@ from drivelint import __version__
 from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, measures, places, result_messages
 from drivelint.annotate.tracks import tracks as tracks_of
 from drivelint.drive.lost_time import LOST_TIME
+from drivelint.errors import ChangedLogError
+from drivelint.formats.files import identify
 from drivelint.formats.foxglove import messages as foxglove
-from drivelint.formats.mcap.copy import Original, is_mcap
+from drivelint.formats.mcap.copy import copy_log, is_mcap
 from drivelint.formats.mcap.writer import Sink
 from drivelint.report import summary
 from drivelint.result.schemas import OUTPUT_VERSION
@@ -63,8 +65,10 @@ def write(file: BinaryIO, annotation: Annotation) -> None:
     sink = Sink(file)
     log = annotation.trace.tables["data_log"].to_pylist()[0]
     if is_mcap(annotation.trace.path) and not _is_damaged(annotation.trace):
-        with Original(annotation.trace.path, log["sha256"]) as original:
-            original.copy(sink)
+        path, sha256 = annotation.trace.path, log["sha256"]
+        copy_log(path, sha256, sink)
+        if path.is_dir() and identify(path).sha256 != sha256:
+            raise ChangedLogError(f"{path}: the log changed while it was judged: check it again when it is complete")
     else:
         sink.begin(f"drivelint {__version__}")
     _Writer(sink, annotation, int(log["t_start_ns"])).run()

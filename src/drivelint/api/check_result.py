@@ -18,7 +18,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
 from drivelint.result.model import exit_status
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.publishing import publish
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ class CheckResult(TableSet):
     tracks: Table
     overtakes: Table
     opportunities: Table
+    pictures: Table
 
     def __init__(
         self,
@@ -54,7 +55,8 @@ class CheckResult(TableSet):
         notes: tuple[str, ...] = (),
         scratch: TemporaryDirectory[str] | None = None,
     ) -> None:
-        super().__init__({name: getattr(result, name) for name in TABLE_OF_FILE}, schema_tables=TABLE_OF_FILE)
+        kinds = {**TABLE_OF_FILE, **PICTURES}
+        super().__init__({name: getattr(result, name) for name in kinds}, schema_tables=kinds)
         for name, table in self.tables.items():
             setattr(self, name, table)
         self.notes = tuple(map(in_keywords, notes))

@@ -11,7 +11,7 @@ from drivelint.errors import DriveLintError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_FLAGS: Final = frozenset({"strict", "overwrite", "margins", "keep-db", "annotate", "robustness"})
+_FLAGS: Final = frozenset({"strict", "overwrite", "margins", "keep-db", "annotate", "pictures", "robustness"})
 _OPTION: Final = re.compile(
     r"(?<![\w-])(?P<command>check )?--(?P<no>no-)?(?P<name>[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b| (?=['\"\d]))?"
 )

@@ -20,8 +20,10 @@ from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.setting_options import known_settings, path_settings
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 from drivelint.phrases import inert, inert_json, inert_line
+from drivelint.settings import find_settings, read_settings
 from drivelint.without_pandas import leave_out_pandas
 
 app = typer.Typer(
@@ -178,7 +180,8 @@ def main() -> NoReturn:
     except DriveLintError as error:
         _fail(str(error), error.exit_code)
     except TyperException as error:
-        also = " and drivelint.toml in this folder" if Path("drivelint.toml").is_file() else ""
+        found = find_settings()
+        also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # the library's, not ours
         _fail(f"{words} (see drivelint {_asked(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
@@ -206,24 +209,21 @@ def _asked(error: Exception) -> str:
 
 
 def _settings() -> dict[str, Any]:
-    """Return what `drivelint.toml` in the current folder says about the options of `check`, or of others that read a log.
+    """Return what the settings file says about the options of `check`, or of others that read a log.
 
     Those take what is about the log and its map, not where `check` writes to and how it prints.
     """
-    from drivelint.settings import SETTINGS_FILE, read_settings
-
     name = "".join(sys.argv[1:2])
-    if name not in {"check", "inspect", "convert"} or not Path(SETTINGS_FILE).is_file():
+    if name not in {"check", "inspect", "convert"} or (file := find_settings()) is None:
         return {}
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     params = commands["check"].params
-    known = {p.opts[0].lstrip("-"): (p.name, p.multiple) for p in params if p.param_type_name == "option"}
-    for name_ in ("help", "today"):  # a day that stands in a file would keep waivers from expiring
-        known.pop(name_, None)
+    known = {key: (p.name, p.multiple) for key, p in known_settings(params).items()}
+    paths = path_settings(params)
     taken = {p.name for p in commands[name].params}
     if name != "check":
         taken -= {"out", "format_"}
-    return {name: {param: value for param, value in read_settings(known).items() if param in taken}}
+    return {name: {param: value for param, value in read_settings(known, file, paths).items() if param in taken}}
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:

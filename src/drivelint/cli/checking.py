@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path  # noqa: TC003 - Typer reads the types
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import completion, options, packs, values
+from drivelint.cli import completion, options, packs, streams, values
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
-from drivelint.phrases import inert_json
+from drivelint.phrases import inert_json, inert_line
+from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,12 +57,26 @@ def check(
             autocompletion=completion.rule_ids,
         ),
     ] = None,
+    min_judged: Annotated[
+        float | None,
+        option(
+            "--min-judged",
+            "SHARE",
+            "Of the rules that may apply, at least this share must be decided, such as 0.5: else exit code 4.",
+            min=0.0,
+            max=1.0,
+        ),
+    ] = None,
     format_: options.FormatOption = "text",
     margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
     annotate: Annotated[
         bool,
         option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
+    ] = True,
+    pictures: Annotated[
+        bool,
+        option("--pictures/--no-pictures", None, "With --out: show frames of the log's own cameras beside findings."),
     ] = True,
     robustness: Annotated[
         bool | None,
@@ -129,16 +144,17 @@ def check(
 
     Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
     that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
-    judged (with --strict or --require: some rule unknown); 75 the machine failed, try again; 130 interrupted: what was judged
-    until then is kept.
+    judged, or nothing could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the
+    machine failed, try again; 130 interrupted: what was judged until then is kept.
     """
     asked = dict(locals())
 
     from drivelint.cli.receipts import CheckReceipts
 
+    settings_file = _settings_file(quiet=quiet)
     robustness = values.robustness_for(confidence, robustness)
     day = values.parse_today(today)
-    receipts = CheckReceipts(asked, day)
+    receipts = CheckReceipts(asked, day, settings_file)
     with tells_of_earlier(out):
         earlier = receipts.earlier()
     if earlier is not None:
@@ -151,7 +167,6 @@ def check(
     from drivelint.gate import GateInputs, refuse_own_baseline
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
-    from drivelint.settings import SETTINGS_FILE
 
     pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
     refuse_own_baseline(baseline, out)
@@ -166,9 +181,11 @@ def check(
         fail_on=fail_on,
         strict=strict,
         require=tuple(require or ()),
+        min_judged=min_judged,
         margins=margins,
         keep_db=keep_db,
         annotate=annotate,
+        pictures=pictures,
         robustness=robustness,
         memory=values.parse_memory(memory),
         rule_timeout=rule_timeout,
@@ -189,9 +206,7 @@ def check(
 
         try:
             with receipts.recording():
-                gate_inputs = GateInputs.from_files(
-                    baseline, waivers, Path(SETTINGS_FILE), day, out, confidence=confidence
-                )
+                gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
                     lambda: _judge(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=kept),
                     interruption.request,
@@ -212,6 +227,14 @@ def check(
     elif pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(code)
+
+
+def _settings_file(*, quiet: bool) -> Path | None:
+    """Return the file of settings that counts, and name it unless the run is quiet."""
+    file = find_settings()
+    if file is not None and not quiet:
+        streams.say(f"drivelint: settings: {inert_line(str(file))}")
+    return file
 
 
 def _judge(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from drivelint.guide.site import Command
+
+SETTINGS_SCHEMA: Final = "settings-schema"
+"""The topic that prints the JSON schema of `drivelint.toml`."""
 
 
 def docs(
@@ -33,7 +36,8 @@ def docs(
     Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
 
     docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
-    shipped rules as Markdown, docs reasons every reason code with its words, docs macros the macros that rules can call.
+    shipped rules as Markdown, docs reasons every reason code with its words, docs macros the macros that rules can call,
+    docs settings-schema the JSON schema of drivelint.toml, for editors.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.
@@ -54,6 +58,11 @@ def docs(
             "drivelint docs --html DIR writes all as a site",
             err=True,
         )
+    elif topic == SETTINGS_SCHEMA:
+        from drivelint.cli.setting_options import settings_schema
+
+        root: Any = ctx.find_root().command
+        typer.echo(settings_schema(root.commands["check"].params), nl=False)
     else:
         typer.echo(guide.text(topic, table), nl=False)
 

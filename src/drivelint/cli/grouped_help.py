@@ -12,7 +12,7 @@ _GROUPS: Final = {
     "Watching": ("halt_on", "warn", "advise", "on", "serve", "replay", "window", "every", "idle"),
     "Input": tuple(options.DRIVE_OPTIONS),
     "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
-    "Gate": ("fail_on", "strict", "require", "confidence", "baseline", "waivers", "today"),
+    "Gate": ("fail_on", "strict", "require", "min_judged", "confidence", "baseline", "waivers", "today"),
     "Output": (
         "out",
         "overwrite",
@@ -20,6 +20,7 @@ _GROUPS: Final = {
         "margins",
         "keep_db",
         "annotate",
+        "pictures",
         "evidence",
         "sign",
         "verbose",

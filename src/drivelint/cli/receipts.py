@@ -57,15 +57,23 @@ class Outputs:
 
 
 class CheckReceipts:
-    """The receipt of an earlier run of one check, and the one that this run leaves. `asked`: the options of `check`."""
+    """The receipt of an earlier run of one check, and the one that this run leaves.
 
-    def __init__(self, asked: Mapping[str, Any], day: date) -> None:
+    `asked`: the options of `check`; `settings`: the file that gives some of them.
+    """
+
+    def __init__(self, asked: Mapping[str, Any], day: date, settings: Path | None) -> None:
         self._out: Path | None = asked["out"]
         self._overwrite: bool = asked["overwrite"]
         self._quiet: bool = asked["quiet"]
         self._day = day.isoformat()
         drive = asked["drive"]
-        paths = [asked["baseline"], asked["waivers"], *(drive[name] for name in ("map", "map_dir", "mapping"))]
+        paths = [
+            asked["baseline"],
+            asked["waivers"],
+            *(drive[name] for name in ("map", "map_dir", "mapping")),
+            settings,
+        ]
         self._named = [*asked["traces"], *(asked["rules_dir"] or ()), *(path for path in paths if path is not None)]
         self._is_output = Outputs(self._out)
         self._recorder: Recorder | None = None
@@ -74,6 +82,7 @@ class CheckReceipts:
         if asked["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
             counted = {name: value for name, value in asked.items() if name not in _WITHOUT_EFFECT}
             places = {name: os.path.realpath(asked[name]) for name in ("out", "baseline") if asked[name] is not None}
+            places |= {} if settings is None else {"settings": os.path.realpath(settings)}
             self._key = question_sha256({**counted, "places": places})
 
     def earlier(self) -> store.Receipt | None:

@@ -10,8 +10,9 @@
     owner = "jo@example.org"
     expires = 2027-03-31           # the last day on which it counts
 
-They stand in a file of their own (`--waivers FILE`) or in `drivelint.toml`. A waived finding is shown, with the reason, and
-does not gate. A waiver that expired waives nothing; one that no finding matches is reported: it may be a slip of the pen.
+They stand in a file of their own (`--waivers FILE`), in `drivelint.toml`, or in `pyproject.toml` as [[tool.drivelint.waiver]]. A waived
+finding is shown, with the reason, and does not gate. A waiver that expired waives nothing; one that no finding matches is reported: it
+may be a slip of the pen.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from drivelint.errors import UsageError
 from drivelint.gate.match import seconds_since_start
 from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
+from drivelint.settings import settings_table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
 _MUST: Final = ("rule", "reason", "owner", "expires")
 _PATTERNS: Final = ("drive", "ego", "object", "profile")
 _TIMES: Final = ("from_s", "to_s")
-_HEAD: Final = re.compile(r"\s*\[\[\s*(waiver|\"waiver\"|'waiver')\s*\]\]")
+_HEAD: Final = re.compile(r"\s*\[\[\s*(?:tool\.drivelint\.)?(waiver|\"waiver\"|'waiver')\s*\]\]")
 
 
 def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
@@ -53,7 +55,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     """
     try:
         text = file.read_text(encoding="utf-8")
-        content = tomllib.loads(text)
+        content = tomllib.loads(text) if only_waivers else settings_table(file)
     except FileNotFoundError as error:
         raise UsageError(f"{file}: no such file of waivers") from error
     except OSError as error:

@@ -16,7 +16,7 @@ from drivelint.reasons.reason_text import shared_texts
 from drivelint.report import catalogue_page
 from drivelint.resources import folder
 from drivelint.result import geometry
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
@@ -117,7 +117,7 @@ def escaped(said: str) -> str:
 
 def output_tables() -> str:
     """Return a section per result file with the columns of its table."""
-    files = {**TABLE_OF_FILE, "margins": "margin"}
+    files = {**TABLE_OF_FILE, **PICTURES, "margins": "margin"}
     return "\n".join(f"### {stem}.parquet\n\n{_columns(name, in_file=True)}" for stem, name in files.items())
 
 
@@ -143,7 +143,7 @@ def _facts(
 ) -> list[str]:
     """Return the sentences about a table: how long it is kept, its file, what it reads and what reads it."""
     said = [f"Kept {_LIVES[lifetimes()[name]]}."]
-    if files := [stem for stem, of in TABLE_OF_FILE.items() if of == name]:
+    if files := [stem for stem, of in {**TABLE_OF_FILE, **PICTURES}.items() if of == name]:
         said.append(f"Written to {quote}{files[0]}.parquet{quote}.")
     if name in read:
         said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")

@@ -23,7 +23,7 @@ from drivelint.incident.finding import named_finding
 from drivelint.incident.judge import Judge, Judged
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
-from drivelint.report.html.environment import visible
+from drivelint.report.html.environment import PICTURE_STYLE, visible
 from drivelint.result import request as run_request
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.load import load_result
@@ -154,10 +154,18 @@ def _environment() -> Environment:
     # the plan view is drawn as in the report
     files = (_REPORT_TEMPLATES / "charts.css", _HERE / "sheet.css")
     style = "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    pictures = (_REPORT_TEMPLATES / PICTURE_STYLE).read_text(encoding="utf-8").strip()
+    digest, of_pictures = (
+        base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in (style, pictures)
+    )
+    others = "base-uri 'none'; form-action 'none'"
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
-        policy=f"default-src 'none'; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'",
+        picture_style=Markup(pictures),  # noqa: S704 - ours
+        policy=f"default-src 'none'; style-src 'sha256-{digest}'; {others}",
+        picture_policy=(
+            f"default-src 'none'; style-src 'sha256-{digest}' 'sha256-{of_pictures}'; img-src data:; {others}"
+        ),
         version=__version__,
         duckdb_version=duckdb.__version__,
         anchor=anchor,

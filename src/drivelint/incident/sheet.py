@@ -35,6 +35,7 @@ from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured, minus, profile, story, told_unit
+from drivelint.report.html.pictures import pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
 from drivelint.result.certainty import LEAST_SHARE, POSSIBLE, SURE, certainty
@@ -121,6 +122,8 @@ def content(case: Case) -> dict[str, Any]:
         "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
         **_plan(case),
+        "cameras": pictures_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
+        "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,

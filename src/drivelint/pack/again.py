@@ -75,6 +75,7 @@ def check_again(result: Result, asked: RunRequest, work: Path | None, *, evidenc
         "out": work,
         "margins": work is not None,
         "annotate": False,
+        "pictures": False,
         "evidence": evidence,
     }
     return check(CheckOptions(**given), Silent())

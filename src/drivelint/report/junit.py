@@ -19,6 +19,7 @@ from drivelint.result.model import (
     gating_gone,
     gating_unknowns,
     off_map_reason,
+    too_little_decided,
 )
 from drivelint.result.text import line, rule_name, with_count
 
@@ -54,7 +55,8 @@ def render(result: Result) -> bytes:
 
     It counts what the exit code counts. A failure is a case of a drive, rule and profile with something that makes exit code 1; an
     error is what makes exit code 2, 3 or 4: a rule in error, an unknown verdict that may not be, a drive that was not judged, one
-    that the map does not fit, a lossy log, a finding of the baseline that is gone but not fixed. Whatever else is unknown, not
+    that the map does not fit, a lossy log, a finding of the baseline that is gone but not fixed, a run that decided nothing or
+    too little. Whatever else is unknown, not
     applicable, or found and does not gate, is skipped with its reasons, or in the system-out of a case that is none of that.
     """
     root = etree.Element("testsuites", name="drivelint")
@@ -64,6 +66,8 @@ def render(result: Result) -> bytes:
         (drive["drive_id"], [*_of_drive(drive), *cases.get(drive["drive_id"], ())])
         for drive in result.drives.to_pylist()
     ]
+    if too_little := too_little_decided(result):
+        suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
     if gone := gating_gone(result):
         suites.append(("baseline", list(map(_gone, gone))))
     for name, mine in suites:

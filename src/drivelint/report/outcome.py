@@ -14,7 +14,7 @@ from drivelint.report.inputs import rules_without_map
 from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
-from drivelint.result.model import exit_status, gating_findings
+from drivelint.result.model import exit_status, gating_findings, is_undecided
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -150,14 +150,14 @@ def _label(result: Result, has_findings: bool) -> str:
     Findings that do not gate, known and waived ones too, are no pass, nor is a run that decided nothing, or less than it left open.
     """
     code, told = exit_status(result).code, counts.total(result.verdicts)
-    if code != ExitCode.OK:
+    if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_undecided(result)):
         return LABELS.get(code, "?")
     if has_findings:
         return _FINDINGS
     if not told["pass"] + told["fail"]:
         lacking = counts.unrecorded(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
-    return _MOSTLY if _is_mostly_open(result) else LABELS[code]
+    return _MOSTLY if _is_mostly_open(result) or code != ExitCode.OK else LABELS[code]
 
 
 def _is_mostly_open(result: Result) -> bool:

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
-from drivelint.result.names import GATE_FILE, MARK, REPORT_FILES, RESULT_FILES, RUN_FILE, TABLE_OF_FILE
+from drivelint.result.names import GATE_FILE, MARK, PICTURES, REPORT_FILES, RESULT_FILES, RUN_FILE, TABLE_OF_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -62,6 +62,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     from drivelint.report import html, junit, summary
 
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
+    for name, table in PICTURES.items() if result.pictures.num_rows else ():
+        contents[f"{name}.parquet"] = parquet_bytes(getattr(result, name), table)
     # what lies beside the page is what this run made, not what an earlier one left
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
     contents[REPORT_FILES["junit"]] = junit.render(result)

@@ -45,7 +45,7 @@ def content(result: Result) -> dict[str, Any]:
         "strict": result.strict,
         "required": list(result.required),
         "interrupted": result.interrupted,
-        **{name: why for name in ("halted", "ended_early") if (why := getattr(result, name)) is not None},
+        **{name: why for name in ("min_judged", "halted", "ended_early") if (why := getattr(result, name)) is not None},
         "notes": list(result.notes),
         "gate": None if result.gate is None else descriptions.gate_counts(result.gate),
         "verdicts": counts.total(result.verdicts),

@@ -20,6 +20,7 @@ _ORDER: Final = {
     "findings": collect.ORDER_OF_FINDINGS,
     "drives": "drive_id, file_name",
     **evidence.ORDER,
+    "pictures": "drive_id, t_ns, camera_no, t_frame_ns",
 }
 """Table -> the order of its rows."""
 

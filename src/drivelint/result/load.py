@@ -13,7 +13,7 @@ from drivelint.result import gate as gates
 from drivelint.result.folder import changed, left_by_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ def load_result(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
+    tables |= {name: _table(path) for name in PICTURES if (path := folder / f"{name}.parquet").exists()}
     gate = gates.load(folder)
     try:
         found = Result(
@@ -43,6 +44,7 @@ def load_result(folder: Path) -> Result:
             fail_on=summary["fail_on"],
             strict=summary["strict"],
             required=tuple(summary.get("required", ())),  # older results say neither
+            min_judged=summary.get("min_judged"),
             interrupted=summary.get("interrupted", False),
             halted=summary.get("halted"),
             ended_early=summary.get("ended_early"),

@@ -16,7 +16,7 @@ from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED
 from drivelint.result.counts import SEVERITIES, unrecorded
 from drivelint.result.gate import NOT_FIXED
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import conform, empty_table
 
 if TYPE_CHECKING:
@@ -43,9 +43,10 @@ class ExitStatus(NamedTuple):
 class Result:
     """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
 
-    `scenes` to `opportunities`: the evidence for pictures and charts, empty where none was gathered.
+    `scenes` to `opportunities`: the evidence for drawings and charts, empty where none was gathered; so `pictures`, from cameras.
     `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
     `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
+    `min_judged`: the least share of rules that must be decided, see `decided_share`; None: any.
     `interrupted`: the run was, before all drives were judged.
     `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
     `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
@@ -65,10 +66,12 @@ class Result:
     tracks: pa.Table = field(default_factory=lambda: empty_table("track"))
     overtakes: pa.Table = field(default_factory=lambda: empty_table("overtake_record"))
     opportunities: pa.Table = field(default_factory=lambda: empty_table("opportunity_record"))
+    pictures: pa.Table = field(default_factory=lambda: empty_table("picture"))
     margins_file: Path | None = None
     fail_on: str = "critical"
     strict: bool = False
     required: tuple[str, ...] = ()
+    min_judged: float | None = None
     interrupted: bool = False
     gate: Gate | None = None
     asked: RunRequest | None = None
@@ -78,7 +81,7 @@ class Result:
     ended_early: str | None = None
 
     def __post_init__(self) -> None:
-        for name, table in TABLE_OF_FILE.items():
+        for name, table in {**TABLE_OF_FILE, **PICTURES}.items():
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
@@ -120,14 +123,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     yield from _lossy(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
-    lacking = unrecorded(result.verdicts).num_rows
-    if _count(result.verdicts, "unknown") + lacking == result.verdicts.num_rows > 0:
-        why = (
-            "the log lacks a signal for every rule"
-            if lacking == result.verdicts.num_rows
-            else "every verdict is unknown"
-        )
-        yield ExitStatus(ExitCode.OK, f"nothing failed, as nothing could be decided: {why} (--strict makes it 4)")
+    if nothing := _nothing_decided(result):
+        yield ExitStatus(ExitCode.OK, f"{nothing}; no rule of the run is stable")
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
@@ -148,6 +145,8 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
     if result.ended_early is not None:
         yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
+    if too_little := too_little_decided(result):
+        yield ExitStatus(ExitCode.NOT_JUDGED, too_little)
 
 
 def _lossy(result: Result) -> Iterator[ExitStatus]:
@@ -201,6 +200,44 @@ def gating_unknowns(result: Result) -> pa.Table:
     rows = rows.filter(pc.or_(pc.equal(rows["verdict"], "unknown"), pc.starts_with(rows["reason_code"], UNRECORDED)))
     required = pa.array(result.required, pa.string())
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
+
+
+def too_little_decided(result: Result) -> str | None:
+    """Return why this run decided too little to gate, which makes exit code 4: nothing at all, or a smaller share than was asked for."""
+    if _of_stable_rules(result, result.verdicts).num_rows and (nothing := _nothing_decided(result)):
+        return nothing
+    share = None if result.min_judged is None else decided_share(result.verdicts)
+    if share is None or result.min_judged is None or share >= result.min_judged:
+        return None
+    # rounded down: a share below the least one must not read as that
+    return f"{int(1000 * share) / 10:g} % of the rules that may apply were decided, fewer than {100 * result.min_judged:g} % (--min-judged)"
+
+
+def decided_share(verdicts: pa.Table) -> float | None:
+    """Return the share of rules that were decided somewhere, of those that may apply, counted for each drive and ego; None: none may."""
+    kinds = verdicts["verdict"].to_pylist()
+    lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED).to_pylist()
+    keys = zip(*(verdicts[name].to_pylist() for name in ("drive_id", "ego_id", "rule_id")), strict=True)
+    is_decided: dict[tuple[str, str, str], bool] = {}
+    for key, kind, lacks in zip(keys, kinds, lacking, strict=True):
+        if kind != "not_applicable" or lacks:
+            is_decided[key] = is_decided.get(key, False) or kind in {"pass", "fail"}
+    return sum(is_decided.values()) / len(is_decided) if is_decided else None
+
+
+def is_undecided(result: Result) -> bool:
+    """Whether a run gates for nothing but that it decided too little."""
+    first = next(_not_judged(result), None)
+    return first is not None and first.why == too_little_decided(result)
+
+
+def _nothing_decided(result: Result) -> str | None:
+    """Return why nothing could be decided, in words; None: something was."""
+    lacking, n = unrecorded(result.verdicts).num_rows, result.verdicts.num_rows
+    if not n or _count(result.verdicts, "unknown") + lacking != n:
+        return None
+    why = "the log lacks a signal for every rule" if lacking == n else "every verdict is unknown"
+    return f"nothing failed, as nothing could be decided: {why}"
 
 
 def ego_absences(drive: Row) -> list[str]:

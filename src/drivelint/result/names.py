@@ -23,6 +23,8 @@ TABLE_OF_FILE: Final = {
     "opportunities": "opportunity_record",
 }
 """Stem of the Parquet file -> table of the schema."""
+PICTURES: Final = {"pictures": "picture"}
+"""The same of the file that only a result with pictures from cameras has."""
 REPORT_FILES: Final = {
     "html": "report.html",
     "junit": "junit.xml",
@@ -32,7 +34,7 @@ REPORT_FILES: Final = {
 }
 """Format of a report -> its file."""
 RESULT_FILES: Final = (
-    *(f"{name}.parquet" for name in TABLE_OF_FILE),
+    *(f"{name}.parquet" for name in (*TABLE_OF_FILE, *PICTURES)),
     *REPORT_FILES.values(),
     *(GATE_FILE, RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, MANIFEST),
     *("annotated/*.mcap", "annotated/viewer-layout.json"),

@@ -14,7 +14,8 @@ from mcap.reader import SeekingReader
 from mcap.records import Channel, Schema
 
 from drivelint.errors import DriveLintError, TraceError
-from drivelint.formats.mcap.copy import Original
+from drivelint.formats.mcap.copy import copy_original
+from drivelint.formats.mcap.original import Original
 from drivelint.formats.mcap.writer import Sink
 from tests.annotate import files
 from tests.annotate.files import KINDS, MAGIC, log, records, seeking, streaming, verify
@@ -31,7 +32,7 @@ def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
     out = path.with_suffix(".annotated.mcap")
     with out.open("wb") as file, Original(path, hashlib.sha256(path.read_bytes()).hexdigest()) as original:
         sink = Sink(file)
-        original.copy(sink)
+        copy_original(original, sink)
         if prepare:
             prepare(sink)
         channel = sink.add_channel(OURS, "json", Schema(id=0, name="Ours", encoding="jsonschema", data=b"{}"))
@@ -112,7 +113,7 @@ def test_the_reference_log(tmp_path: Path) -> None:
 
 
 def test_loose_messages_become_chunks_that_are_not_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("drivelint.formats.mcap.copy.LOOSE_CHUNK_BYTES", 500)
+    monkeypatch.setattr("drivelint.formats.mcap.part_copy.LOOSE_CHUNK_BYTES", 500)
     path = log(tmp_path / "log.mcap", use_chunking=False)
     out = annotated(path)
     assert others(streaming(out)) == streaming(path)
@@ -238,7 +239,7 @@ def test_a_log_that_changed_meanwhile_is_refused(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
     changed = pytest.raises(TraceError, match="changed while it was judged")
     with (tmp_path / "out").open("wb") as file, Original(path, "0" * 64) as original, changed:
-        original.copy(Sink(file))
+        copy_original(original, Sink(file))
 
 
 def test_a_log_that_was_cut_meanwhile_is_refused(tmp_path: Path) -> None:

@@ -25,12 +25,16 @@ _FOOTER_BYTES = 20
 
 @dataclass
 class Summary:
-    """Schemas and channels by their ids; `chunks`: offset -> length, first and last log time; offsets of metadata records."""
+    """Schemas and channels by their ids; `chunks`: offset -> length, first and last log time; offsets of metadata records.
+
+    `message_indexes`: offset of a chunk -> channel -> offset of the index of its messages in it.
+    """
 
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
     chunks: dict[int, tuple[int, int, int]] = field(default_factory=dict)
     metadata: list[int] = field(default_factory=list)
+    message_indexes: dict[int, dict[int, int]] = field(default_factory=dict)
 
 
 def read_index(file: Path) -> Summary:
@@ -83,6 +87,7 @@ def _records(view: memoryview, at: int, end: int) -> Summary:
             chunk = ChunkIndex.read(_stream(body))
             times = chunk.message_start_time, chunk.message_end_time
             found.chunks[chunk.chunk_start_offset] = (chunk.chunk_length, *times)
+            found.message_indexes[chunk.chunk_start_offset] = chunk.message_index_offsets
         elif opcode == Opcode.METADATA_INDEX:
             found.metadata.append(MetadataIndex.read(_stream(body)).offset)
         at += _RECORD.size + length

@@ -64,12 +64,16 @@ class Sink:
         `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
         """
         same = [number for number, known in self.schemas.items() if replace(known, id=0) == replace(schema, id=0)]
-        number = min(same) if same else _free(self.schemas, 1, "schema")
+        number = min(same) if same else free_id(self.schemas, 1, "schema")
         if not same:
             self.schemas[number] = replace(schema, id=number)
             self._record(self.schemas[number])
         channel = records.Channel(
-            id=_free(self.channels, 0, "channel"), topic=topic, message_encoding=encoding, metadata={}, schema_id=number
+            id=free_id(self.channels, 0, "channel"),
+            topic=topic,
+            message_encoding=encoding,
+            metadata={},
+            schema_id=number,
         )
         self.channels[channel.id] = channel
         self._record(channel)
@@ -187,7 +191,7 @@ class Sink:
         )
 
 
-def _free(taken: Mapping[int, object], least: int, what: str) -> int:
+def free_id(taken: Mapping[int, object], least: int, what: str) -> int:
     """Return the id after the highest one, or the lowest that nobody has."""
     after = max(taken, default=least - 1) + 1
     if after < ID_LIMIT:

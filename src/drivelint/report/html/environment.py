@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
 _MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
+PICTURE_STYLE: Final = "pictures.css"
+"""The style of pictures from cameras, which only a page with some has."""
 _STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 
 
@@ -45,13 +47,13 @@ def page_environment(
     )
     style = _joined([*(TEMPLATES / name for name in base), *((folder or TEMPLATES) / name for name in styles)])
     script = _joined(TEMPLATES / name for name in scripts)
+    more = _joined([TEMPLATES / PICTURE_STYLE])
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
         script=Markup(script),  # noqa: S704 - ours
-        policy=(
-            f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(script)}; img-src data:; "
-            "base-uri 'none'; form-action 'none'"
-        ),
+        picture_style=Markup(more),  # noqa: S704 - ours
+        policy=_policy(_hash(style), _hash(script)),
+        picture_policy=_policy(f"{_hash(style)} {_hash(more)}", _hash(script)),
         anchor=anchor,
         number=number,
         version=__version__,
@@ -60,6 +62,13 @@ def page_environment(
     )
     environment.filters["measure"] = measure
     return environment
+
+
+def _policy(styles: str, script: str) -> str:
+    return (
+        f"default-src 'none'; style-src {styles}; script-src {script}; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
 
 
 def visible(value: Any) -> Any:

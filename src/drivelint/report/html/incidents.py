@@ -148,11 +148,13 @@ def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
     of a second since the drive's start; `leading`: it is among those that tell what happened, `rank` (0: the worst) of these;
     `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
-    `drive`: its row.
+    `drive`: its row. `cameras`, `pictured`: no pictures from cameras yet, see `add_pictures`.
     """
     groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
-        _moment(at, found, drive) | {"plan": pictures.get(at), "leading": at in leading, "rank": leading.get(at)}
+        _moment(at, found, drive)
+        | {"plan": pictures.get(at), "leading": at in leading, "rank": leading.get(at)}
+        | {"cameras": [], "pictured": ""}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
@@ -189,6 +191,7 @@ def _moment(at: Key, found: Sequence[FindingLine], drive: Row) -> dict[str, Any]
     return {
         "anchor": anchor("moment", *at),
         "time": found[0].time,
+        "t_ns": at[2],
         "t": centiseconds(at[2], drive["t_start_ns"] or 0),
         "t_utc": utc_at(at[2], drive),
         "keys": " ".join(sorted({name for line in found for name in line.keys.split()})),

@@ -14,6 +14,7 @@ from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
 from drivelint.report.html.overtakes import FAR_M, overtake_views, overtaking_opportunities
+from drivelint.report.html.pictures import add_pictures, pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
@@ -99,14 +100,18 @@ def content(result: Result) -> dict[str, Any]:
         if row["drive_id"] in shown
     ]
     totals = counts.total(result.verdicts)
+    worst = worst_moment(
+        lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
+    )
+    cameras = pictures_by_moment(result.pictures)
+    add_pictures(worst, sections, cameras)
     broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
     return {
         "outcome": exit_status(result),
         "headline": overview.page_headline(result),
         "inputs": input_notes(result),
-        "worst": worst_moment(
-            lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
-        ),
+        "worst": worst,
+        "pictured": bool(cameras),
         "rates": overview.rates(result),
         "contacts": overview.contacts(result, failed, rules),
         "rule_counts": rule_counts(result),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from mcap.opcode import Opcode
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.copy import index_arrays
+from drivelint.formats.mcap.original import index_arrays
 from drivelint.formats.mcap.writer import Sink
 
 if TYPE_CHECKING:

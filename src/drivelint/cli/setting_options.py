@@ -1,0 +1,72 @@
+"""The options of `check` as files of settings hold them: which there are, which of them are paths, and their JSON schema for editors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_origin
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_NOT_IN_A_FILE: Final = frozenset({"help", "today"})
+"""A day that stands in a file would keep waivers from expiring."""
+_TYPES: Final = {bool: "boolean", float: "number", int: "integer"}
+_WAIVER: Final = {
+    "type": "array",
+    "description": "Findings that an owner accepts until a day.",
+    "items": {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["rule", "reason", "owner", "expires"],
+        "properties": {
+            **{name: {"type": "string"} for name in ("rule", "drive", "ego", "object", "profile", "reason", "owner")},
+            **{name: {"type": "number"} for name in ("from_s", "to_s")},
+            "expires": {"type": "string", "format": "date"},
+        },
+    },
+}
+
+
+def known_settings(params: Iterable[Any]) -> dict[str, Any]:
+    """Return name without dashes -> parameter, of the parameters of `check` that may stand in a file."""
+    options = {p.opts[0].lstrip("-"): p for p in params if p.param_type_name == "option"}
+    return {name: param for name, param in options.items() if name not in _NOT_IN_A_FILE}
+
+
+def path_settings(params: Iterable[Any]) -> set[str]:
+    """Return the names of settings that are paths, or may be."""
+    known = known_settings(params)
+    return {name for name, param in known.items() if _annotation(param) in {Path, list[Path]}} | {"mapping"}
+
+
+def settings_schema(params: Iterable[Any]) -> str:
+    """Return the JSON schema of `drivelint.toml`, with a final newline. `params`: those of `check`."""
+    properties = {
+        name: {**_kind(_annotation(param)), "description": param.help} for name, param in known_settings(params).items()
+    }
+    texts = properties["env"]
+    values = {"type": "object", "additionalProperties": {"type": ["string", "boolean"]}}
+    properties["env"] = {"anyOf": [values, {k: v for k, v in texts.items() if k != "description"}]}
+    properties["env"]["description"] = texts["description"]
+    schema = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "drivelint.toml",
+        "description": "Options of drivelint check for a project; pyproject.toml has the same under [tool.drivelint].",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {**dict(sorted(properties.items())), "waiver": _WAIVER},
+    }
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
+
+
+def _annotation(param: Any) -> Any:
+    return param.type_descriptor.annotation
+
+
+def _kind(annotation: Any) -> dict[str, Any]:
+    if get_origin(annotation) is list:
+        return {"type": "array", "items": {"type": "string"}}
+    if get_origin(annotation) is Literal:
+        return {"enum": list(get_args(annotation))}
+    return {"type": _TYPES.get(annotation, "string")}

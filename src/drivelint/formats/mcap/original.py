@@ -1,0 +1,239 @@
+"""A recorded MCAP file, read by its record heads alone wherever that is enough, so that it can be copied."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import mmap
+import os
+import struct
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple, Self
+
+import numpy as np
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, Footer, Schema, Statistics
+from mcap.stream_reader import get_chunk_data_stream
+
+from drivelint.errors import TraceError
+from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.summary import summary_is_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+
+ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
+
+_HEAD: Final = struct.Struct("<BQ")
+_MESSAGE: Final = struct.Struct("<HIQ")
+_INDEX: Final = struct.Struct("<HI")
+_BLOCK: Final = 4 << 20
+
+
+class Record(NamedTuple):
+    """A record: its opcode, where it begins (its head included), where its body begins, where it ends."""
+
+    opcode: int
+    at: int
+    body: int
+    end: int
+
+
+class Original:
+    """An MCAP file, mapped into memory and read by its record heads alone wherever that is enough.
+
+    The file was read and checked by ingest; `sha256` is what it was then, None: who copies it holds its hash against that of the whole
+    log. `indexed`: its chunks' message indexes can be relied on.
+    Errors: `TraceError` where it is damaged or was changed since.
+    """
+
+    def __init__(self, path: Path, sha256: str | None = None) -> None:
+        self.path = path
+        self.sha256 = sha256
+        self._file = opened(path)  # closed by leaving the `with` that this object is made for
+        # mapped for the record heads alone: what is read through a map counts as memory of this process
+        self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.indexed = self._survey()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._view.release()
+        self._file.close()
+
+    def records(self, at: int = len(MAGIC)) -> Iterator[Record]:
+        """Yield the records of the file from byte `at` on, the footer being the last."""
+        size = len(self._view)
+        while at + _HEAD.size <= size:
+            opcode, length = _HEAD.unpack_from(self._view, at)
+            record = Record(opcode, at, at + _HEAD.size, at + _HEAD.size + length)
+            if record.end > size:
+                break
+            yield record
+            if opcode == Opcode.FOOTER:
+                return
+            at = record.end
+        raise self.damage_error(at)
+
+    def damage_error(self, at: int) -> TraceError:
+        """Return the error for a record that cannot be read."""
+        return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
+
+    @contextmanager
+    def parsing(self, record: Record) -> Iterator[None]:
+        """Turn what the library raises of a record that cannot be understood into a `TraceError`."""
+        try:
+            yield
+        except (McapError, struct.error, ValueError) as error:
+            raise self.damage_error(record.at) from error
+
+    def read(self, start: int, end: int) -> bytes:
+        """Return bytes of the file."""
+        try:
+            content = os.pread(self._file.fileno(), end - start, start)
+        except OSError as error:
+            raise _unreadable(self.path, error) from error
+        if len(content) != end - start:
+            raise self.damage_error(start)
+        return content
+
+    def stream(self, record: Record, most: int | None = None) -> ReadDataStream:
+        """Return the body of a record, to be read field by field; `most`: so many bytes, for the fields before its data."""
+        end = record.end if most is None else min(record.end, record.body + most)
+        return ReadDataStream(io.BytesIO(self.read(record.body, end)))
+
+    def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
+        """Yield opcode, offset within the chunk and body of every record of a chunk."""
+        with self.parsing(record):
+            stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
+            view = memoryview(stream.read(size))
+        at = 0
+        while at < len(view):
+            opcode, length = _HEAD.unpack_from(view, at)
+            yield opcode, at, view[at + _HEAD.size : at + _HEAD.size + length]
+            at += _HEAD.size + length
+
+    def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
+        """Unpack a chunk to find where its messages are."""
+        inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
+        return index_arrays((*_MESSAGE.unpack_from(body), at) for _, at, body in inside)
+
+    def message_index_header(self, record: Record) -> tuple[int, int]:
+        """Return channel and number of entries of a message index record."""
+        channel, length = _INDEX.unpack_from(self._view, record.body)
+        return channel, length // 16
+
+    def message_header(self, record: Record) -> tuple[int, int, int]:
+        """Return channel, sequence number and log time of a message record."""
+        channel, sequence, log_time = _MESSAGE.unpack_from(self._view, record.body)
+        return channel, sequence, log_time
+
+    def _survey(self) -> bool:
+        """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
+        named: set[int] = set()
+        chunks: list[Record] = []
+        data: list[Record] = []
+        summary: list[Record] = []
+        messages, behind_chunk, part = 0, False, data
+        for record in self.records():
+            behind_chunk = record.opcode == Opcode.CHUNK or (behind_chunk and record.opcode == Opcode.MESSAGE_INDEX)
+            if record.opcode in {Opcode.DATA_END, Opcode.FOOTER}:
+                part = summary
+            if record.opcode == Opcode.CHUNK:
+                chunks.append(record)
+            elif record.opcode == Opcode.MESSAGE:
+                messages += 1
+            elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
+                channel_id, n = self.message_index_header(record)
+                named.add(channel_id)
+                messages += n
+            else:
+                part.append(record)
+        self.schemas, self.channels, _ = self._announced(data)
+        counts: Statistics | None = None
+        with suppress(TraceError):  # the data are enough
+            schemas, channels, counts = self._announced(summary)
+            self.schemas, self.channels = schemas | self.schemas, channels | self.channels
+        if not chunks or self._agrees(counts, messages, named):
+            return True
+        self._look_inside(chunks)
+        return False
+
+    def _announced(self, records: list[Record]) -> tuple[dict[int, Schema], dict[int, Channel], Statistics | None]:
+        """Return the schemas, channels and counts among records. Errors: `TraceError` for one that is damaged."""
+        schemas: dict[int, Schema] = {}
+        channels: dict[int, Channel] = {}
+        counts: Statistics | None = None
+        for record in records:
+            with self.parsing(record):
+                if record.opcode == Opcode.SCHEMA:
+                    schema = Schema.read(self.stream(record))
+                    schemas.setdefault(schema.id, schema)
+                elif record.opcode == Opcode.CHANNEL:
+                    channel = Channel.read(self.stream(record))
+                    channels.setdefault(channel.id, channel)
+                elif record.opcode == Opcode.STATISTICS:
+                    counts = Statistics.read(self.stream(record))
+                elif record.opcode == Opcode.FOOTER and not summary_is_whole(
+                    Footer.read(self.stream(record)), self._view, record.at, record.end
+                ):
+                    raise self.damage_error(record.at)
+        return schemas, channels, counts
+
+    def _look_inside(self, chunks: list[Record]) -> None:
+        for chunk in chunks:
+            with self.parsing(chunk):
+                for opcode, _, body in self.chunk_records(chunk):
+                    if opcode == Opcode.SCHEMA:
+                        schema = Schema.read(ReadDataStream(io.BytesIO(body)))
+                        self.schemas[schema.id] = schema
+                    elif opcode == Opcode.CHANNEL:
+                        channel = Channel.read(ReadDataStream(io.BytesIO(body)))
+                        self.channels[channel.id] = channel
+
+    def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
+        """Whether the summary names every channel and schema, and the message indexes know of every message."""
+        return (
+            counts is not None
+            and counts.message_count == messages
+            and counts.channel_count == len(self.channels)
+            and counts.schema_count == len(self.schemas)
+            and named <= self.channels.keys()
+            and all(c.schema_id == 0 or c.schema_id in self.schemas for c in self.channels.values())
+        )
+
+    def digest(self) -> str:
+        """Return the hash of the file as it is now."""
+        digest = hashlib.sha256()
+        for start in range(0, len(self._view), _BLOCK):
+            digest.update(self.read(start, min(start + _BLOCK, len(self._view))))
+        return digest.hexdigest()
+
+
+def opened(path: Path) -> BinaryIO:
+    """Open a log that was read before. Errors: `TraceError`."""
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> TraceError:
+    return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
+
+
+def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
+    """Return the index of messages (channel, sequence number, log time, offset): by channel an array of log time and offset."""
+    entries: dict[int, list[tuple[int, int]]] = {}
+    for channel, _, log_time, at in messages:
+        entries.setdefault(channel, []).append((log_time, at))
+    return {channel: np.array(pairs, np.uint64) for channel, pairs in sorted(entries.items())}

@@ -1,0 +1,228 @@
+"""This module copies the data of one MCAP file behind those of others, and adds the indexes that it lacks.
+
+Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes
+behind a chunk, and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel
+or schema than the parts before it, its records get new numbers; what a message says stays the same bytes.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from mcap.data_stream import ReadDataStream, RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import AttachmentIndex, Channel, ChunkIndex, MetadataIndex, Schema
+
+from drivelint.formats.mcap.original import index_arrays
+from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.writer import free_id
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.formats.mcap.original import Original, Record
+    from drivelint.formats.mcap.writer import Sink
+
+T = TypeVar("T", Schema, Channel)
+_HEAD: Final = struct.Struct("<BQ")
+_MESSAGE: Final = struct.Struct("<HIQ")
+_NUMBER: Final = struct.Struct("<H")
+_LOOSE: Final = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE})
+_SUMMARY: Final = frozenset({
+    Opcode.DATA_END, Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX, Opcode.STATISTICS,
+    Opcode.SUMMARY_OFFSET,
+})  # fmt: skip
+LOOSE_CHUNK_BYTES: Final = 4 << 20
+"""Messages outside of chunks are put into chunks of about this size."""
+_BLOCK: Final = 4 << 20
+_HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
+
+
+class Numbers:
+    """The numbers that the schemas and channels of a part have in the copy: number in the part -> number in the copy.
+
+    What a sink has already keeps its number there; what is new keeps its own if that is free. All are made known to the sink.
+    """
+
+    def __init__(self, original: Original, sink: Sink) -> None:
+        self.schemas: dict[int, int] = {0: 0}
+        for number, schema in sorted(original.schemas.items()):
+            self.schemas[number] = _number(schema, sink.schemas, "schema", least=1)
+            sink.schemas.setdefault(self.schemas[number], replace(schema, id=self.schemas[number]))
+        self.channels: dict[int, int] = {}
+        for number, channel in sorted(original.channels.items()):
+            there = replace(channel, schema_id=self.schemas.get(channel.schema_id, channel.schema_id))
+            self.channels[number] = _number(there, sink.channels, "channel", least=0)
+            sink.channels.setdefault(self.channels[number], replace(there, id=self.channels[number]))
+
+    @property
+    def are_kept(self) -> bool:
+        """Whether every number is the same in the copy."""
+        return all(old == new for numbers in (self.schemas, self.channels) for old, new in numbers.items())
+
+
+def _number(announced: T, taken: dict[int, T], what: str, *, least: int) -> int:
+    same = [number for number, known in taken.items() if replace(known, id=0) == replace(announced, id=0)]
+    if announced.id not in taken or announced.id in same:
+        return announced.id
+    return min(same) if same else free_id(taken, least, what)
+
+
+class PartCopy:
+    """One copying: bytes wait to be written in one go, from `_from` on, as long as nothing must be put between them."""
+
+    def __init__(self, original: Original, sink: Sink) -> None:
+        self._original = original
+        self._sink = sink
+        self._from = 0
+        self._to = 0
+        self._loose: list[Record] = []
+        self._chunk: tuple[Record, ChunkIndex] | None = None
+        self._is_first = sink.offset == 0
+        self._numbers = Numbers(original, sink)
+        self._renumbers = not self._numbers.are_kept
+
+    def run(self) -> None:
+        """Copy everything before the end of the data."""
+        self._to = len(MAGIC)
+        if not self._is_first:
+            self._from = self._to
+        for record in self._original.records():
+            if record.opcode in _SUMMARY:
+                break
+            if record.opcode != Opcode.MESSAGE_INDEX:
+                self._end_chunk()
+            if record.opcode in _LOOSE:
+                self._loose.append(record)
+                if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
+                    self._end_loose()
+                continue
+            self._end_loose()
+            if record.opcode == Opcode.MESSAGE_INDEX:
+                self._take_index(record)
+            elif record.opcode == Opcode.HEADER and not self._is_first:
+                self._skip(record)
+            elif record.opcode == Opcode.CHUNK and self._renumbers:
+                self._skip(record)
+                self._add_renumbered((opcode, body) for opcode, _, body in self._original.chunk_records(record))
+            else:
+                with self._original.parsing(record):
+                    self._note(record)
+                self._keep(record)
+        self._end_chunk()
+        self._end_loose()
+        self._flush()
+
+    def _keep(self, record: Record) -> None:
+        self._to = record.end
+        if self._to - self._from > _BLOCK:
+            self._flush()
+
+    def _skip(self, record: Record) -> None:
+        """Leave out a record."""
+        self._flush()
+        self._from = self._to = record.end
+
+    def _add_renumbered(self, records: Iterable[tuple[int, bytes | memoryview]]) -> None:
+        """Write schemas, channels and messages (opcode, body) under their numbers in the copy, as a chunk if there are messages."""
+        parts: list[bytes | memoryview] = []
+        messages: list[tuple[int, int, int, int]] = []
+        at = 0
+        for opcode, body in records:
+            new = self._renumbered(opcode, body)
+            if opcode == Opcode.MESSAGE:
+                messages.append((*_MESSAGE.unpack_from(new), at))
+            parts += [_HEAD.pack(opcode, len(new)), new]
+            at += _HEAD.size + len(new)
+        content = b"".join(parts)
+        if messages:
+            self._sink.add_chunk(content, index_arrays(messages))
+        else:
+            self._sink.write(content)
+
+    def _renumbered(self, opcode: int, body: bytes | memoryview) -> bytes | memoryview:
+        if opcode == Opcode.MESSAGE:
+            (number,) = _NUMBER.unpack_from(body)
+            return _NUMBER.pack(self._numbers.channels[number]) + body[_NUMBER.size :]
+        if opcode not in _LOOSE:
+            return body
+        stream = ReadDataStream(io.BytesIO(body))
+        if opcode == Opcode.SCHEMA:
+            announced: Schema | Channel = self._sink.schemas[self._numbers.schemas[Schema.read(stream).id]]
+        else:
+            announced = self._sink.channels[self._numbers.channels[Channel.read(stream).id]]
+        builder = RecordBuilder()
+        announced.write(builder)
+        return bytes(builder.end())[_HEAD.size :]  # type: ignore[no-untyped-call]
+
+    def _flush(self) -> None:
+        for start in range(self._from, self._to, _BLOCK):
+            self._sink.write(self._original.read(start, min(start + _BLOCK, self._to)))
+        self._from = self._to
+
+    def _place(self, at: int) -> int:
+        """Return where a byte of the original that is waiting will be in the copy."""
+        return self._sink.offset + at - self._from
+
+    def _note(self, record: Record) -> None:
+        """Tell the index of a record that will be copied."""
+        start, length = self._place(record.at), record.end - record.at
+        head = self._original.stream(record, _HEAD_BYTES)
+        if record.opcode == Opcode.CHUNK:
+            begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
+            self._chunk = record, ChunkIndex(
+                chunk_length=length, chunk_start_offset=start, compression=head.read_prefixed_string(),
+                compressed_size=head.read8(), message_end_time=end, message_index_length=0, message_index_offsets={},
+                message_start_time=begin, uncompressed_size=size,
+            )  # fmt: skip
+        elif record.opcode == Opcode.ATTACHMENT:
+            log_time, create_time = head.read8(), head.read8()
+            name, media_type = head.read_prefixed_string(), head.read_prefixed_string()
+            self._sink.attachments.append(AttachmentIndex(
+                offset=start, length=length, log_time=log_time, create_time=create_time, data_size=head.read8(),
+                name=name, media_type=media_type,
+            ))  # fmt: skip
+        elif record.opcode == Opcode.METADATA:
+            self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=head.read_prefixed_string()))
+
+    def _take_index(self, record: Record) -> None:
+        """Copy a message index that can be relied on; another is left out and found anew."""
+        if self._chunk is None or not self._original.indexed:
+            self._skip(record)
+            return
+        channel, n = self._original.message_index_header(record)
+        self._chunk[1].message_index_offsets[channel] = self._place(record.at)
+        self._chunk[1].message_index_length += record.end - record.at
+        self._sink.counts[channel] += n
+        self._keep(record)
+
+    def _end_chunk(self) -> None:
+        if self._chunk is None:
+            return
+        (record, index), self._chunk = self._chunk, None
+        if self._original.indexed:
+            self._sink.chunks.append(index)
+            return
+        self._flush()
+        self._sink.index_chunk(index, self._original.chunk_message_index(record))
+
+    def _end_loose(self) -> None:
+        """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""
+        if not self._loose:
+            return
+        loose, self._loose = self._loose, []
+        start, end = loose[0].at, loose[-1].end
+        messages = [record for record in loose if record.opcode == Opcode.MESSAGE]
+        if self._renumbers:
+            self._flush()
+            self._add_renumbered((each.opcode, self._original.read(each.body, each.end)) for each in loose)
+            self._from = end
+        elif messages:
+            self._flush()
+            index = index_arrays((*self._original.message_header(each), each.at - start) for each in messages)
+            self._sink.add_chunk(self._original.read(start, end), index, compressed=False)
+            self._from = end
+        self._to = end

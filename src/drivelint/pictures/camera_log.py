@@ -1,0 +1,149 @@
+"""The frames of a drive's cameras in its MCAP files, found by their times through the indexes of the files: no image is decoded."""
+
+from __future__ import annotations
+
+import mmap
+import struct
+from contextlib import ExitStack
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final, NamedTuple, Self
+
+import numpy as np
+
+from drivelint.errors import TraceError
+from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD
+from drivelint.formats.mcap.summary import Summary, read_index, read_summary
+from drivelint.pictures.frames import FrameError, ahead_first, camera_name, is_camera, read_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from drivelint.pictures.frames import Frame
+
+_RECORD: Final = struct.Struct("<BQ")
+_MESSAGE: Final = struct.Struct("<HIQQ")
+_CHUNKS_KEPT: Final = 4
+"""Unpacked chunks that are kept: frames of one moment often share one."""
+
+
+class Place(NamedTuple):
+    """Where a frame is: its log time, file, channel, chunk, and offset in the unpacked chunk."""
+
+    log_ns: int
+    file: int
+    channel: int
+    chunk: int
+    at: int
+
+
+def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
+    """Return the topics of the cameras in MCAP files as far as their indexes name them; those that look ahead first.
+
+    Of topics that send the frames of one camera, the compressed ones count.
+    """
+    of_camera: dict[str, str] = {}
+    for summary in map(_index, files):
+        for topic in sorted(_cameras(summary), key=lambda topic: (topic.endswith("/compressed"), topic)):
+            of_camera[camera_name(topic)] = topic
+    return tuple(sorted(of_camera.values(), key=ahead_first))
+
+
+class CameraLog:
+    """The MCAP files of one drive, open for reading frames. Errors of all: `FrameError` for what is damaged."""
+
+    def __init__(self, files: Sequence[Path]) -> None:
+        self._stack = ExitStack()
+        self._views: list[memoryview] = []
+        self._summaries: list[Summary] = []
+        for path in files:
+            file = self._stack.enter_context(path.open("rb"))
+            self._views.append(memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
+            self._summaries.append(read_summary(self._views[-1], unprotected=True))
+        self._chunk = lru_cache(maxsize=_CHUNKS_KEPT)(self._unpacked)
+        self._index = lru_cache(maxsize=4096)(self._message_index)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._chunk.cache_clear()
+        self._stack.close()
+
+    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+        """Return where the frames of a camera with log times from `since_ns` to `until_ns` are, in the order of these."""
+        found: list[Place] = []
+        for no, summary in enumerate(self._summaries):
+            mine = [number for number, channel in summary.channels.items() if channel.topic == topic]
+            for chunk, (_, first_ns, last_ns) in summary.chunks.items():
+                if last_ns < since_ns or first_ns > until_ns:
+                    continue
+                for number in mine:
+                    for log_ns, at in self._index(no, chunk, number):
+                        if since_ns <= log_ns <= until_ns:
+                            found.append(Place(log_ns, no, number, chunk, at))
+        return sorted(found)
+
+    def frame(self, place: Place) -> Frame:
+        """Return what the message at a place says."""
+        records, summary = self._chunk(place.file, place.chunk), self._summaries[place.file]
+        try:
+            _, length = _RECORD.unpack_from(records, place.at)
+            body = memoryview(records)[place.at + _RECORD.size : place.at + _RECORD.size + length]
+            number, *_ = _MESSAGE.unpack_from(body)
+        except struct.error as error:
+            raise FrameError("an index that does not fit its messages") from error
+        if number != place.channel or len(body) != length:
+            raise FrameError("an index that does not fit its messages")
+        channel = summary.channels[place.channel]
+        return read_frame(channel, summary.schemas[channel.schema_id], body[_MESSAGE.size :])
+
+    def _message_index(self, file: int, chunk: int, channel: int) -> list[tuple[int, int]]:
+        """Return log time and offset of each message of a channel in a chunk."""
+        view, at = self._views[file], self._summaries[file].message_indexes.get(chunk, {}).get(channel)
+        if at is None:
+            return []
+        try:
+            _, length = _RECORD.unpack_from(view, at)
+            number, n_bytes = MESSAGE_INDEX_HEAD.unpack_from(view, at + _RECORD.size)
+        except struct.error as error:
+            raise FrameError("a damaged index of messages") from error
+        start = at + _RECORD.size + MESSAGE_INDEX_HEAD.size
+        if (
+            number != channel
+            or n_bytes != length - MESSAGE_INDEX_HEAD.size
+            or n_bytes % 16
+            or start + n_bytes > len(view)
+        ):
+            raise FrameError("a damaged index of messages")
+        return [
+            (int(log_ns), int(at)) for log_ns, at in np.frombuffer(view[start : start + n_bytes], "<u8").reshape(-1, 2)
+        ]
+
+    def _unpacked(self, file: int, chunk: int) -> bytes:
+        view = self._views[file]
+        try:
+            _, length = _RECORD.unpack_from(view, chunk)
+            body = view[chunk + _RECORD.size : chunk + _RECORD.size + length]
+            return chunk_records(chunk_head(body), f"byte {chunk}")
+        except (struct.error, ChunkError, TraceError) as error:
+            raise FrameError(str(error)) from error
+
+
+def _index(file: Path) -> Summary:
+    try:
+        return read_index(file)
+    except (OSError, ValueError):
+        return Summary()  # gone, or empty: whoever reads the log says so
+
+
+def _cameras(summary: Summary) -> list[str]:
+    indexed = {number for of_chunk in summary.message_indexes.values() for number in of_chunk}
+    return [
+        channel.topic
+        for number, channel in summary.channels.items()
+        if number in indexed
+        and (schema := summary.schemas.get(channel.schema_id)) is not None
+        and is_camera(channel, schema)
+    ]

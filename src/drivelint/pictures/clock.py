@@ -1,0 +1,80 @@
+"""The clock of a drive beside that of its log, and the frame that is nearest in time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from drivelint.pictures.frames import FrameError
+
+if TYPE_CHECKING:
+    from drivelint.drive.trace import FrameTimes
+    from drivelint.pictures.camera_log import CameraLog, Place
+
+SEARCHED_NS: Final = 2_000_000_000
+"""Frames are looked for so far around a time in the log: one may be recorded up to a second after it was taken."""
+NEAR_NS: Final = 500_000_000
+"""A frame farther from the time that is asked for does not show it."""
+_SAME_CLOCK_NS: Final = 1_000_000_000
+"""A camera's stamps are of the drive's clock if both differ from the log's by the same up to this."""
+
+
+class DriveClock:
+    """Converts times of a drive to those of its log. `times`: of its frames in both clocks; None: they are one."""
+
+    def __init__(self, times: FrameTimes | None) -> None:
+        self._t_ns, ahead = np.zeros(1, np.int64), np.zeros(1, np.int64)
+        if times is not None and len(times.t_ns):
+            self._t_ns, first = np.unique(times.t_ns, return_index=True)
+            ahead = self._t_ns - times.log_ns[first].astype(np.int64)
+        self._ahead_ns = ahead
+
+    def ahead_ns(self, t_ns: int) -> int:
+        """Return by how much the drive's clock is ahead of the log's at a time of the drive: at its nearest frame."""
+        at = int(np.clip(np.searchsorted(self._t_ns, t_ns), 1, max(len(self._t_ns) - 1, 1)))
+        before, after = (min(i, len(self._t_ns) - 1) for i in (at - 1, at))
+        is_after = abs(int(self._t_ns[after]) - t_ns) < abs(int(self._t_ns[before]) - t_ns)
+        return int(self._ahead_ns[after if is_after else before])
+
+    @property
+    def is_of_log(self) -> bool:
+        """Whether the times of the drive are those at which the log was written."""
+        return not self._ahead_ns.any()
+
+
+def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> tuple[Place, int] | None:
+    """Return the frame of a camera nearest to a time of the drive, and its own time; None: none is near.
+
+    The time of a frame is what its message says, if that is on the drive's clock, else when it was logged. Errors: `FrameError`.
+    """
+    ahead_ns = clock.ahead_ns(t_ns)
+    wanted_ns = t_ns - ahead_ns
+    places = log.places(topic, wanted_ns - SEARCHED_NS, wanted_ns + SEARCHED_NS)
+    if not places:
+        return None
+    known: dict[int, int] = {}
+
+    def off_ns(i: int) -> int:
+        """Return how far a frame is from the time, 0 being best."""
+        if i not in known:
+            known[i] = _time_of(log, places[i], clock, ahead_ns)
+        return abs(known[i] - t_ns)
+
+    best = min(range(len(places)), key=lambda i: abs(places[i].log_ns - wanted_ns))
+    # messages are logged in the order in which frames are taken: from the nearest by log time it can only be one way
+    for way in (-1, 1):
+        while 0 <= best + way < len(places) and off_ns(best + way) < off_ns(best):
+            best += way
+    return (places[best], known[best]) if off_ns(best) <= NEAR_NS else None
+
+
+def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> int:
+    logged_ns = place.log_ns + ahead_ns
+    if clock.is_of_log:
+        return logged_ns
+    try:
+        stamp_ns = log.frame(place).stamp_ns
+    except FrameError:
+        return logged_ns  # whoever shows it says what is wrong
+    return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns

@@ -1,0 +1,183 @@
+"""The messages of cameras: which there are, and what one says: the time of the frame, and its image as it is encoded.
+
+ROS 2: https://docs.ros.org/en/rolling/p/sensor_msgs; Foxglove: https://docs.foxglove.dev/docs/sdk/schemas.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from drivelint.formats.ros2.cdr import BYTE_ORDERS, HEADER_BYTES
+from drivelint.formats.ros2.types import short_type_name
+
+if TYPE_CHECKING:
+    from mcap.records import Channel, Schema
+
+
+class FrameError(Exception):
+    """A frame cannot be shown; the text says why."""
+
+
+class EncodedImage(NamedTuple):
+    """An image file: JPEG, PNG or WebP."""
+
+    data: bytes
+
+
+class RawImage(NamedTuple):
+    """Rows of pixels, `step` bytes each, in an encoding of ROS."""
+
+    width: int
+    height: int
+    encoding: str
+    step: int
+    is_big_endian: bool
+    data: bytes
+
+
+class VideoFrame(NamedTuple):
+    """One frame of a video, which may need those before it."""
+
+    codec: str
+    data: bytes
+
+
+class Frame(NamedTuple):
+    """What a message says; `stamp_ns`: when the frame was taken, None: it does not say."""
+
+    stamp_ns: int | None
+    image: EncodedImage | RawImage | VideoFrame
+
+
+_KINDS: Final = {
+    ("cdr", "sensor_msgs/CompressedImage"): "ros image",
+    ("cdr", "sensor_msgs/Image"): "ros raw",
+    ("cdr", "foxglove_msgs/CompressedImage"): "cdr image",
+    ("cdr", "foxglove_msgs/CompressedVideo"): "cdr video",
+    ("protobuf", "foxglove.CompressedImage"): "image",
+    ("protobuf", "foxglove.CompressedVideo"): "video",
+    ("protobuf", "foxglove.RawImage"): "raw",
+    ("json", "foxglove.CompressedImage"): "image",
+    ("json", "foxglove.CompressedVideo"): "video",
+    ("json", "foxglove.RawImage"): "raw",
+}
+"""Encoding and schema of the messages of cameras -> how they are read."""
+_NO_PICTURES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
+"""Words in the topics of images that show something else than what a camera saw."""
+_SIDES: Final = ("left", "right", "rear", "back", "side")
+
+
+def is_camera(channel: Channel, schema: Schema) -> bool:
+    """Whether the messages of a channel are frames of a camera."""
+    kind = (channel.message_encoding, short_type_name(schema.name))
+    return kind in _KINDS and not any(word in channel.topic.lower() for word in _NO_PICTURES)
+
+
+def ahead_first(topic: str) -> tuple[int, str]:
+    """Return the place of a camera among the others: those that look ahead come first."""
+    name = topic.lower()
+    is_aside = any(side in name for side in _SIDES)
+    return (2 if is_aside else 0 if "front" in name else 1), topic
+
+
+def camera_name(topic: str) -> str:
+    """Return what a camera is called by whatever way its frames are sent."""
+    return topic.removesuffix("/compressed").removesuffix("/image_raw").removesuffix("/image") or topic
+
+
+def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Frame:
+    """Return what a message of a camera says. Errors: `FrameError` for one that cannot be read."""
+    kind = _KINDS[channel.message_encoding, short_type_name(schema.name)]
+    try:
+        if channel.message_encoding == "cdr":
+            return _cdr_frame(kind, _Cdr(data))
+        if channel.message_encoding == "json":
+            return _foxglove_frame(kind, json.loads(bytes(data)))
+        return _foxglove_frame(kind, _protobuf_fields(schema.name, schema.data, bytes(data)))
+    except (struct.error, ValueError, KeyError, TypeError, IndexError) as error:
+        raise FrameError(f"a message that cannot be read ({error})") from error
+
+
+class _Cdr:
+    """Reads the members of one CDR message (XCDR1) in their order."""
+
+    def __init__(self, data: bytes | memoryview) -> None:
+        self._data = data
+        self._at = HEADER_BYTES
+        self._order = BYTE_ORDERS[data[1]]
+
+    def number(self, code: str) -> Any:
+        size = struct.calcsize(code)
+        self._at += -(self._at - HEADER_BYTES) % size
+        (value,) = struct.unpack_from(self._order + code, self._data, self._at)
+        self._at += size
+        return value
+
+    def block(self) -> bytes:
+        size = self.number("I")
+        if size > len(self._data) - self._at:
+            raise ValueError("it ends within its data")
+        self._at += size
+        return bytes(self._data[self._at - size : self._at])
+
+    def text(self) -> str:
+        return self.block().rstrip(b"\0").decode("utf-8", "replace")
+
+    def stamp(self) -> int | None:
+        seconds, nanoseconds = self.number("i"), self.number("I")
+        return seconds * 10**9 + nanoseconds or None
+
+
+def _cdr_frame(kind: str, message: _Cdr) -> Frame:
+    stamp_ns = message.stamp()
+    message.text()  # the frame of the coordinates
+    if kind == "ros image":
+        message.text()  # the file says itself of what kind it is
+        return Frame(stamp_ns, EncodedImage(message.block()))
+    if kind == "ros raw":
+        height, width, encoding = message.number("I"), message.number("I"), message.text()
+        is_big_endian, step = bool(message.number("B")), message.number("I")
+        return Frame(stamp_ns, RawImage(width, height, encoding, step, is_big_endian, message.block()))
+    data, format_ = message.block(), message.text()
+    return Frame(stamp_ns, VideoFrame(format_, data) if kind == "cdr video" else EncodedImage(data))
+
+
+def _foxglove_frame(kind: str, fields: dict[str, Any]) -> Frame:
+    said = fields.get("timestamp") or {}
+    seconds, part = said.get("sec", said.get("seconds", 0)), said.get("nsec", said.get("nanos", 0))
+    stamp_ns = int(seconds) * 10**9 + int(part) or None
+    data = fields["data"]
+    data = base64.b64decode(data) if isinstance(data, str) else data
+    if kind == "image":
+        return Frame(stamp_ns, EncodedImage(data))
+    if kind == "video":
+        return Frame(stamp_ns, VideoFrame(fields.get("format", ""), data))
+    width, height = int(fields["width"]), int(fields["height"])
+    return Frame(stamp_ns, RawImage(width, height, fields["encoding"], int(fields["step"]), False, data))
+
+
+def _protobuf_fields(name: str, described: bytes, data: bytes) -> dict[str, Any]:
+    """Return the fields of a message by their names, those of its time in a dictionary."""
+    message = _message_class(name, described).FromString(data)
+    fields = {field.name: getattr(message, field.name) for field in message.DESCRIPTOR.fields}
+    if "timestamp" in fields:
+        fields["timestamp"] = {"sec": fields["timestamp"].seconds, "nsec": fields["timestamp"].nanos}
+    return fields
+
+
+@lru_cache(maxsize=16)
+def _message_class(name: str, described: bytes) -> Any:
+    """Return the class of the messages that a schema record of the log describes. Errors: `FrameError`."""
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+    try:
+        pool = descriptor_pool.DescriptorPool()
+        for file in descriptor_pb2.FileDescriptorSet.FromString(described).file:
+            pool.Add(file)
+        return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+    except Exception as error:
+        raise FrameError(f"the log does not describe {name}") from error

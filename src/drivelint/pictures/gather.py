@@ -1,0 +1,123 @@
+"""Takes the pictures of a run: remembers the drives with cameras while they are judged, and reads the chosen frames at its end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import pyarrow as pa
+
+from drivelint.formats.mcap import trace as mcap
+from drivelint.formats.mcap.bag import mcap_files
+from drivelint.pictures.camera_log import CameraLog, camera_topics
+from drivelint.pictures.clock import DriveClock, nearest_frame
+from drivelint.pictures.frames import FrameError, VideoFrame
+from drivelint.pictures.shots import SHOTS_NS, planned_shots
+from drivelint.result.counts import grouped
+from drivelint.result.schemas import empty_table
+from drivelint.sql.store import arrow_schemas
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    import duckdb
+
+    from drivelint.engine.batch import Drive
+    from drivelint.pictures.camera_log import Place
+    from drivelint.pictures.shots import Shot
+    from drivelint.result.model import Result
+
+
+class DriveCameras(NamedTuple):
+    """The log of a drive that has cameras: its files, the drive's clock, and the topics of the cameras as they are shown."""
+
+    path: Path
+    files: tuple[Path, ...]
+    clock: DriveClock
+    topics: tuple[str, ...]
+
+
+class Trouble(NamedTuple):
+    """Why pictures of a log are missing."""
+
+    path: Path
+    text: str
+
+
+class Camerawork:
+    """Remembers the drives with cameras of each judged batch; takes the pictures when all are judged."""
+
+    def __init__(self) -> None:
+        self._drives: dict[str, DriveCameras] = {}
+
+    def __call__(self, _con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], **_part: bool) -> None:
+        """Remember those drives of a batch whose logs have cameras."""
+        for drive in drives:
+            trace = drive.trace
+            (format_,) = trace.tables["data_log"]["format"].to_pylist()
+            if format_ not in mcap.formats or trace.drive_id in self._drives:
+                continue
+            files = tuple(mcap_files(trace.path))
+            if topics := camera_topics(files):
+                self._drives[trace.drive_id] = DriveCameras(trace.path, files, DriveClock(trace.frame_times), topics)
+
+    @property
+    def topics(self) -> dict[str, tuple[str, ...]]:
+        """drive_id -> topics of its cameras, of the drives with cameras."""
+        return {drive_id: each.topics for drive_id, each in self._drives.items()}
+
+    def take(self, result: Result) -> tuple[pa.Table, list[Trouble]]:
+        """Return the table `picture` of a result, in order, and why pictures are missing, a line for each camera."""
+        rows: list[dict[str, Any]] = []
+        troubles: dict[Trouble, None] = {}
+        of_drives = grouped(planned_shots(result, self.topics), lambda shot: shot.drive_id)
+        for drive_id, shots in sorted(of_drives.items()):
+            drive = self._drives[drive_id]
+            try:
+                with CameraLog(drive.files) as log:
+                    for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
+                        asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
+                        rows += _taken(log, drive, asked, troubles)
+            except (OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
+                troubles[Trouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
+        if not rows:
+            return empty_table("picture"), list(troubles)
+        return pa.Table.from_pylist(rows, schema=arrow_schemas()["picture"]), list(troubles)
+
+
+def _taken(
+    log: CameraLog, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
+) -> list[dict[str, Any]]:
+    """Return the rows of the shots of one moment by one camera, in time order, each of another frame."""
+    from drivelint.pictures.images import small_jpeg
+
+    topic = drive.topics[shots[0].camera_no]
+    rows: list[dict[str, Any]] = []
+    shown: set[Place] = set()
+    for shot in sorted(shots, key=lambda shot: (shot.shot != "at", SHOTS_NS[shot.shot])):
+        try:
+            found = nearest_frame(log, topic, drive.clock, shot.t_ns + SHOTS_NS[shot.shot])
+            if found is None or found[0] in shown:
+                continue
+            shown.add(found[0])
+            image = log.frame(found[0]).image
+            if isinstance(image, VideoFrame):
+                from drivelint.pictures.video import video_image
+
+                picture = small_jpeg(video_image(log, topic, found[0]))
+            else:
+                picture = small_jpeg(image)
+        except FrameError as error:
+            troubles.setdefault(Trouble(drive.path, f"camera {topic}: no picture of {error}"))
+            continue
+        rows.append(
+            {
+                **shot._asdict(),
+                "camera": topic,
+                "t_frame_ns": found[1],
+                "width_px": picture.width_px,
+                "height_px": picture.height_px,
+            }
+            | {"jpeg": picture.data}
+        )
+    return sorted(rows, key=lambda row: row["t_frame_ns"])

@@ -1,0 +1,122 @@
+"""Images as small JPEG files. Pillow is imported here alone, and so only for a log with cameras."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from drivelint.pictures.frames import EncodedImage, FrameError, RawImage
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MOST_PX: Final = (640, 480)
+"""Width and height that a picture has at most."""
+MOST_BYTES: Final = 30_000
+"""A picture that is larger is encoded with a lower quality; noise may then still be a little larger."""
+_QUALITY, _LESS, _LEAST = 70, 35, 10
+_FORMATS: Final = ("JPEG", "PNG", "WEBP")
+_MOST_PIXELS: Final = 100_000_000
+_PLAIN: Final = {
+    "rgb8": ("RGB", "RGB", 3), "bgr8": ("RGB", "BGR", 3), "8UC3": ("RGB", "BGR", 3), "rgba8": ("RGB", "RGBX", 4),
+    "bgra8": ("RGB", "BGRX", 4), "mono8": ("L", "L", 1), "8UC1": ("L", "L", 1),
+}  # fmt: skip
+"""Encoding of a raw image -> mode and raw mode of Pillow, bytes of a pixel; OpenCV, whose words 8UC3 are, has blue first."""
+_LUMA: Final = {"yuv422": 1, "uyvy": 1, "yuv422_yuy2": 0, "yuyv": 0}
+"""Encoding of two bytes a pixel -> which of them is its brightness."""
+_COLOUR_FILTERS: Final = {f"bayer_{order}8": order for order in ("rggb", "bggr", "gbrg", "grbg")}
+
+
+class Jpeg(NamedTuple):
+    """A JPEG file and its size in pixels."""
+
+    data: bytes
+    width_px: int
+    height_px: int
+
+
+def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
+    """Return an image as a JPEG of at most 640 by 480 pixels, without what its file says beside. Errors: `FrameError`.
+
+    It is made smaller by a whole number, which costs a third of any other scale.
+    """
+    try:
+        opened = _image(image)
+        whole = opened if opened.mode == "RGB" else opened.convert("RGB")
+        small = whole.reduce(times) if (times := _times_too_large(whole)) > 1 else whole
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise FrameError(f"an image that cannot be decoded ({error})") from error
+    data = _encoded(small, _QUALITY)
+    if len(data) > MOST_BYTES:
+        data = _encoded(small, _LESS if len(data) < 2 * MOST_BYTES else _LEAST)
+    return Jpeg(data, *small.size)
+
+
+def _encoded(image: Image.Image, quality: int) -> bytes:
+    sink = io.BytesIO()
+    image.save(sink, "JPEG", quality=quality, exif=b"", comment=b"")
+    return sink.getvalue()
+
+
+def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
+    if isinstance(image, RawImage):
+        return _of_pixels(image)
+    return _opened(image) if isinstance(image, EncodedImage) else image
+
+
+def _times_too_large(image: Image.Image) -> int:
+    """Return by what whole number the sides of an image are to be divided."""
+    return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_PX, strict=True)))
+
+
+def _opened(image: EncodedImage) -> Image.Image:
+    try:
+        opened = Image.open(io.BytesIO(image.data), formats=_FORMATS)
+        if opened.width * opened.height > _MOST_PIXELS:
+            raise FrameError(f"an image of {opened.width} x {opened.height} pixels")
+        times = _times_too_large(opened)
+        opened.draft(
+            "RGB", (opened.width // times, opened.height // times)
+        )  # a JPEG is decoded no larger than it has to be
+    except UnidentifiedImageError as error:
+        raise FrameError("an image that is no JPEG, PNG or WebP") from error
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise FrameError(f"an image that cannot be decoded ({error})") from error
+    return opened
+
+
+def _of_pixels(image: RawImage) -> Image.Image:
+    """Return a raw image; one with a colour filter at half its size."""
+    mode, raw_mode, size = _PLAIN.get(image.encoding, ("", "", 2 if image.encoding in _LUMA else 1))
+    if not mode and image.encoding not in _LUMA and image.encoding not in _COLOUR_FILTERS:
+        raise FrameError(f"an image in {image.encoding!r}, which is not read")
+    if image.width * size > image.step or image.height * image.step > len(image.data) or not image.width * image.height:
+        raise FrameError(f"an image of {image.width} x {image.height} pixels in {len(image.data)} bytes")
+    if mode:
+        return Image.frombytes(mode, (image.width, image.height), image.data, "raw", raw_mode, image.step)
+    rows = np.frombuffer(image.data, np.uint8, image.height * image.step).reshape(image.height, image.step)
+    pixels = rows[:, : image.width * size].reshape(image.height, image.width, size)
+    if size == 2:
+        return Image.fromarray(_of_yuv(pixels, _LUMA[image.encoding]))
+    if min(pixels.shape[:2]) < 2:
+        raise FrameError("an image smaller than its colour filter")
+    return Image.fromarray(_of_colour_filter(pixels[:, :, 0], _COLOUR_FILTERS[image.encoding]))
+
+
+def _of_colour_filter(pixels: NDArray[np.uint8], pattern: str) -> NDArray[np.uint8]:
+    even = pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
+    quarters = {i: even[i // 2 :: 2, i % 2 :: 2].astype(np.uint16) for i in range(4)}
+    of = {colour: [quarters[i] for i, each in enumerate(pattern) if each == colour] for colour in "rgb"}
+    return np.stack([(sum(of[colour]) // len(of[colour])) for colour in "rgb"], axis=2).astype(np.uint8)
+
+
+def _of_yuv(pixels: NDArray[np.uint8], luma: int) -> NDArray[np.uint8]:
+    """Return YUV 4:2:2 as RGB (ITU-R BT.601)."""
+    even = pixels[:, : pixels.shape[1] // 2 * 2].astype(np.float32)
+    y, chroma = even[:, :, luma], even[:, :, 1 - luma] - 128
+    u, v = (np.repeat(chroma[:, i::2], 2, axis=1) for i in (0, 1))
+    red, green, blue = y + 1.402 * v, y - 0.344 * u - 0.714 * v, y + 1.772 * u
+    return np.asarray(np.clip(np.stack([red, green, blue], axis=2), 0, 255), np.uint8)

@@ -1,0 +1,76 @@
+"""Which pictures a run takes: of the worst moments, so that their number and bytes are bounded whatever the logs hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.report.worst_first import worst_first
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.result.model import Result
+
+SHOTS_NS: Final = {"before": -1_000_000_000, "at": 0, "after": 1_000_000_000}
+"""Shot -> when, from the moment on."""
+_IN_ORDER: Final = ("at", "before", "after")
+MOST_MOMENTS: Final = 30
+MOST_CAMERAS: Final = 3
+MOST_SHOTS: Final = 120
+"""Pictures of a run."""
+
+
+class Shot(NamedTuple):
+    """A picture to be taken: of a moment of a drive, by one of its cameras."""
+
+    drive_id: str
+    t_ns: int
+    camera_no: int
+    shot: str
+
+
+def planned_shots(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
+    """Return the pictures to take of a result, most important first. `cameras`: drive_id -> topics of its cameras.
+
+    The first camera shows every moment, then the other cameras the worst ones. So what is left out of a part of the drives is
+    left out of all of them too.
+    """
+    return shots_of_moments(_moments(result, cameras), cameras)
+
+
+def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
+    """Return the pictures to take of moments (drive and time), the worst first, which all are of drives with cameras."""
+    moments = moments[:MOST_MOMENTS]
+    first = [Shot(*moment, 0, shot) for shot in _IN_ORDER for moment in moments]
+    others = [
+        Shot(drive_id, t_ns, no, shot)
+        for drive_id, t_ns in moments
+        for no in range(1, min(len(cameras[drive_id]), MOST_CAMERAS))
+        for shot in _IN_ORDER
+    ]
+    return [*first, *others][:MOST_SHOTS]
+
+
+def chosen_rows(pictures: pa.Table, planned: Sequence[Shot]) -> pa.Table:
+    """Return the rows of the table `picture` that are planned."""
+    wanted = set(planned)
+    keys = zip(*(pictures[name].to_pylist() for name in Shot._fields), strict=True)
+    return pictures.filter(pa.array([Shot(*key) in wanted for key in keys], pa.bool_()))
+
+
+def _moments(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[tuple[str, int]]:
+    """Return drive and time of the findings, then of the near misses, the worst first, in drives with cameras."""
+    if not cameras:
+        return []
+    rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
+    near = result.verdicts.filter(pc.equal(result.verdicts["near_miss"], True))
+    of_drives = pa.array(sorted(cameras), pa.string())
+    found: dict[tuple[str, int], None] = {}
+    for rows in (result.findings, near):
+        mine = rows.filter(pc.and_(pc.is_in(rows["drive_id"], value_set=of_drives), pc.is_valid(rows["t_worst_ns"])))
+        ordered = worst_first(mine, rules)
+        found |= dict.fromkeys(zip(ordered["drive_id"].to_pylist(), ordered["t_worst_ns"].to_pylist(), strict=True))
+    return list(found)

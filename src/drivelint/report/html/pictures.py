@@ -1,0 +1,68 @@
+"""Pictures from the cameras of the logs, as the pages show them: by moment and camera, each with its time beside that of the moment."""
+
+from __future__ import annotations
+
+import base64
+from typing import TYPE_CHECKING, Any, Final
+
+from drivelint.result.counts import grouped
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import pyarrow as pa
+
+Moment = tuple[str, int]
+_MINUS: Final = "\u2212"
+_SAME_NS: Final = 5_000_000
+"""A frame that is nearer to the moment is of the moment: times are told in hundredths of a second."""
+
+
+def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
+    """Return drive and time -> the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
+    rows = pictures.to_pylist()
+    shown: dict[Moment, list[dict[str, Any]]] = {}
+    for (drive_id, t_ns, _, camera), mine in grouped(
+        rows, lambda row: (row["drive_id"], row["t_ns"], row["camera_no"], row["camera"])
+    ).items():
+        shown.setdefault((drive_id, t_ns), []).append(
+            {"camera": camera, "shots": [_shot(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])]}
+        )
+    return shown
+
+
+def add_pictures(
+    worst: dict[str, Any] | None, sections: Sequence[dict[str, Any]], cameras: Mapping[Moment, list[dict[str, Any]]]
+) -> None:
+    """Give each moment of a page its pictures: the worst one first, and each once: what comes later links there."""
+    anchors: dict[Moment, str] = {}
+    if worst is not None:
+        row = worst["line"].row
+        moment = row["drive_id"], row["t_worst_ns"]
+        worst["cameras"] = cameras.get(moment, [])
+        if worst["cameras"]:
+            anchors[moment] = "worst"
+    for section in sections:
+        for each in section["moments"]:
+            moment = section["drive_id"], each["t_ns"]
+            if moment in anchors:
+                each["pictured"] = anchors[moment]
+            elif moment in cameras:
+                each["cameras"], anchors[moment] = cameras[moment], each["anchor"]
+
+
+def _shot(row: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "src": "data:image/jpeg;base64," + base64.b64encode(row["jpeg"]).decode(),
+        "width": row["width_px"],
+        "height": row["height_px"],
+        "is_at": row["shot"] == "at",
+        "told": _told(row["t_frame_ns"] - row["t_ns"]),
+    }
+
+
+def _told(off_ns: int) -> str:
+    """Return in words when a frame was taken, seen from the moment."""
+    if abs(off_ns) < _SAME_NS:
+        return "at the moment"
+    return f"{'+' if off_ns > 0 else _MINUS}{abs(off_ns) / 1e9:.2f} s"

@@ -1,0 +1,1 @@
+"""Pictures from the cameras of logs."""
