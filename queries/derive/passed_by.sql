@@ -13,14 +13,15 @@ WITH candidate AS (
         p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
         e.yaw_rad AS ego_yaw_rad, e.speed_mps AS ego_speed_mps, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
         (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy,
-        CASE WHEN g.sensor_range_m IS NOT NULL THEN measured_meeting_m() ELSE 0.0 END AS may_meet_m
+        CASE WHEN g.sensor_range_m IS NOT NULL THEN measured_meeting_m() ELSE 0.0 END AS may_meet_m,
+        coalesce(p.speed_mps <= standing_mps(), false) OR p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m AS has_no_room
     FROM pair p
     JOIN data_log g USING (drive_id)
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN step st USING (drive_id, ego_id, t_ns)
     WHERE p.s_m > e.s_m AND p.distance_m < lost_near_m() + 2 * drift_s() * e.speed_mps AND may_be_vehicle(p.actor_class) AND in_lane(p.d_m, p.lat_half_m, p.half_width_m)
         AND CASE WHEN p.speed_mps <= standing_mps() THEN true
-            ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m - may_meet_m AND p.lat_half_m + e.lat_half_m > p.half_width_m AND abs(e.d_m) + e.lat_half_m < p.half_width_m END
+            ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m - may_meet_m AND (has_no_room OR may_meet_m > 0) END
 ),
 segment_cell AS (
     SELECT w.*, cell_key(floor((x0_m + x1_m) / 8) + i.i, floor((y0_m + y1_m) / 8) + j.j) AS cell
@@ -66,7 +67,7 @@ across_soon AS (
 ),
 beside_way AS (
     SELECT
-        c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns, a.apart_m >= a.least_m AS is_sure,
+        c.drive_id, c.ego_id, c.t_ns, c.object_id, w.there.t_ns AS t_there_ns, a.apart_m >= a.least_m AND c.has_no_room AS is_sure,
         c.across_m < 0 AND (c.dx - (c.length_m + c.ego_length_m) / 2) / nullif(c.ego_speed_mps, 0) BETWEEN steering_s() AND late_s()
             AND (m.most_mps2 >= swerves_from_mps2() OR 2 * abs(w.there.d_m - arc_offset_m(c.dx, c.dy, s.bend_per_m)) >= changes_lane_mps2() * (c.dx / nullif(c.ego_speed_mps, 0)) ** 2)
             AND abs(arc_offset_m(c.dx, c.dy, s.bend_per_m)) < c.ego_width_m / 2 + box_half_across_m(c.length_m, c.width_m, c.yaw_rad - c.ego_yaw_rad - s.bend_per_m * c.dx) AS is_course_held
@@ -79,7 +80,7 @@ beside_way AS (
             -- A vehicle that moves towards the way may be in it soon.
             passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END AS least_m
     ) a
-    WHERE a.apart_m >= a.least_m OR c.may_meet_m > 0 AND a.apart_m BETWEEN -c.may_meet_m AND passes_beside_m()
+    WHERE a.apart_m >= a.least_m AND c.has_no_room OR c.may_meet_m > 0 AND a.apart_m BETWEEN -c.may_meet_m AND passes_beside_m()
 )
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, b.is_sure
 FROM beside_way b

@@ -188,7 +188,9 @@ def test_a_parked_car_is_passed_whichever_way_it_stands(turned: float, counts: b
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_beside_a_parked_car_that_leaves_room_in_the_lane_the_ego_is_over_the_line_for_another_reason(hand: str) -> None:
+def test_beside_a_parked_car_that_leaves_room_in_the_lane_the_ego_is_over_the_line_for_another_reason(
+    hand: str,
+) -> None:
     """The ego, 1.8 m wide, is 0.5 m over the line beside a car that leaves it 2.9 m of its lane, or 2.5 m."""
     way, (ego, _, ov) = scene(hand)
     astride = moving("ego", way, ego.t_s, ego.x, swing(way, ego.x, 170, 230, share=0.386))

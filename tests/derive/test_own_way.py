@@ -220,3 +220,15 @@ def test_an_ego_that_stands_makes_no_way_by_jitter(jitter: float) -> None:
     con = derived(drive([ego], None), tables=["own_way"])
     (driven,) = {round(row["driven_m"]) for row in rows(con, "FROM own_way")}
     assert driven == pytest.approx(40, abs=1)
+
+
+@HANDS
+def test_a_motorcycle_that_a_car_draws_past_follows_it_only_perhaps(hand: str) -> None:
+    """Both fit into the lane; the way of the motorcycle, on the line, meets the car by 0.1 m, and so do its places."""
+    way = road(hand=hand)
+    t = times(6.0)
+    out = np.sign(way.own) * (LANE / 2 + way.own * np.sign(way.own) - LANE / 2)
+    ego = moving("ego", way, t, 100 + 10 * t, out - np.sign(way.own) * 0.9, length=2.1, width=0.8)
+    car = moving("x", way, t, 110 + 12 * t, out + np.sign(way.own) * 0.3, length=4.5, width=1.8)
+    assert ids(leads(way, ego, car)) == {"x"}
+    assert "x" not in ids(leads(way, ego, car, sensor_range_m=80.0))

@@ -67,6 +67,8 @@ BEGIN_MPS: Final = 2.0
 """Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
 BESIDE_M: Final = 0.1
 """Places tremble by so much from one sample to the next."""
+BESIDE_SHARE: Final = 2 / 3
+"""Who share no more than this of the narrower width at first may drive beside each other, and their places be off across as well as along."""
 HIT_MPS: Final = 1.5
 """A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
 HELD_NS: Final = 2_000_000_000
@@ -248,7 +250,7 @@ def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
     # places that are off by so much are not believed before the boxes are as far apart as they overlapped
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
-    if across[0] <= min(one.half[1][0], other.half[1][0]):  # half a width: they may drive beside each other
+    if across[0] <= BESIDE_SHARE * 2 * min(one.half[1][0], other.half[1][0]):
         most = across[together].max() + BESIDE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
