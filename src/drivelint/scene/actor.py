@@ -69,7 +69,10 @@ class Actor:
     def size(self) -> tuple[float | None, float | None, float | None]:
         """Length, width and height; None: the log does not know."""
         if self.text.size is None:
-            return SIZES[self.text.kind or "vehicle"]
+            kind = self.text.kind or "vehicle"
+            if kind not in SIZES:
+                raise UsageError(f"actor {self.name}: kind {kind!r}: {hint(kind, SIZES)}")
+            return SIZES[kind]
         length, width, height, *_ = [*self.text.size, None, None, None]
         return length, width, height
 
@@ -100,7 +103,7 @@ class Actor:
         yaw = np.interp(t, t[moving], along) if moving.any() else np.zeros(t.shape)
         return self._posed(t, px, py, np.zeros(t.shape), yaw)
 
-    def _posed(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> Motion:  # noqa: PLR0917
+    def _posed(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> Motion:
         vx, vy = np.gradient(x, DT_S), np.gradient(y, DT_S)
         if self.text.heading is not None:
             given = self.text.heading
@@ -120,7 +123,9 @@ class Actor:
         given = [name for name in ("lane", "route", "path", "track", "place") if getattr(text, name)]
         if len(given) != 1:
             said = " and ".join(given) or "none"
-            raise UsageError(f"actor {self.name}: one of lane, route, path, track and place says where it is, and here {said} does")
+            raise UsageError(
+                f"actor {self.name}: one of lane, route, path, track and place says where it is, and here {said} does"
+            )
         if text.place:
             x, y, heading = text.place
             turned = math.radians(heading)
@@ -179,17 +184,19 @@ class Actor:
 
 
 def eased(knots: Sequence[Sequence[float]], t: Floats) -> Floats:
-    """Return the value of knots at times: level at each, and smooth between them (a polynomial of fifth order)."""
+    """Return the value of knots at times: smooth between them without overshooting, level before the first and after the last."""
     times, values = _columns(knots)
     if len(times) == 1:
         return np.full(t.shape, values[0])
-    i = np.clip(np.searchsorted(times, t, side="right") - 1, 0, len(times) - 2)
-    part = np.clip((t - times[i]) / np.maximum(times[i + 1] - times[i], 1e-9), 0.0, 1.0)
-    result: Floats = values[i] + (values[i + 1] - values[i]) * part**3 * (10 + part * (6 * part - 15))
+    times = np.concatenate([[times[0] - 1.0], times, [times[-1] + 1.0]])
+    values = np.concatenate([values[:1], values, values[-1:]])
+    result: Floats = PchipInterpolator(times, values)(np.clip(t, times[0], times[-1]))
     return result
 
 
-def light_states(given: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], who: str) -> list[str | None]:
+def light_states(
+    given: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], who: str
+) -> list[str | None]:
     """Return the word that holds at each time; None where it is unknown. Errors: `UsageError`."""
     changes = [(0.0, given)] if isinstance(given, str) else list(given)
     for _, word in changes:

@@ -7,8 +7,7 @@ the east and y to the north; where the left is driven on, the drawing is mirrore
 from __future__ import annotations
 
 import re
-from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 import yaml
@@ -16,6 +15,7 @@ import yaml
 from drivelint.casefile import WordLoader
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.scene.strange_words import problems
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +30,9 @@ Spans = list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
 """[first, last] second of each."""
 
 
-class _Part(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, rename=lambda name: name.rstrip("_")):
+class _Part(
+    msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, rename=lambda name: name.rstrip("_")
+):
     """A mapping of the document: it has the keys of its fields and no others."""
 
 
@@ -198,7 +200,7 @@ class SceneText(_Part, kw_only=True):
     seconds: float = 20.0
     rate: float = 10.0
     given: dict[str, str] = {}
-    """Conditions; dry weather and daylight are given unless it says otherwise."""
+    """Conditions; dry weather and daylight are given unless it says otherwise, or `unknown`."""
     lights: dict[str, list[tuple[float, str]]] = {}
     says: list[list[float | str | None]] = []
     """[second, event] or [second, event, value] that the ego declares."""
@@ -230,7 +232,9 @@ def read(path: Path) -> SceneFile:
     names: dict[str, int] = {}
     for scene in found.scenes:
         if scene.name in names:
-            raise UsageError(f"{path}:{scene.line}: scene {scene.name!r} has the name of that in line {names[scene.name]}")
+            raise UsageError(
+                f"{path}:{scene.line}: scene {scene.name!r} has the name of that in line {names[scene.name]}"
+            )
         if scene.roads not in found.roads:
             raise UsageError(f"{path}:{scene.line}: no roads {scene.roads!r}: {hint(scene.roads, found.roads)}")
         names[scene.name] = scene.line
@@ -249,34 +253,30 @@ def _parsed(path: Path) -> SceneFile:
         raise UsageError(f"{path}:{mark.line + 1 if mark else 1}: not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(raw, dict):
         raise UsageError(f"{path}:1: a file of scenes has the keys roads and scenes")
-    for key, line, value in _placed(raw, root):
-        try:
-            for problem in _unknown_keys(value, _types(SceneFile).get(key), f"{key}."):
-                raise UsageError(f"{path}:{line}: {problem}")
-        except (TypeError, AttributeError):
-            continue  # a value of the wrong shape, which msgspec names
-    for problem in _unknown_keys(raw, SceneFile, "", deep=False):
-        raise UsageError(f"{path}:1: {problem}")
+    for line, part in _placed(raw, root):
+        for problem in problems(part, SceneFile):
+            raise UsageError(f"{path}:{line}: {problem}")
     try:
         return msgspec.convert(raw, SceneFile, strict=True)
     except msgspec.ValidationError as error:
         raise UsageError(f"{path}:{_line_of(str(error), root)}: {error}") from error
 
 
-def _placed(raw: dict[str, Any], root: Any) -> Iterator[tuple[str, int, Any]]:
+def _placed(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the parts of a document with their lines, and give each scene its line."""
     for key_node, node in root.value:
-        key = str(key_node.value)
-        value = raw.get(key)
+        key, value = str(key_node.value), raw[str(key_node.value)]
         if key == "scenes" and isinstance(value, list):
             for scene, scene_node in zip(value, node.value, strict=True):
                 line = scene_node.start_mark.line + 1
                 if isinstance(scene, dict):
                     scene["line"] = line
-                yield key, line, [scene]
+                yield line, {key: [scene]}
         elif key == "roads" and isinstance(value, dict):
             for (name, layout), (name_node, _) in zip(value.items(), node.value, strict=True):
-                yield key, name_node.start_mark.line + 1, {name: layout}
+                yield name_node.start_mark.line + 1, {key: {name: layout}}
+        else:
+            yield key_node.start_mark.line + 1, {key: value}
 
 
 def _line_of(message: str, root: Any) -> int:
@@ -284,40 +284,3 @@ def _line_of(message: str, root: Any) -> int:
     number = re.search(r"\$\.scenes\[(\d+)\]", message)
     nodes = next((node.value for key, node in root.value if key.value == "scenes"), [])
     return int(nodes[int(number[1])].start_mark.line) + 1 if number else 1
-
-
-@cache
-def _types(struct: type[msgspec.Struct]) -> dict[str, Any]:
-    hints = get_type_hints(struct, include_extras=True)
-    return {info.encode_name: hints[info.name] for info in msgspec.structs.fields(struct)}
-
-
-def _unknown_keys(raw: Any, kind: Any, where: str, *, deep: bool = True) -> Iterator[str]:
-    """Yield what is said of each key that no struct has, the nearest that it has with it."""
-    struct = next((part for part in _parts(kind) if isinstance(part, type) and issubclass(part, _Part)), None)
-    if struct is None or not isinstance(raw, dict | list):
-        return
-    if isinstance(raw, list):
-        for item in raw:
-            yield from _unknown_keys(item, struct, where)
-        return
-    if any(getattr(part, "__origin__", None) is dict for part in _parts(kind)):
-        for name, item in raw.items():
-            yield from _unknown_keys(item, next(p for p in get_args(_dict_of(kind))[1:]), f"{where}{name}.")
-        return
-    known = _types(struct)
-    for key, value in raw.items():
-        if key not in known:
-            yield f"unknown key {where + str(key)!r}: {hint(str(key), [name for name in known if name != 'line'])}"
-        elif deep:
-            yield from _unknown_keys(value, known[key], f"{where}{key}.")
-
-
-def _dict_of(kind: Any) -> Any:
-    return next(part for part in _parts(kind) if getattr(part, "__origin__", None) is dict)
-
-
-def _parts(kind: Any) -> tuple[Any, ...]:
-    if getattr(kind, "__origin__", None) is dict:
-        return (kind, *(part for item in get_args(kind)[1:] for part in _parts(item)))
-    return (kind, *(part for item in get_args(kind) for part in _parts(item)))

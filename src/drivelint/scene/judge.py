@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 from collections import defaultdict
+from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 from drivelint import catalogue
+from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
-from drivelint.phrases import hint
+from drivelint.phrases import hint, plural
 from drivelint.reasons.reason_text import codes_in
 from drivelint.report.progress import Silent
 from drivelint.result.publishing import publish
@@ -19,10 +21,10 @@ from drivelint.scene import document
 from drivelint.scene.scene import scenes_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-    from pathlib import Path
+    from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
+    from drivelint.scene.document import SceneText
     from drivelint.scene.scene import Scene
 
 REFUSED: Final = "refused"
@@ -86,15 +88,13 @@ def reason_codes(row: Row) -> set[str]:
 def expectation(text: str) -> Expectation:
     """Read an expectation: `fail: it touches the car`. Errors: `UsageError`."""
     found = _EXPECTED.fullmatch(text.strip())
-    verdict = found["verdict"] if found else text.split(":")[0]
+    verdict = found["verdict"] if found else text.partition(":")[0]
     if found is None or verdict not in _MET:
         raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _MET)}")
     return Expectation(verdict, found["code"], found["why"] or "")
 
 
-def judged(
-    scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
-) -> Verdicts:
+def judged(scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()) -> Verdicts:
     """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
     for scene in scenes:
         at = folder / scene.name
@@ -120,8 +120,8 @@ def judged(
     return Verdicts(found)
 
 
-def differences(scene: Scene, verdicts: Verdicts, gating: Mapping[str, Rule]) -> Iterator[str]:
-    """Yield what is not as the scene expects. `gating`: the rules of which every fail must be expected, none: only what it names counts."""
+def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
+    """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
     expected = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, wanted in expected.items():
         key = scene.name, rule
@@ -140,51 +140,66 @@ def differences(scene: Scene, verdicts: Verdicts, gating: Mapping[str, Rule]) ->
 
 def scene_test(
     path: Path,
-    out: Path | None,
     only: Sequence[str],
     rules_dirs: Sequence[Path],
     say: Callable[[str], None],
+    *,
+    out: Path | None = None,
+    to: Literal["mcap", "parquet"] = "parquet",
 ) -> ExitCode:
     """Judge the scenes of a file whose names begin with one of `only` (none: all) and `say` a line for each.
 
     `out`: where the log and the map of each go, a folder of its name. Returns FAILED where a verdict is another than expected.
-    Errors: `UsageError` for what the file says.
+    Errors: `UsageError` for what the file says, `OutputError`.
     """
     file = document.read(path)
-    texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
-    if not texts:
+    chosen = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
+    if not chosen:
         raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
     known = catalogue.load_rules(tuple(rules_dirs))
-    for text in texts:
-        for rule, said in text.expect.items():
-            try:
-                expectation(said)
-            except UsageError as error:
-                raise UsageError(f"{path}:{text.line}: scene {text.name!r}: expect {rule}: {error}") from error
-            if rule not in known:
-                raise UsageError(f"{path}:{text.line}: scene {text.name!r}: no rule {rule!r}: {hint(rule, known)}")
-    scenes = scenes_of(texts, file.roads)
+    scenes = scenes_of(chosen, file.roads)
     for scene in scenes:
         try:
+            _refuse_wrong_expectations(scene, known)
             files = scene.files()
         except DriveLintError as error:
             raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
         if out is not None:
-            publish(out / scene.name, files, {})
-    named = sorted({rule for text in texts for rule in text.expect})
-    gating = {rule.id: rule for rule in known.values() if rule.status == "stable"} if file.all_fails else {}
+            _write(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judged(scenes, [*(["status:stable"] if file.all_fails else []), *named], _path(folder), rules_dirs)
+        verdicts = judged(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
+    gating = gating_rules(known) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
         wrong = list(differences(scene, verdicts, gating))
-        told = f"{'FAIL' if wrong else 'ok  '} {scene.name}: {len(scene.text.expect)} verdicts"
+        told = f"{'FAIL' if wrong else 'ok  '} {scene.name}: {plural(len(scene.text.expect), 'verdict')}"
         say("\n".join([told, *(f"     {path}:{scene.text.line}: {line}" for line in wrong)]))
         code = max(code, ExitCode.FAILED if wrong else ExitCode.OK)
     return code
 
 
-def _path(folder: str) -> Path:
-    from pathlib import Path
+def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
+    """Return the rules by which scenes are judged: those that they name, and with `all_fails` every stable one."""
+    return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 
-    return Path(folder)
+
+def gating_rules(known: Mapping[str, Rule]) -> frozenset[str]:
+    """Return the rules of which no fail goes unnoticed."""
+    return frozenset(rule.id for rule in known.values() if rule.status == "stable")
+
+
+def _refuse_wrong_expectations(scene: Scene, known: Mapping[str, Rule]) -> None:
+    for rule, said in scene.text.expect.items():
+        if rule not in known:
+            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, known)}")
+        expectation(said)
+
+
+def _write(folder: Path, files: dict[str, bytes], to: Literal["mcap", "parquet"]) -> None:
+    if to == "parquet":
+        publish(folder, files, {})
+        return
+    with TemporaryDirectory() as temporary:
+        log = Path(temporary) / folder.name
+        publish(log, files, {})
+        convert(ConvertRequest(str(log), to, folder))

@@ -19,6 +19,20 @@ if TYPE_CHECKING:
 
 _COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
+_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
+_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE"}
+_LANE_KINDS: Final = (
+    *DRIVEN,
+    "shoulder",
+    "sidewalk",
+    "median",
+    "parking",
+    "biking",
+    "border",
+    "restricted",
+    "stop",
+    "none",
+)
 _MARK_WORDS: Final = ("none", "solid", "broken", "curb", "grass", "botts")
 _LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
 
@@ -81,7 +95,8 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
     else:
         start = roads[text.after].end() if text.after else Pose(0.0, 0.0, 0.0)
     pieces = [
-        Piece(float(part)) if isinstance(part, int | float) else Piece(float(part[0]), 1 / part[1]) for part in text.line
+        Piece(float(part)) if isinstance(part, int | float) else Piece(float(part[0]), 1 / part[1])
+        for part in text.line
     ]
     length = sum(piece.length for piece in pieces)
     lanes = [*_lanes(text.lanes, 1, length), *_lanes(text.against, -1, length)]
@@ -89,6 +104,7 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
     for _, limit in limits:
         if _LIMIT.fullmatch(limit) is None:
             raise UsageError(f"road {name}: limit {limit!r}: write a number and mph, km/h or m/s, or 'no limit'")
+    _refuse_strange(name, text, lanes)
     return Road(
         name,
         start,
@@ -101,6 +117,24 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
         text.things,
         text.after,
     )
+
+
+def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
+    """Refuse words of things, lanes and marks that nobody would read. Errors: `UsageError`."""
+    for thing in text.things:
+        what, _, rest = thing.what.partition(" ")
+        if what in _NAMED and not rest:
+            raise UsageError(f"road {name}: what: {thing.what!r}: write {_NAMED[what]}")
+        if what not in _NAMED and thing.what not in _THINGS:
+            raise UsageError(f"road {name}: what: {thing.what!r}: {hint(thing.what, _THINGS)}")
+    for lane in lanes:
+        if lane.kind not in _LANE_KINDS:
+            raise UsageError(f"road {name}: lane {lane.number}: {lane.kind!r}: {hint(lane.kind, _LANE_KINDS)}")
+    middle = [(0.0, text.middle)] if isinstance(text.middle, str) else text.middle
+    for _, mark in [*middle, *(mark for lane in lanes for mark in lane.marks)]:
+        for word in mark.split():
+            if word not in _MARK_WORDS:
+                raise UsageError(f"road {name}: mark {mark!r}: {hint(word, _MARK_WORDS)}")
 
 
 def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[Lane]:
@@ -126,9 +160,6 @@ def _kind(text: str | LaneText) -> str:
 
 def _lane_words(text: str) -> tuple[str, float, str | None]:
     kind, width, *mark = text.split()
-    for word in mark:
-        if word not in _MARK_WORDS:
-            raise UsageError(f"lane {text!r}: {hint(word, _MARK_WORDS)}")
     try:
         return kind, float(width), " ".join(mark) or None
     except ValueError as error:
@@ -166,7 +197,9 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
         start, end = before.lane_end(lane, last=True), behind.lane_end(behind.lane(m), last=False)
         width = min(lane.width, behind.lane(m).width)
         aside = width / 2  # the line is the lane's left border
-        start, end = (Pose(p.x - aside * math.sin(p.heading), p.y + aside * math.cos(p.heading), p.heading) for p in (start, end))
+        start, end = (
+            Pose(p.x - aside * math.sin(p.heading), p.y + aside * math.cos(p.heading), p.heading) for p in (start, end)
+        )
         name = f"{a} {n} to {b} {m}"
         z0, z1 = before.heights[-1 if n > 0 else 0][1], behind.heights[0 if m > 0 else -1][1]
         piece = joined(start, end)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
@@ -44,7 +44,9 @@ class _Writer:
             if piece.curve:
                 bu, cu, du, bv, cv, dv = piece.curve
                 m = self.hand
-                cubic = f'aU="0" bU="{bu!r}" cU="{cu!r}" dU="{du!r}" aV="0" bV="{m * bv!r}" cV="{m * cv!r}" dV="{m * dv!r}"'
+                cubic = (
+                    f'aU="0" bU="{bu!r}" cU="{cu!r}" dU="{du!r}" aV="0" bV="{m * bv!r}" cV="{m * cv!r}" dV="{m * dv!r}"'
+                )
                 shape = f'<paramPoly3 pRange="normalized" {cubic}/>'
             else:
                 shape = f'<arc curvature="{self.hand * piece.curvature!r}"/>' if piece.curvature else "<line/>"
@@ -55,7 +57,7 @@ class _Writer:
         kinds = "".join(self.kind(road, at, limit) for at, limit in road.limits or [(0.0, "")])
         junction = road.turn.junction if road.turn else -1
         objects = "".join(self.object(road, thing) for thing in road.things)
-        signals = "".join(self.signal(road, thing) for thing in road.things)
+        signals = "".join(self.signal(thing) for thing in road.things)
         return (
             f'<road name={quoteattr(road.name)} id="{self.numbers[road.name]}" length="{road.length!r}" junction="{junction}" '
             f'rule="{"LHT" if self.hand < 0 else "RHT"}"><link>{self.links(road)}</link>{kinds}<planView>{plan}</planView>'
@@ -72,7 +74,7 @@ class _Writer:
     @staticmethod
     def elevations(road: Road) -> str:
         heights = list(road.heights)
-        slopes = [(z1 - z0) / (s1 - s0) for (s0, z0), (s1, z1) in zip(heights, heights[1:], strict=False)]
+        slopes = [(z1 - z0) / (s1 - s0) for (s0, z0), (s1, z1) in pairwise(heights)]
         rows = zip(heights, [*slopes, 0.0], strict=True)
         return "".join(f'<elevation s="{s!r}" a="{z!r}" b="{slope!r}" c="0" d="0"/>' for (s, z), slope in rows)
 
@@ -134,9 +136,14 @@ class _Writer:
         if turn := road.turn:
             from_end = "end" if turn.from_lane > 0 else "start"
             to_end = "start" if turn.to_lane > 0 else "end"
-            return self.road_link("predecessor", turn.from_road, from_end) + self.road_link("successor", turn.to_road, to_end)
+            return self.road_link("predecessor", turn.from_road, from_end) + self.road_link(
+                "successor", turn.to_road, to_end
+            )
         text = ""
-        for end, other, contact in (("predecessor", road.after, "end"), ("successor", self.after.get(road.name), "start")):
+        for end, other, contact in (
+            ("predecessor", road.after, "end"),
+            ("successor", self.after.get(road.name), "start"),
+        ):
             if other:
                 text += self.road_link(end, other, contact)
             elif junction := self.junction_at(road, end):
@@ -170,7 +177,7 @@ class _Writer:
         self.things += 1
         return 5000 + self.things
 
-    def signal(self, road: Road, thing: Thing) -> str:
+    def signal(self, thing: Thing) -> str:
         what, _, rest = thing.what.partition(" ")
         if what == "light":
             number, (country, code), dynamic = rest, _LIGHT, "yes"
@@ -215,7 +222,9 @@ class _Writer:
 
 def _driven_width(road: Road) -> float:
     """Twice the wider half of what is driven on."""
-    halves = [sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)]
+    halves = [
+        sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)
+    ]
     return 2 * max(halves) if all(halves) else sum(halves) * 2
 
 
@@ -226,8 +235,3 @@ def _numbered(lanes: Sequence[Lane]) -> dict[int, int]:
         numbers = sorted((lane.number for lane in lanes if lane.number * side > 0), key=abs)
         found |= {number: side * n for n, number in enumerate(numbers, 1)}
     return found
-
-
-def degrees(radians: float) -> float:
-    """Return an angle in degrees between -180 and 180."""
-    return math.degrees((radians + math.pi) % (2 * math.pi) - math.pi)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -173,7 +174,9 @@ def joined(start: Pose, end: Pose) -> Piece:
         if radius * turn > 0 and abs(radius * (1 - math.cos(turn)) - left) < 0.02:
             return Piece(radius * turn, 1 / radius)
     # handles as long as those of the cubic that is nearest to an arc
-    hold = away if abs(turn) < 0.1 else min(4 * math.tan(abs(turn) / 4) * away / (2 * abs(math.sin(turn / 2))), 2 * away)
+    hold = (
+        away if abs(turn) < 0.1 else min(4 * math.tan(abs(turn) / 4) * away / (2 * abs(math.sin(turn / 2))), 2 * away)
+    )
     u1, v1 = hold * math.cos(turn), hold * math.sin(turn)
     cubic = (hold, 3 * ahead - 2 * hold - u1, hold + u1 - 2 * ahead, 0.0, 3 * left - v1, v1 - 2 * left)
     p = np.linspace(0.0, 1.0, 201)
@@ -226,7 +229,11 @@ def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Wa
         road = roads[road_name]
         lane = road.lane(number)
         s = np.append(np.arange(0.0, road.length, STEP_M), road.length)
-        aside = np.array([road.aside(lane, float(v)) for v in s]) if len(road.section_starts()) > 1 else road.aside(lane, 0.0)
+        aside = (
+            np.array([road.aside(lane, float(v)) for v in s])
+            if len(road.section_starts()) > 1
+            else road.aside(lane, 0.0)
+        )
         x, y, heading = road.at(s, aside)
         z = np.interp(s, *zip(*road.heights, strict=True))
         if number < 0:
@@ -238,9 +245,7 @@ def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Wa
 def with_turns(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
     """Return the lanes with the roads through junctions between them."""
     found = list(lanes[:1])
-    for (before, n), (behind, m) in zip(lanes, lanes[1:], strict=False):
-        found += [
-            (road.name, 1) for road in roads.values() if road.turn and road.turn[1:] == (before, n, behind, m)
-        ]
+    for (before, n), (behind, m) in pairwise(lanes):
+        found += [(road.name, 1) for road in roads.values() if road.turn and road.turn[1:] == (before, n, behind, m)]
         found.append((behind, m))
     return found

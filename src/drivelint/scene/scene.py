@@ -21,11 +21,14 @@ from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
     from drivelint.scene.document import Layout, SceneText
     from drivelint.scene.road import Road
 
 USUAL: Final = {"weather": "dry", "light": "day"}
 """Conditions of a scene that says nothing else."""
+NOT_GIVEN: Final = "unknown"
+"""The word of a condition that the log does not have."""
 MAP_FILE: Final = "map.xodr"
 
 
@@ -60,7 +63,9 @@ class Scene:
             recorder.states(actor, text.seconds, text.rate, left=self.left, with_height=with_height, seed=n)
             for n, actor in enumerate(actors)
         ]
-        columns = {name: np.concatenate([np.asarray(part[name], object) for part in parts]).tolist() for name in parts[0]}
+        columns = {
+            name: np.concatenate([np.asarray(part[name], object) for part in parts]).tolist() for name in parts[0]
+        }
         for name, lights in text.lights.items():
             if all(thing.what != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
                 raise UsageError(f"light {name}: no road has a thing of this name")
@@ -79,7 +84,7 @@ class Scene:
         return {**log, MAP_FILE: self.map_text.encode()}
 
     def _conditions(self) -> list[dict[str, Any]]:
-        given = USUAL | self.text.given
+        given = {name: value for name, value in (USUAL | self.text.given).items() if value != NOT_GIVEN}
         for condition, value in given.items():
             if problem := condition_problem(condition) or value_problem(condition, value):
                 raise UsageError(f"given: {problem}")
