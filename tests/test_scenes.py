@@ -5,6 +5,7 @@ Scenes of a file are judged as drives of one run, so that they cost rows and not
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -14,28 +15,35 @@ import pytest
 from drivelint import catalogue
 from drivelint.scene import document
 from drivelint.scene.judge import differences, gating_rules, judged, rules_for
-from drivelint.scene.scene import scenes_of
+from drivelint.scene.scene import Scene, scenes_of
 
 FOLDER: Final = Path(__file__).with_name("scenes")
 TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if document.read(file).scenes)
-QUICK: Final = "sample"
-"""The topic with a few scenes of each kind, which the quick run judges."""
 BY_CI: Final = {"junctions", "overtaking"}
 
 
-def marks(topic: str) -> list[pytest.MarkDecorator]:
-    return [] if topic == QUICK else [pytest.mark.ci if topic in BY_CI else pytest.mark.slow]
-
-
-@pytest.mark.parametrize("topic", [pytest.param(topic, marks=marks(topic)) for topic in TOPICS])
+@pytest.mark.parametrize(
+    "topic", [pytest.param(topic, marks=pytest.mark.ci if topic in BY_CI else pytest.mark.slow) for topic in TOPICS]
+)
 def test_every_scene_has_the_verdicts_that_it_expects(topic: str, tmp_path: Path) -> None:
     file = document.read(FOLDER / f"{topic}.yml")
     assert file.all_fails
-    scenes = scenes_of(file.scenes, file.roads)
-    verdicts = judged(scenes, rules_for(file.scenes, all_fails=True), tmp_path / "scenes")
-    gating = gating_rules(catalogue.load_rules())
-    wrong = {scene.name: lines for scene in scenes if (lines := list(differences(scene, verdicts, gating)))}
+    wrong = differing(scenes_of(file.scenes, file.roads), tmp_path, all_fails=True)
     assert not wrong
+
+
+def test_the_first_scene_of_each_topic_has_the_verdicts_that_it_expects(tmp_path: Path) -> None:
+    """Judged together, by the rules that they name."""
+    files = [document.read(FOLDER / f"{topic}.yml") for topic in TOPICS]
+    scenes = [scenes_of(file.scenes[:1], file.roads)[0] for file in files]
+    assert not differing(scenes, tmp_path, all_fails=False)
+
+
+def differing(scenes: Sequence[Scene], folder: Path, *, all_fails: bool) -> dict[str, list[str]]:
+    """Return scene -> how its verdicts differ."""
+    verdicts = judged(scenes, rules_for([scene.text for scene in scenes], all_fails=all_fails), folder / "scenes")
+    gating = gating_rules(catalogue.load_rules()) if all_fails else frozenset[str]()
+    return {scene.name: lines for scene in scenes if (lines := list(differences(scene, verdicts, gating)))}
 
 
 @cache
