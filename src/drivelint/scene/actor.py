@@ -78,7 +78,7 @@ class Actor:
 
     def motion(self, seconds: float) -> Motion:
         """Return its motion every DT_S from second 0 on. Errors: `UsageError` for a way or a step that cannot be."""
-        t = np.arange(round(seconds / DT_S) + 1) * DT_S
+        t: Floats = np.arange(round(seconds / DT_S) + 1).astype(np.float64) * DT_S
         if self.text.track:
             return self._tracked(t)
         way, speed, offset = self._way(), *self._knots()
@@ -137,7 +137,8 @@ class Actor:
 
     def _knots(self) -> tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]:
         """Return the knots of speed and offset, those that the steps make among them."""
-        speed, offset = _as_knots(self.text.speed), _as_knots(self.text.offset)
+        speed: Sequence[Sequence[float]] = _as_knots(self.text.speed)
+        offset: Sequence[Sequence[float]] = _as_knots(self.text.offset)
         for step in self.text.do:
             if step.speed is not None or step.stop is not None:
                 speed = self._with_speed(speed, step)

@@ -36,7 +36,7 @@ class _Part(
     """A mapping of the document: it has the keys of its fields and no others."""
 
 
-class LaneText(_Part):
+class LaneText(_Part, frozen=True):
     """A lane in full; most are written as one text: kind, width and outer mark."""
 
     kind: str = "driving"
@@ -48,11 +48,11 @@ class LaneText(_Part):
     """Where along the road it is there; None: to the end."""
 
 
-class Thing(_Part):
+class Thing(_Part, frozen=True):
     """What stands at or lies on a road: a light, a stop line, a crossing, or a sign."""
 
     what: str
-    """light NAME, stop line, zebra, signalled crossing, crossing, or sign COUNTRY CODE."""
+    """light NAME, stop line, zebra, signalled crossing, crossing, sign COUNTRY CODE, or sign NAME."""
     at: float
     off: float = 0.0
     """Metres to the left of the road's line, as drawn."""
@@ -62,7 +62,7 @@ class Thing(_Part):
     deep: float = 3.0
 
 
-class RoadText(_Part):
+class RoadText(_Part, frozen=True):
     """A road: a line, and lanes on both sides of it."""
 
     line: list[float | Numbers] = msgspec.field(default_factory=lambda: [1000.0])
@@ -83,7 +83,7 @@ class RoadText(_Part):
     things: list[Thing] = []
 
 
-class Crossing(_Part):
+class Crossing(_Part, frozen=True):
     """Arms of one kind that lead away from a junction, to compass points."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
@@ -94,7 +94,7 @@ class Crossing(_Part):
     """Arm -> what only it has."""
 
 
-class Roundabout(_Part):
+class Roundabout(_Part, frozen=True):
     """A ring with arms to compass points."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
@@ -103,7 +103,7 @@ class Roundabout(_Part):
     road: RoadText = RoadText(line=[150.0], kind="town", limit="30 mph")
 
 
-class Layout(_Part):
+class Layout(_Part, frozen=True):
     """Roads that belong together, and how one gets from one to another."""
 
     traffic: Side | Literal["both"] = "right"
@@ -114,7 +114,7 @@ class Layout(_Part):
     """Lanes that a junction joins, as `west -1 > north 1`; all: every lane that ends where others begin."""
 
 
-class Step(_Part):
+class Step(_Part, frozen=True):
     """What an actor does from a time or place on, in place of knots."""
 
     at: float | None = None
@@ -134,7 +134,7 @@ class Step(_Part):
     indicator: str | None = None
 
 
-class Faults(_Part):
+class Faults(_Part, frozen=True):
     """What the recorder does to the samples of one actor."""
 
     jitter: float = 0.0
@@ -151,7 +151,7 @@ class Faults(_Part):
     unknown: list[Literal["speed", "heading", "size", "width", "class"]] = []
 
 
-class ActorText(_Part):
+class ActorText(_Part, frozen=True):
     """Who moves, and how. One of `lane`, `route`, `path`, `track` and `place` says where."""
 
     kind: str | None = "car"
@@ -189,7 +189,7 @@ class ActorText(_Part):
     faults: Faults = Faults()
 
 
-class SceneText(_Part, kw_only=True):
+class SceneText(_Part, frozen=True, kw_only=True):
     """What happens, and what a careful examiner says of it."""
 
     name: str
@@ -211,7 +211,7 @@ class SceneText(_Part, kw_only=True):
     """Where it stands in its file: filled in, never written."""
 
 
-class SceneFile(_Part):
+class SceneFile(_Part, frozen=True):
     """All of a file."""
 
     roads_from: list[str] = []
@@ -282,5 +282,5 @@ def _placed(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any
 def _line_of(message: str, root: Any) -> int:
     """Return the line of the scene that a message of msgspec is about: `... at `$.scenes[3].actors`."""
     number = re.search(r"\$\.scenes\[(\d+)\]", message)
-    nodes = next((node.value for key, node in root.value if key.value == "scenes"), [])
+    nodes: Any = next((node.value for key, node in root.value if key.value == "scenes"), [])
     return int(nodes[int(number[1])].start_mark.line) + 1 if number else 1

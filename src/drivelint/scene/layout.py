@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
 _THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
-_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE"}
+_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
     *DRIVEN,
     "shoulder",
@@ -217,7 +217,7 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
 
 
 def _arms(crossing: Crossing) -> dict[str, RoadText]:
-    found = {}
+    found: dict[str, RoadText] = {}
     for arm in crossing.arms:
         angle = _COMPASS[arm]
         start = [crossing.half * math.cos(angle), crossing.half * math.sin(angle), math.degrees(angle)]
@@ -230,7 +230,7 @@ def _arms(crossing: Crossing) -> dict[str, RoadText]:
 
 def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
     """Return the arms, and for each the part of the ring that begins behind it, driven anticlockwise."""
-    found = {}
+    found: dict[str, RoadText] = {}
     gap = 10.0 / roundabout.radius  # half of what an arm's junction takes of the ring, as an angle
     angles = sorted((_COMPASS[arm] % (2 * math.pi), arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))

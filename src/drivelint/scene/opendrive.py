@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from drivelint.scene.road import Lane, Road, Turn
 
 _FACING: Final = {"along": "+", "against": "-", "both": "none"}
+_NO_CODE: Final = "-1"
 _LIGHT: Final = ("OpenDRIVE", "1000001")
 
 
@@ -67,7 +68,7 @@ class _Writer:
 
     @staticmethod
     def kind(road: Road, at: float, limit: str) -> str:
-        value, _, unit = limit.partition(" ")
+        value, _, unit = (limit, "", "") if limit == "no limit" else limit.partition(" ")
         speed = f'<speed max="{value}" unit="{unit}"/>' if unit else f'<speed max="{value}"/>' if value else ""
         return f'<type s="{at!r}" type="{road.kind}">{speed}</type>'
 
@@ -182,7 +183,7 @@ class _Writer:
         if what == "light":
             number, (country, code), dynamic = rest, _LIGHT, "yes"
         elif what == "sign":
-            country, _, code = rest.partition(" ")
+            country, _, code = rest.partition(" ") if " " in rest else ("", "", _NO_CODE)
             number, dynamic = str(self.new_id()), "no"
         else:
             return ""
@@ -190,7 +191,7 @@ class _Writer:
             f'<validity fromLane="{-self.hand * lane}" toLane="{-self.hand * lane}"/>' for lane in thing.lanes or ()
         )
         return (
-            f'<signal id={quoteattr(number)} name={quoteattr(code)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
+            f'<signal id={quoteattr(number)} name={quoteattr(rest if code == _NO_CODE else code)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
             f'orientation="{_FACING[thing.facing]}" zOffset="2" country={quoteattr(country)} type={quoteattr(code)} subtype="-1" '
             f'value="-1" height="1" width="1">{lanes}</signal>'
         )

@@ -202,11 +202,11 @@ class Way:
     z: Floats
 
     @classmethod
-    def through(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | float = 0.0) -> Way:
+    def through(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | None = None) -> Way:
         """Return the way through points, whose headings are those of the line between them unless given."""
         steps = np.hypot(np.diff(x), np.diff(y))
         kept = np.concatenate([[True], steps > 1e-9])
-        x, y, z = x[kept], y[kept], np.broadcast_to(z, kept.shape)[kept]
+        x, y, z = x[kept], y[kept], np.zeros(int(kept.sum())) if z is None else z[kept]
         s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
         if heading is None:
             between = np.arctan2(np.diff(y), np.diff(x))
@@ -235,7 +235,8 @@ def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Wa
             else road.aside(lane, 0.0)
         )
         x, y, heading = road.at(s, aside)
-        z = np.interp(s, *zip(*road.heights, strict=True))
+        stations, heights = np.array(road.heights, float).T
+        z = np.interp(s, stations, heights)
         if number < 0:
             x, y, heading, z = x[::-1], y[::-1], heading[::-1] + math.pi, z[::-1]
         parts.append((x, y, heading, z))
