@@ -187,11 +187,12 @@ class _Writer:
             number, dynamic = str(self.new_id()), "no"
         else:
             return ""
+        name = rest if code == _NO_CODE else code
         lanes = "".join(
             f'<validity fromLane="{-self.hand * lane}" toLane="{-self.hand * lane}"/>' for lane in thing.lanes or ()
         )
         return (
-            f'<signal id={quoteattr(number)} name={quoteattr(rest if code == _NO_CODE else code)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
+            f'<signal id={quoteattr(number)} name={quoteattr(name)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
             f'orientation="{_FACING[thing.facing]}" zOffset="2" country={quoteattr(country)} type={quoteattr(code)} subtype="-1" '
             f'value="-1" height="1" width="1">{lanes}</signal>'
         )
