@@ -83,15 +83,15 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # a build without libyaml has no CSafeLoader
+class WordLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # a build without libyaml has no CSafeLoader
     """YAML in which `off` and `on` are words: an indicator is off, not false."""
 
 
-_Loader.yaml_implicit_resolvers = {
+WordLoader.yaml_implicit_resolvers = {
     first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
-_Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
+WordLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
 
 
 def read_cases(rule: Rule) -> list[Case]:
@@ -156,7 +156,7 @@ def cases_path(rule: Rule) -> Path:
 
 def _parsed(file: Path, text: str) -> list[Case]:
     """Return the cases of a file, each with its line. Errors: `RuleError`, `yaml.YAMLError`."""
-    loader = _Loader(text)
+    loader = WordLoader(text)
     root = loader.get_single_node()
     raw = loader.construct_document(root) if root else None
     if not isinstance(raw, list):

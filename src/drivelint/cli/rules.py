@@ -132,3 +132,28 @@ def run_tests(
             shown.advance()
 
         raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), say))))
+
+
+@app.command("scene")
+def scene(
+    file: Annotated[Path, argument("FILE", "Scenes as YAML.")],
+    only: Annotated[Texts, argument("[NAME]...", "Scenes by how their names begin. Default: all.")] = None,
+    out: Annotated[
+        Path | None, option("--out", "DIR", "Write each scene's log and map there, into a folder of its name.")
+    ] = None,
+    to: Annotated[options.ConvertTarget, option("--to", None, "The format of these logs.")] = "parquet",
+    rules_dir: options.RulesDirs = None,
+) -> None:
+    """Judge drawn scenes, and hold the verdicts against those that they expect.
+
+    A scene is some ten lines of YAML: a road, who drives on it and how, and the verdicts that are due. `drivelint docs scenes` explains
+    it.
+
+    Exit codes: 0 all is well; 1 some verdict is another; 2 a scene cannot be understood.
+    """
+    from drivelint.scene.judge import scene_test
+
+    code = scene_test(
+        file, tuple(only or ()), tuple(rules_dir or ()), lambda text: typer.echo(inert(text)), out=out, to=to
+    )
+    raise typer.Exit(int(code))

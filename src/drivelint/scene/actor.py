@@ -1,0 +1,224 @@
+"""An actor of a scene: its way, its motion on it, and its columns of `actor_state` in the drawn frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+from drivelint.scene.layout import lane_named
+from drivelint.scene.road import Way, way_along
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.arrays import Floats
+    from drivelint.scene.document import ActorText, Knots, Step
+    from drivelint.scene.road import Road
+
+DT_S: Final = 0.01
+"""Step of the motion, before it is recorded."""
+SIZES: Final[dict[str, tuple[float, float, float]]] = {
+    "car": (4.5, 1.8, 1.5),
+    "van": (5.5, 2.0, 2.2),
+    "truck": (12.0, 2.5, 3.6),
+    "bus": (12.0, 2.5, 3.1),
+    "motorcycle": (2.2, 0.8, 1.4),
+    "bicycle": (1.8, 0.6, 1.7),
+    "trailer": (6.0, 2.2, 2.5),
+    "pedestrian": (0.5, 0.5, 1.75),
+    "animal": (2.4, 0.7, 2.2),
+    "object": (1.0, 1.0, 1.0),
+    "vehicle": (4.6, 1.9, 1.6),
+}
+"""Class -> length, width and height in metres."""
+WITH_LIGHTS: Final = frozenset({"car", "van", "truck", "bus", "motorcycle", "vehicle", "trailer"})
+BRAKING_MPS2: Final = 1.0
+"""From here on the brake lights shine."""
+_SLOW_MPS: Final = 0.3
+"""Slower than this nobody turns: the heading stays that of the way."""
+
+
+class Motion(NamedTuple):
+    """Samples of an actor: seconds, metres, radians, m/s, and its acceleration along its heading."""
+
+    t: Floats
+    x: Floats
+    y: Floats
+    z: Floats
+    yaw: Floats
+    vx: Floats
+    vy: Floats
+    push: Floats
+
+
+@dataclass(frozen=True)
+class Actor:
+    """Who it is, and how it moves."""
+
+    name: str
+    text: ActorText
+    roads: Mapping[str, Road]
+
+    @property
+    def size(self) -> tuple[float | None, float | None, float | None]:
+        """Length, width and height; None: the log does not know."""
+        if self.text.size is None:
+            kind = self.text.kind or "vehicle"
+            if kind not in SIZES:
+                raise UsageError(f"actor {self.name}: kind {kind!r}: {hint(kind, SIZES)}")
+            return SIZES[kind]
+        length, width, height, *_ = [*self.text.size, None, None, None]
+        return length, width, height
+
+    def motion(self, seconds: float) -> Motion:
+        """Return its motion every DT_S from second 0 on. Errors: `UsageError` for a way or a step that cannot be."""
+        t: Floats = np.arange(round(seconds / DT_S) + 1).astype(np.float64) * DT_S
+        if self.text.track:
+            return self._tracked(t)
+        way, speed, offset = self._way(), *self._knots()
+        v = np.interp(t, *_columns(speed))
+        s = self.text.from_ + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * DT_S)])
+        d = eased(offset, t)
+        x, y, heading, z = way.at(s)
+        x, y = x - d * np.sin(heading), y + d * np.cos(heading)
+        drift = np.gradient(d, DT_S)
+        slip = np.where(np.abs(v) > _SLOW_MPS, np.arctan2(drift, np.maximum(np.abs(v), _SLOW_MPS)) * np.sign(v), 0.0)
+        return self._posed(t, x, y, z, heading + slip)
+
+    def _tracked(self, t: Floats) -> Motion:
+        times, x, y = np.array(self.text.track, float).T
+        held = np.clip(t, times[0], times[-1])
+        if len(times) < 2:
+            raise UsageError(f"actor {self.name}: a track has two points at least")
+        px, py = PchipInterpolator(times, x)(held), PchipInterpolator(times, y)(held)
+        vx, vy = np.gradient(px, DT_S), np.gradient(py, DT_S)
+        moving = np.hypot(vx, vy) > _SLOW_MPS
+        along = np.unwrap(np.arctan2(vy, vx)[moving]) if moving.any() else np.zeros(1)
+        yaw = np.interp(t, t[moving], along) if moving.any() else np.zeros(t.shape)
+        return self._posed(t, px, py, np.zeros(t.shape), yaw)
+
+    def _posed(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> Motion:
+        vx, vy = np.gradient(x, DT_S), np.gradient(y, DT_S)
+        if self.text.heading is not None:
+            given = self.text.heading
+            yaw = np.radians(np.interp(t, *_columns([[0.0, given]] if isinstance(given, int | float) else given)))
+        elif self.text.facing == "back":
+            yaw = yaw + math.pi
+        push = np.gradient(vx * np.cos(yaw) + vy * np.sin(yaw), DT_S)
+        ground = z if self.text.height is None else np.full(t.shape, float(self.text.height))
+        return Motion(t, x, y, ground, yaw, vx, vy, push)
+
+    def _lanes(self) -> list[tuple[str, int]]:
+        named = [self.text.lane] if self.text.lane else self.text.route
+        return [lane_named(text, self.roads) for text in named]
+
+    def _way(self) -> Way:
+        text = self.text
+        given = [name for name in ("lane", "route", "path", "track", "place") if getattr(text, name)]
+        if len(given) != 1:
+            said = " and ".join(given) or "none"
+            raise UsageError(
+                f"actor {self.name}: one of lane, route, path, track and place says where it is, and here {said} does"
+            )
+        if text.place:
+            x, y, heading = text.place
+            turned = math.radians(heading)
+            return Way.through(np.array([x, x + math.cos(turned)]), np.array([y, y + math.sin(turned)]))
+        if text.path:
+            x, y = np.array(text.path, float).T
+            return Way.through(*_rounded(x, y))
+        return way_along(self.roads, self._lanes())
+
+    def _knots(self) -> tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]:
+        """Return the knots of speed and offset, those that the steps make among them."""
+        speed: Sequence[Sequence[float]] = _as_knots(self.text.speed)
+        offset: Sequence[Sequence[float]] = _as_knots(self.text.offset)
+        for step in self.text.do:
+            if step.speed is not None or step.stop is not None:
+                speed = self._with_speed(speed, step)
+            if step.lane is not None or step.offset is not None:
+                begin, before = self._begin(step, speed), offset[-1][1]
+                target = self._beside(step.lane) if step.lane is not None else float(step.offset or 0.0)
+                offset = [*offset, [begin, before], [begin + step.over, target]]
+        return speed, offset
+
+    def _begin(self, step: Step, speed: Sequence[Sequence[float]]) -> float:
+        """Return the second at which a step begins."""
+        if step.at is not None:
+            return step.at
+        if step.place is None:
+            raise UsageError(f"actor {self.name}: a step of do begins at a second (at) or at a place")
+        return self._reached(step.place, speed)
+
+    def _reached(self, place: float, speed: Sequence[Sequence[float]]) -> float:
+        t = np.arange(0.0, 600.0, DT_S)
+        s = self.text.from_ + np.concatenate([[0.0], np.cumsum(np.interp(t, *_columns(speed))[1:] * DT_S)])
+        if s[-1] < place:
+            raise UsageError(f"actor {self.name}: it never comes to {place:g} m")
+        return float(t[int(np.argmax(s >= place))])
+
+    def _with_speed(self, speed: Sequence[Sequence[float]], step: Step) -> Sequence[Sequence[float]]:
+        target = step.speed or 0.0
+        if step.stop is not None:
+            now = speed[-1][1]
+            centre = step.stop - (self.size[0] or 0.0) / 2
+            begin = self._reached(centre - now * now / 2 / step.by, speed)
+        else:
+            begin = self._begin(step, speed)
+        now = float(np.interp(begin, *_columns(speed)))
+        kept = [knot for knot in speed if knot[0] < begin]
+        return [*kept, [begin, now], [begin + max(abs(target - now) / step.by, DT_S), target]]
+
+    def _beside(self, number: int) -> float:
+        lanes = self._lanes()
+        if not lanes:
+            raise UsageError(f"actor {self.name}: who follows no lane changes none: give an offset")
+        road = self.roads[lanes[0][0]]
+        here, there = road.aside(road.lane(lanes[0][1]), 0.0), road.aside(road.lane(number), 0.0)
+        return (there - here) * (1 if lanes[0][1] > 0 else -1)
+
+
+def eased(knots: Sequence[Sequence[float]], t: Floats) -> Floats:
+    """Return the value of knots at times: smooth between them without overshooting, level before the first and after the last."""
+    times, values = _columns(knots)
+    if len(times) == 1:
+        return np.full(t.shape, values[0])
+    times = np.concatenate([[times[0] - 1.0], times, [times[-1] + 1.0]])
+    values = np.concatenate([values[:1], values, values[-1:]])
+    result: Floats = PchipInterpolator(times, values)(np.clip(t, times[0], times[-1]))
+    return result
+
+
+def light_states(
+    given: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], who: str
+) -> list[str | None]:
+    """Return the word that holds at each time; None where it is unknown. Errors: `UsageError`."""
+    changes = [(0.0, given)] if isinstance(given, str) else list(given)
+    for _, word in changes:
+        if word not in {*words, "unknown"}:
+            raise UsageError(f"{who}: {word!r}: {hint(word, [*words, 'unknown'])}")
+    begins = np.array([begin for begin, _ in changes])
+    numbers = np.clip(np.searchsorted(begins, t + 1e-6) - 1, 0, None)
+    return [None if changes[n][1] == "unknown" else changes[n][1] for n in numbers]
+
+
+def _as_knots(given: Knots) -> list[list[float]]:
+    return [[0.0, float(given)]] if isinstance(given, int | float) else [list(map(float, knot)) for knot in given]
+
+
+def _columns(knots: Sequence[Sequence[float]]) -> tuple[Floats, Floats]:
+    times, values = np.array(knots, float).T
+    return times, values
+
+
+def _rounded(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return points every few centimetres of the straight lines between these points."""
+    s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    fine = np.union1d(np.arange(0.0, s[-1], 0.05), s)
+    return np.interp(fine, s, x), np.interp(fine, s, y)

@@ -1,0 +1,205 @@
+"""Judges the scenes of a file in one run, and holds what comes out against what each expects."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import defaultdict
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+
+from drivelint import catalogue
+from drivelint.convert import ConvertRequest, convert
+from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
+from drivelint.phrases import hint, plural
+from drivelint.reasons.reason_text import codes_in
+from drivelint.report.progress import Silent
+from drivelint.result.publishing import publish
+from drivelint.run import CheckOptions, check
+from drivelint.scene import document
+from drivelint.scene.scene import scenes_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+
+    from drivelint.catalogue import Rule
+    from drivelint.scene.document import SceneText
+    from drivelint.scene.scene import Scene
+
+REFUSED: Final = "refused"
+"""The verdict on a scene whose log could not be judged."""
+_MET: Final = {
+    "fail": {"fail"},
+    "pass": {"pass"},
+    "unknown": {"unknown"},
+    "not_applicable": {"not_applicable"},
+    "refused": {REFUSED},
+    "not fail": {"pass", "unknown", "not_applicable", REFUSED},
+    "not pass": {"fail", "unknown", "not_applicable", REFUSED},
+}
+"""What may be expected -> the verdicts that meet it."""
+_EXPECTED: Final = re.compile(r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL)
+_WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
+_GRAVE: Final = {"critical", "major"}
+
+Row = dict[str, Any]
+Key = tuple[str, str]
+"""The name of a scene, and a rule's id."""
+
+
+class Expectation(NamedTuple):
+    """The verdict that a rule has to give, with its reason code, and why."""
+
+    verdict: str
+    code: str | None
+    why: str
+
+
+class Verdicts(NamedTuple):
+    """The rows of verdicts of some scenes, by scene and rule."""
+
+    rows: Mapping[Key, Sequence[Row]]
+
+    def verdict(self, key: Key) -> str:
+        """Return the verdict of a rule on a scene: its worst row's."""
+        found = {row["verdict"] for row in self.rows.get(key, ())}
+        return next((verdict for verdict in _WORST if verdict in found), REFUSED)
+
+    def codes(self, key: Key) -> set[str]:
+        """Return the reason codes of its rows with that verdict."""
+        worst = self.verdict(key)
+        return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
+
+    def reasons(self, key: Key) -> str:
+        """Return the sentences of those rows."""
+        worst = self.verdict(key)
+        return "; ".join(sorted({row["reason"] for row in self.rows.get(key, ()) if row["verdict"] == worst}))
+
+
+def reason_codes(row: Row) -> set[str]:
+    """Return the codes of the reason and of the cause in a row of verdicts."""
+    codes = {row["reason_code"]} if row["reason_code"] else set()
+    if row["cause_code"]:
+        codes |= set(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
+    return codes
+
+
+def expectation(text: str) -> Expectation:
+    """Read an expectation: `fail: it touches the car`. Errors: `UsageError`."""
+    found = _EXPECTED.fullmatch(text.strip())
+    verdict = found["verdict"] if found else text.partition(":")[0]
+    if found is None or verdict not in _MET:
+        raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _MET)}")
+    return Expectation(verdict, found["code"], found["why"] or "")
+
+
+def judged(scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()) -> Verdicts:
+    """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
+    for scene in scenes:
+        at = folder / scene.name
+        at.mkdir(parents=True)
+        for name, content in scene.files().items():
+            (at / name).write_bytes(content)
+    options = CheckOptions(
+        (str(folder),),
+        rules=tuple(rules),
+        rules_dirs=tuple(rules_dirs),
+        profiles=("nominal", "observed"),
+        robustness=False,
+    )
+    try:
+        rows = check(options, Silent()).verdicts.to_pylist()
+    except TraceError:  # not one of them could be judged
+        rows = []
+    found: dict[Key, list[Row]] = defaultdict(list)
+    names = {scene.name for scene in scenes}
+    for row in rows:
+        drive = row["drive_id"]
+        found[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
+    return Verdicts(found)
+
+
+def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
+    """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
+    expected = {rule: expectation(text) for rule, text in scene.text.expect.items()}
+    for rule, wanted in expected.items():
+        key = scene.name, rule
+        got = verdicts.verdict(key)
+        if got not in _MET[wanted.verdict]:
+            why = f" ({wanted.why})" if wanted.why else ""
+            yield f"{rule}: expected {wanted.verdict}{why}, got {got}: {verdicts.reasons(key)}"
+        elif wanted.code and wanted.code not in verdicts.codes(key):
+            yield f"{rule}: expected {got} for {wanted.code}, got {', '.join(sorted(verdicts.codes(key)))}: {verdicts.reasons(key)}"
+    for (name, rule), rows in sorted(verdicts.rows.items()):
+        if name != scene.name or rule in expected or rule not in gating:
+            continue
+        if any(row["verdict"] in {"fail", "error"} and row["severity"] in _GRAVE for row in rows):
+            yield f"{rule}: not expected to fail: {verdicts.reasons((name, rule))}"
+
+
+def scene_test(
+    path: Path,
+    only: Sequence[str],
+    rules_dirs: Sequence[Path],
+    say: Callable[[str], None],
+    *,
+    out: Path | None = None,
+    to: Literal["mcap", "parquet"] = "parquet",
+) -> ExitCode:
+    """Judge the scenes of a file whose names begin with one of `only` (none: all) and `say` a line for each.
+
+    `out`: where the log and the map of each go, a folder of its name. Returns FAILED where a verdict is another than expected.
+    Errors: `UsageError` for what the file says, `OutputError`.
+    """
+    file = document.read(path)
+    chosen = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
+    if not chosen:
+        raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
+    known = catalogue.load_rules(tuple(rules_dirs))
+    scenes = scenes_of(chosen, file.roads)
+    for scene in scenes:
+        try:
+            _refuse_wrong_expectations(scene, known)
+            files = scene.files()
+        except DriveLintError as error:
+            raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
+        if out is not None:
+            _write(out / scene.name, files, to)
+    with TemporaryDirectory() as folder:
+        verdicts = judged(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
+    gating = gating_rules(known) if file.all_fails else frozenset()
+    code = ExitCode.OK
+    for scene in scenes:
+        wrong = list(differences(scene, verdicts, gating))
+        told = f"{'FAIL' if wrong else 'ok  '} {scene.name}: {plural(len(scene.text.expect), 'verdict')}"
+        say("\n".join([told, *(f"     {path}:{scene.text.line}: {line}" for line in wrong)]))
+        code = max(code, ExitCode.FAILED if wrong else ExitCode.OK)
+    return code
+
+
+def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
+    """Return the rules by which scenes are judged: those that they name, and with `all_fails` every stable one."""
+    return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
+
+
+def gating_rules(known: Mapping[str, Rule]) -> frozenset[str]:
+    """Return the rules of which no fail goes unnoticed."""
+    return frozenset(rule.id for rule in known.values() if rule.status == "stable")
+
+
+def _refuse_wrong_expectations(scene: Scene, known: Mapping[str, Rule]) -> None:
+    for rule, said in scene.text.expect.items():
+        if rule not in known:
+            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, known)}")
+        expectation(said)
+
+
+def _write(folder: Path, files: dict[str, bytes], to: Literal["mcap", "parquet"]) -> None:
+    if to == "parquet":
+        publish(folder, files, {})
+        return
+    with TemporaryDirectory() as temporary:
+        log = Path(temporary) / folder.name
+        publish(log, files, {})
+        convert(ConvertRequest(str(log), to, folder))

@@ -1,0 +1,268 @@
+"""Makes the roads of a layout: its own, those of a crossing or a roundabout, and the turns of junctions between them."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+from drivelint.scene.road import DRIVEN, Lane, Piece, Pose, Road, Turn, joined
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.scene.document import Crossing, LaneText, Layout, RoadText, Roundabout
+
+_COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
+_LANE: Final = re.compile(r"(.+) (-?\d+)")
+_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
+_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
+_LANE_KINDS: Final = (
+    *DRIVEN,
+    "shoulder",
+    "sidewalk",
+    "median",
+    "parking",
+    "biking",
+    "border",
+    "restricted",
+    "stop",
+    "none",
+)
+_MARK_WORDS: Final = ("none", "solid", "broken", "curb", "grass", "botts")
+_LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
+
+
+def roads_of(layout: Layout) -> dict[str, Road]:
+    """Return the roads of a layout by name, those of its junctions among them. Errors: `UsageError`."""
+    texts = dict(layout.roads)
+    turns: str | Sequence[str] = layout.turns
+    if layout.crossing:
+        texts |= _arms(layout.crossing)
+        turns = turns or "all"
+    ring: list[tuple[str, int, str, int]] = []
+    if layout.roundabout:
+        texts |= _ring(layout.roundabout)
+        ring = _ring_turns(layout.roundabout)
+    if not texts:
+        raise UsageError("a layout has roads, a crossing or a roundabout")
+    roads: dict[str, Road] = {}
+    for name in _in_order(texts):
+        roads[name] = _road(name, texts[name], roads)
+    for name in ("crossing", "roundabout"):
+        if name in roads:
+            raise UsageError(f"road {name}: choose another name")
+    pairs = _all_turns(roads) if turns == "all" else [_turn(text, roads) for text in turns]
+    return roads | _junction_roads(roads, [*pairs, *ring])
+
+
+def lane_named(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
+    """Return the road and the number in `main -1`. Errors: `UsageError`."""
+    if (found := _LANE.fullmatch(text.strip())) is None:
+        raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
+    name, number = found[1], int(found[2])
+    if name not in roads:
+        raise UsageError(f"no road {name!r}: {hint(name, roads)}")
+    roads[name].lane(number)
+    return name, number
+
+
+def _in_order(texts: Mapping[str, RoadText]) -> list[str]:
+    """Return the names so that each road stands after the one that it continues."""
+    order: list[str] = []
+    for name in texts:
+        chain: list[str] = []
+        here: str | None = name
+        while here is not None and here not in order:
+            if here not in texts:
+                raise UsageError(f"road {chain[-1]}: after {here}: {hint(here, texts)}")
+            if here in chain:
+                raise UsageError(f"road {here} comes after itself")
+            chain.append(here)
+            here = texts[here].after
+        order += reversed(chain)
+    return order
+
+
+def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
+    if text.start is not None:
+        x, y, heading = text.start
+        start = Pose(x, y, math.radians(heading))
+    else:
+        start = roads[text.after].end() if text.after else Pose(0.0, 0.0, 0.0)
+    pieces = [
+        Piece(float(part)) if isinstance(part, int | float) else Piece(float(part[0]), 1 / part[1])
+        for part in text.line
+    ]
+    length = sum(piece.length for piece in pieces)
+    lanes = [*_lanes(text.lanes, 1, length), *_lanes(text.against, -1, length)]
+    limits = [(0.0, text.limit)] if isinstance(text.limit, str) else text.limit or []
+    for _, limit in limits:
+        if _LIMIT.fullmatch(limit) is None:
+            raise UsageError(f"road {name}: limit {limit!r}: write a number and mph, km/h or m/s, or 'no limit'")
+    _refuse_strange(name, text, lanes)
+    return Road(
+        name,
+        start,
+        pieces,
+        lanes,
+        text.kind,
+        limits,
+        [(0.0, text.middle)] if isinstance(text.middle, str) else text.middle,
+        [(0.0, float(text.height))] if isinstance(text.height, int | float) else [(s, z) for s, z in text.height],
+        text.things,
+        text.after,
+    )
+
+
+def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
+    """Refuse words of things, lanes and marks that nobody would read. Errors: `UsageError`."""
+    for thing in text.things:
+        what, _, rest = thing.what.partition(" ")
+        if what in _NAMED and not rest:
+            raise UsageError(f"road {name}: what: {thing.what!r}: write {_NAMED[what]}")
+        if what not in _NAMED and thing.what not in _THINGS:
+            raise UsageError(f"road {name}: what: {thing.what!r}: {hint(thing.what, _THINGS)}")
+    for lane in lanes:
+        if lane.kind not in _LANE_KINDS:
+            raise UsageError(f"road {name}: lane {lane.number}: {lane.kind!r}: {hint(lane.kind, _LANE_KINDS)}")
+    middle = [(0.0, text.middle)] if isinstance(text.middle, str) else text.middle
+    for _, mark in [*middle, *(mark for lane in lanes for mark in lane.marks)]:
+        for word in mark.split():
+            if word not in _MARK_WORDS:
+                raise UsageError(f"road {name}: mark {mark!r}: {hint(word, _MARK_WORDS)}")
+
+
+def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[Lane]:
+    texts = list(texts)
+    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVEN]
+    found = []
+    for n, text in enumerate(texts):
+        usual = "broken" if n in driven and n != driven[-1] else "solid" if n in driven else "none"
+        if isinstance(text, str):
+            kind, width, mark = _lane_words(text)
+            marks, start, end = [(0.0, mark or usual)], 0.0, length
+        else:
+            kind, width = text.kind, text.width
+            marks = [(0.0, text.mark or usual)] if not isinstance(text.mark, list) else text.mark
+            start, end = text.from_, length if text.to is None else text.to
+        found.append(Lane(side * (n + 1), kind, width, marks, start, end))
+    return found
+
+
+def _kind(text: str | LaneText) -> str:
+    return text.split()[0] if isinstance(text, str) else text.kind
+
+
+def _lane_words(text: str) -> tuple[str, float, str | None]:
+    kind, width, *mark = text.split()
+    try:
+        return kind, float(width), " ".join(mark) or None
+    except ValueError as error:
+        raise UsageError(f"lane {text!r}: write kind, width and mark, such as 'driving 3.5 solid'") from error
+
+
+def _turn(text: str, roads: Mapping[str, Road]) -> tuple[str, int, str, int]:
+    before, arrow, behind = text.partition(" > ")
+    if not arrow:
+        raise UsageError(f"turn {text!r}: write two lanes, such as 'west -1 > north 1'")
+    return (*lane_named(before, roads), *lane_named(behind, roads))
+
+
+def _all_turns(roads: Mapping[str, Road]) -> list[tuple[str, int, str, int]]:
+    """Return each driving lane against an arm, which ends at the junction, with each along another, which begins there."""
+    ends = [(road.name, lane.number) for road in roads.values() for lane in road.lanes if lane.kind == "driving"]
+    arriving = [(name, number) for name, number in ends if number < 0]
+    leaving = [(name, number) for name, number in ends if number > 0]
+    return [(*one, *other) for one in arriving for other in leaving if one[0] != other[0]]
+
+
+def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, str, int]]) -> dict[str, Road]:
+    """Return a road for each turn; those that share an end of a road are of one junction."""
+    group: dict[tuple[str, bool], int] = {}
+    for a, n, b, m in turns:
+        one, other = (a, n > 0), (b, m < 0)
+        number = min(group.get(one, len(group) + 1), group.get(other, len(group) + 1))
+        merged = {group[end] for end in (one, other) if end in group}
+        group |= {end: number for end, old in group.items() if old in merged}
+        group |= {one: number, other: number}
+    found = {}
+    for a, n, b, m in turns:
+        before, behind = roads[a], roads[b]
+        lane = before.lane(n)
+        start, end = before.lane_end(lane, last=True), behind.lane_end(behind.lane(m), last=False)
+        width = min(lane.width, behind.lane(m).width)
+        aside = width / 2  # the line is the lane's left border
+        start, end = (
+            Pose(p.x - aside * math.sin(p.heading), p.y + aside * math.cos(p.heading), p.heading) for p in (start, end)
+        )
+        name = f"{a} {n} to {b} {m}"
+        z0, z1 = before.heights[-1 if n > 0 else 0][1], behind.heights[0 if m > 0 else -1][1]
+        piece = joined(start, end)
+        found[name] = Road(
+            name,
+            start,
+            [piece],
+            [Lane(1, "driving", width, [(0.0, "none")], 0.0, piece.length)],
+            before.kind,
+            before.limits[-1:] and [(0.0, before.limits[-1][1])],
+            heights=[(0.0, z0), (piece.length, z1)] if z0 != z1 else [(0.0, z0)],
+            turn=Turn(900 + group[a, n > 0], a, n, b, m),
+        )
+    return found
+
+
+def _arms(crossing: Crossing) -> dict[str, RoadText]:
+    found: dict[str, RoadText] = {}
+    for arm in crossing.arms:
+        angle = _COMPASS[arm]
+        start = [crossing.half * math.cos(angle), crossing.half * math.sin(angle), math.degrees(angle)]
+        things = [*crossing.road.things, *crossing.things.get(arm, ())]
+        found[arm] = msgspec.structs.replace(crossing.road, start=start, things=things)
+    if unknown := next((arm for arm in crossing.things if arm not in found), None):
+        raise UsageError(f"crossing: no arm {unknown!r}: {hint(unknown, found)}")
+    return found
+
+
+def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
+    """Return the arms, and for each the part of the ring that begins behind it, driven anticlockwise."""
+    found: dict[str, RoadText] = {}
+    gap = 10.0 / roundabout.radius  # half of what an arm's junction takes of the ring, as an angle
+    angles = sorted((_COMPASS[arm] % (2 * math.pi), arm) for arm in roundabout.arms)
+    lane = next(iter(roundabout.road.lanes))
+    width = _lane_words(lane)[1] if isinstance(lane, str) else lane.width
+    inner = roundabout.radius - width / 2
+    for n, (angle, arm) in enumerate(angles):
+        away = roundabout.radius + 15.0
+        start = [away * math.cos(angle), away * math.sin(angle), math.degrees(angle)]
+        found[arm] = msgspec.structs.replace(roundabout.road, start=start)
+        until = angles[(n + 1) % len(angles)][0]
+        turn = (until - angle - 1e-9) % (2 * math.pi) + 1e-9 - 2 * gap
+        begin = angle + gap
+        found[f"ring {arm}"] = msgspec.structs.replace(
+            roundabout.road,
+            line=[[turn * inner, inner]],
+            start=[inner * math.cos(begin), inner * math.sin(begin), math.degrees(begin) + 90],
+            lanes=[lane],
+            against=[],
+            middle="curb",
+            things=[],
+        )
+    return found
+
+
+def _ring_turns(roundabout: Roundabout) -> list[tuple[str, int, str, int]]:
+    arms = [arm for _, arm in sorted((_COMPASS[arm] % (2 * math.pi), arm) for arm in roundabout.arms)]
+    found = []
+    for n, arm in enumerate(arms):
+        before = arms[n - 1]
+        found += [
+            (f"ring {before}", 1, f"ring {arm}", 1),
+            (arm, -1, f"ring {arm}", 1),
+            (f"ring {before}", 1, arm, 1),
+        ]
+    return found

@@ -1,0 +1,239 @@
+"""Writes the roads of a scene as OpenDRIVE 1.7; where the left is driven on, the drawing is mirrored."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from drivelint.scene.document import Thing
+    from drivelint.scene.road import Lane, Road, Turn
+
+_FACING: Final = {"along": "+", "against": "-", "both": "none"}
+_NO_CODE: Final = "-1"
+_LIGHT: Final = ("OpenDRIVE", "1000001")
+
+
+def opendrive(roads: Mapping[str, Road], *, left: bool) -> str:
+    """Return the text of the map. `left`: the left is driven on."""
+    return _Writer(roads, left=left).text()
+
+
+class _Writer:
+    def __init__(self, roads: Mapping[str, Road], *, left: bool) -> None:
+        self.roads = roads
+        self.hand = -1 if left else 1
+        """Sign of what is left in the drawing."""
+        self.numbers = {name: n for n, name in enumerate(roads, 1)}
+        self.after = {road.after: road.name for road in roads.values() if road.after}
+        self.things = 0
+
+    def text(self) -> str:
+        head = '<header revMajor="1" revMinor="7" name="scene" version="1"/>'
+        roads = "".join(map(self.road, self.roads.values()))
+        return f'<?xml version="1.0" encoding="UTF-8"?>\n<OpenDRIVE>{head}{roads}{self.junctions()}</OpenDRIVE>\n'
+
+    def road(self, road: Road) -> str:
+        plan, pose, s = "", road.start, 0.0
+        for piece in road.pieces:
+            if piece.curve:
+                bu, cu, du, bv, cv, dv = piece.curve
+                m = self.hand
+                cubic = (
+                    f'aU="0" bU="{bu!r}" cU="{cu!r}" dU="{du!r}" aV="0" bV="{m * bv!r}" cV="{m * cv!r}" dV="{m * dv!r}"'
+                )
+                shape = f'<paramPoly3 pRange="normalized" {cubic}/>'
+            else:
+                shape = f'<arc curvature="{self.hand * piece.curvature!r}"/>' if piece.curvature else "<line/>"
+            place = f'x="{pose.x!r}" y="{self.hand * pose.y!r}" hdg="{self.hand * pose.heading!r}"'
+            plan += f'<geometry s="{s!r}" {place} length="{piece.length!r}">{shape}</geometry>'
+            x, y, heading = (float(v) for v in road.at(np.array(s + piece.length)))
+            pose, s = type(pose)(x, y, heading), s + piece.length
+        kinds = "".join(self.kind(road, at, limit) for at, limit in road.limits or [(0.0, "")])
+        junction = road.turn.junction if road.turn else -1
+        objects = "".join(self.object(road, thing) for thing in road.things)
+        signals = "".join(self.signal(thing) for thing in road.things)
+        return (
+            f'<road name={quoteattr(road.name)} id="{self.numbers[road.name]}" length="{road.length!r}" junction="{junction}" '
+            f'rule="{"LHT" if self.hand < 0 else "RHT"}"><link>{self.links(road)}</link>{kinds}<planView>{plan}</planView>'
+            f"<elevationProfile>{self.elevations(road)}</elevationProfile><lateralProfile/><lanes>{self.sections(road)}</lanes>"
+            f"<objects>{objects}</objects><signals>{signals}</signals></road>"
+        )
+
+    @staticmethod
+    def kind(road: Road, at: float, limit: str) -> str:
+        value, _, unit = (limit, "", "") if limit == "no limit" else limit.partition(" ")
+        speed = f'<speed max="{value}" unit="{unit}"/>' if unit else f'<speed max="{value}"/>' if value else ""
+        return f'<type s="{at!r}" type="{road.kind}">{speed}</type>'
+
+    @staticmethod
+    def elevations(road: Road) -> str:
+        heights = list(road.heights)
+        slopes = [(z1 - z0) / (s1 - s0) for (s0, z0), (s1, z1) in pairwise(heights)]
+        rows = zip(heights, [*slopes, 0.0], strict=True)
+        return "".join(f'<elevation s="{s!r}" a="{z!r}" b="{slope!r}" c="0" d="0"/>' for (s, z), slope in rows)
+
+    def sections(self, road: Road) -> str:
+        starts = road.section_starts()
+        there = [[lane for lane in road.lanes if lane.start <= s < lane.end] for s in starts]
+        numbers = [_numbered(lanes) for lanes in there]
+        text = ""
+        for n, (s, lanes) in enumerate(zip(starts, there, strict=True)):
+            end = starts[n + 1] if n + 1 < len(starts) else road.length
+            before = numbers[n - 1] if n else self.over_the_end(road, "predecessor")
+            behind = numbers[n + 1] if n + 1 < len(starts) else self.over_the_end(road, "successor")
+            sides: dict[int, list[tuple[int, str]]] = {1: [], -1: []}
+            for lane in lanes:
+                number = numbers[n][lane.number]
+                links = (("predecessor", before.get(lane.number)), ("successor", behind.get(lane.number)))
+                link = "".join(f'<{end_} id="{-self.hand * other}"/>' for end_, other in links if other)
+                lane_id = -self.hand * number
+                sides[1 if lane_id > 0 else -1].append((lane_id, self.lane(lane, lane_id, link, (s, end))))
+            left, right = ("".join(text for _, text in sorted(sides[side], reverse=True)) for side in (1, -1))
+            middle = self.marks([(at, self.mirrored(mark)) for at, mark in road.middle], (s, end))
+            text += f'<laneSection s="{s!r}">' + (f"<left>{left}</left>" if left else "")
+            text += f'<center><lane id="0" type="none" level="false">{middle}</lane></center>'
+            text += (f"<right>{right}</right>" if right else "") + "</laneSection>"
+        return text
+
+    def mirrored(self, mark: str) -> str:
+        """A double line in the middle is said from left to right."""
+        return mark if self.hand > 0 else " ".join(reversed(mark.split()))
+
+    def lane(self, lane: Lane, lane_id: int, link: str, span: tuple[float, float]) -> str:
+        width = f'<width sOffset="0" a="{lane.width!r}" b="0" c="0" d="0"/>'
+        marks = self.marks(lane.marks, span)
+        return f'<lane id="{lane_id}" type="{lane.kind}" level="false"><link>{link}</link>{width}{marks}</lane>'
+
+    @staticmethod
+    def marks(marks: Sequence[tuple[float, str]], span: tuple[float, float]) -> str:
+        begin, end = span
+        first = max((n for n, (at, _) in enumerate(marks) if at <= begin), default=0)
+        return "".join(
+            f'<roadMark sOffset="{max(at - begin, 0.0)!r}" type="{mark}" weight="standard" color="white" width="0.12"/>'
+            for at, mark in marks[first:]
+            if at < end
+        )
+
+    def over_the_end(self, road: Road, end: str) -> dict[int, int]:
+        """Return a road's lane -> the lane that goes on from it beyond an end, as numbered where it is."""
+        if road.turn:
+            turn = road.turn
+            return {1: turn.from_lane if end == "predecessor" else turn.to_lane}
+        name = road.after if end == "predecessor" else self.after.get(road.name)
+        if name is None:
+            return {}
+        other = self.roads[name]
+        station = other.length - 1e-6 if end == "predecessor" else 0.0
+        return _numbered([lane for lane in other.lanes if lane.start <= station < lane.end])
+
+    def links(self, road: Road) -> str:
+        if turn := road.turn:
+            from_end = "end" if turn.from_lane > 0 else "start"
+            to_end = "start" if turn.to_lane > 0 else "end"
+            return self.road_link("predecessor", turn.from_road, from_end) + self.road_link(
+                "successor", turn.to_road, to_end
+            )
+        text = ""
+        for end, other, contact in (
+            ("predecessor", road.after, "end"),
+            ("successor", self.after.get(road.name), "start"),
+        ):
+            if other:
+                text += self.road_link(end, other, contact)
+            elif junction := self.junction_at(road, end):
+                text += f'<{end} elementType="junction" elementId="{junction}"/>'
+        return text
+
+    def road_link(self, end: str, name: str, contact: str) -> str:
+        return f'<{end} elementType="road" elementId="{self.numbers[name]}" contactPoint="{contact}"/>'
+
+    def turns(self) -> Iterable[tuple[Road, Turn]]:
+        return [(road, road.turn) for road in self.roads.values() if road.turn]
+
+    def junction_at(self, road: Road, end: str) -> int | None:
+        leaving = 1 if end == "successor" else -1
+        for _, turn in self.turns():
+            if (turn.from_road == road.name and turn.from_lane * leaving > 0) or (
+                turn.to_road == road.name and turn.to_lane * leaving < 0
+            ):
+                return turn.junction
+        return None
+
+    def junctions(self) -> str:
+        found: dict[int, str] = defaultdict(str)
+        for n, (road, turn) in enumerate(self.turns()):
+            link = f'<laneLink from="{-self.hand * turn.from_lane}" to="{-self.hand}"/>'
+            ends = f'incomingRoad="{self.numbers[turn.from_road]}" connectingRoad="{self.numbers[road.name]}" contactPoint="start"'
+            found[turn.junction] += f'<connection id="{n}" {ends}>{link}</connection>'
+        return "".join(f'<junction id="{number}" name="junction">{text}</junction>' for number, text in found.items())
+
+    def new_id(self) -> int:
+        self.things += 1
+        return 5000 + self.things
+
+    def signal(self, thing: Thing) -> str:
+        what, _, rest = thing.what.partition(" ")
+        if what == "light":
+            number, (country, code), dynamic = rest, _LIGHT, "yes"
+        elif what == "sign":
+            country, _, code = rest.partition(" ") if " " in rest else ("", "", _NO_CODE)
+            number, dynamic = str(self.new_id()), "no"
+        else:
+            return ""
+        name = rest if code == _NO_CODE else code
+        lanes = "".join(
+            f'<validity fromLane="{-self.hand * lane}" toLane="{-self.hand * lane}"/>' for lane in thing.lanes or ()
+        )
+        return (
+            f'<signal id={quoteattr(number)} name={quoteattr(name)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
+            f'orientation="{_FACING[thing.facing]}" zOffset="2" country={quoteattr(country)} type={quoteattr(code)} subtype="-1" '
+            f'value="-1" height="1" width="1">{lanes}</signal>'
+        )
+
+    def object(self, road: Road, thing: Thing) -> str:
+        if thing.what.startswith(("light ", "sign ")):
+            return ""
+        number = self.new_id()
+        if thing.what == "stop line":
+            width = 3.5 if thing.width is None else thing.width
+            box = f'length="0.3" width="{width!r}" height="0" hdg="0" pitch="0" roll="0"'
+            return (
+                f'<object type="stopLine" id="{number}" name="stopLine" s="{thing.at!r}" t="{self.hand * thing.off!r}" zOffset="0" '
+                f'orientation="{_FACING[thing.facing]}" {box}/>'
+            )
+        width = _driven_width(road) if thing.width is None else thing.width
+        deep, off = thing.deep / 2, self.hand * thing.off
+        corners = [(-deep, -width / 2), (-deep, width / 2), (deep, width / 2), (deep, -width / 2)]
+        outline = "".join(
+            f'<cornerRoad s="{thing.at + ds!r}" t="{off + dt!r}" dz="0" height="0" id="{n}"/>'
+            for n, (ds, dt) in enumerate(corners)
+        )
+        return (
+            f'<object type="crosswalk" id="{number}" name={quoteattr(thing.what)} s="{thing.at!r}" t="{off!r}" zOffset="0" '
+            f'orientation="none" hdg="0" pitch="0" roll="0" length="{thing.deep!r}" width="{width!r}" height="0"><outlines>'
+            f'<outline id="0" closed="true">{outline}</outline></outlines></object>'
+        )
+
+
+def _driven_width(road: Road) -> float:
+    """Twice the wider half of what is driven on."""
+    halves = [
+        sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)
+    ]
+    return 2 * max(halves) if all(halves) else sum(halves) * 2
+
+
+def _numbered(lanes: Sequence[Lane]) -> dict[int, int]:
+    """Return the lanes that are there -> how many each is from the middle, with its sign."""
+    found: dict[int, int] = {}
+    for side in (1, -1):
+        numbers = sorted((lane.number for lane in lanes if lane.number * side > 0), key=abs)
+        found |= {number: side * n for n, number in enumerate(numbers, 1)}
+    return found

@@ -1,0 +1,125 @@
+"""A scene: its roads, its actors, and the map and the log that are made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.drive.conditions import condition_problem, value_problem
+from drivelint.errors import UsageError
+from drivelint.phrases import hint
+from drivelint.result.files import described_parquet
+from drivelint.scene import recorder
+from drivelint.scene.actor import Actor
+from drivelint.scene.layout import roads_of
+from drivelint.scene.opendrive import opendrive
+from drivelint.sql.store import arrow_schemas
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from drivelint.scene.document import Layout, SceneText
+    from drivelint.scene.road import Road
+
+USUAL: Final = {"weather": "dry", "light": "day"}
+"""Conditions of a scene that says nothing else."""
+NOT_GIVEN: Final = "unknown"
+"""The word of a condition that the log does not have."""
+MAP_FILE: Final = "map.xodr"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene on one side of the road."""
+
+    text: SceneText
+    layout: Layout
+    left: bool
+    """The left is driven on."""
+    name: str
+
+    @cached_property
+    def roads(self) -> dict[str, Road]:
+        """Its roads by name, those of junctions among them. Errors: `UsageError`."""
+        return roads_of(self.layout)
+
+    @property
+    def map_text(self) -> str:
+        """Its map as OpenDRIVE."""
+        return opendrive(self.roads, left=self.left)
+
+    def tables(self) -> dict[str, pa.Table]:
+        """Return the tables of its log, named and typed as in `schemas/model.sql`. Errors: `UsageError`."""
+        text = self.text
+        if "ego" not in text.actors:
+            raise UsageError(f"no actor is called ego: {hint('ego', text.actors)}")
+        actors = [Actor(name, actor, self.roads) for name, actor in text.actors.items()]
+        with_height = any(z for road in self.roads.values() for _, z in road.heights)
+        parts = [
+            recorder.states(actor, text.seconds, text.rate, left=self.left, with_height=with_height, seed=n)
+            for n, actor in enumerate(actors)
+        ]
+        columns = {
+            name: np.concatenate([np.asarray(part[name], object) for part in parts]).tolist() for name in parts[0]
+        }
+        for name, lights in text.lights.items():
+            if all(thing.what != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
+                raise UsageError(f"light {name}: no road has a thing of this name")
+        return {
+            "actor": _rows("actor", [recorder.actor_row(actor) for actor in actors]),
+            "actor_state": _table("actor_state", columns),
+            "drive_condition": _rows("drive_condition", self._conditions()),
+            "signal_state": _rows("signal_state", list(recorder.light_rows(text.lights, text.seconds))),
+            "declared_event": _rows("declared_event", self._events()),
+        }
+
+    def files(self) -> dict[str, bytes]:
+        """Return the log as Parquet tables, and its map, name -> content. Errors: `UsageError`."""
+        tables = {name: table for name, table in self.tables().items() if table.num_rows}
+        log = {f"{name}.parquet": described_parquet(table, name, {}) for name, table in tables.items()}
+        return {**log, MAP_FILE: self.map_text.encode()}
+
+    def _conditions(self) -> list[dict[str, Any]]:
+        given = {name: value for name, value in (USUAL | self.text.given).items() if value != NOT_GIVEN}
+        for condition, value in given.items():
+            if problem := condition_problem(condition) or value_problem(condition, value):
+                raise UsageError(f"given: {problem}")
+        return [{"condition": name, "value": value} for name, value in given.items()]
+
+    def _events(self) -> list[dict[str, Any]]:
+        found = []
+        for said in self.text.says:
+            if len(said) not in {2, 3} or not isinstance(said[0], int | float):
+                raise UsageError(f"says {said}: write [second, event] or [second, event, value]")
+            value = said[2] if len(said) == 3 else None
+            if self.left and said[1] == "blind_spot_check":
+                value = {"left": "right", "right": "left"}.get(str(value), value)
+            row = {"actor_id": "ego", "t_ns": round(float(said[0]) * 1e9), "event": str(said[1])}
+            found.append(row | {"value": None if value is None else str(value)})
+        return found
+
+
+def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list[Scene]:
+    """Return each scene, for both sides of the road where it or its layout asks for both."""
+    found = []
+    for text in texts:
+        layout = layouts[text.roads]
+        side = text.traffic or layout.traffic
+        for one in ("right", "left") if side == "both" else (side,):
+            name = f"{text.name}-{one}" if side == "both" else text.name
+            found.append(Scene(text, layout, one == "left", name))
+    return found
+
+
+def _table(name: str, columns: Mapping[str, Sequence[Any]]) -> pa.Table:
+    schema = arrow_schemas()[name]
+    return pa.table({column: pa.array(values, schema.field(column).type) for column, values in columns.items()})
+
+
+def _rows(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Table:
+    columns = list(rows[0]) if rows else ["actor_id"] if name == "actor" else []
+    return _table(name, {column: [row[column] for row in rows] for column in columns})
