@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q asammdf==8.8.28 numpy==2.4.6 pandas==3.1.1
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile asammdf==8.8.28 numpy==2.4.6 pandas==3.1.1
 
 venv/bin/python - <<'PY'
 import sys

@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q simple-lanelet2==1.2.3
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile simple-lanelet2==1.2.3
 
 venv/bin/python - <<'PY'
 import sys

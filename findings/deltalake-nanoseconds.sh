@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q deltalake==1.6.6 pyarrow==26.0.1 duckdb==2.0.1
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile deltalake==1.6.6 pyarrow==26.0.1 duckdb==2.0.1
 
 venv/bin/python -W error - <<'PY'
 import sys

@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q duckdb==1.5.5 pyarrow==26.0.1 polars==2.1.0
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile duckdb==1.5.5 pyarrow==26.0.1 polars==2.1.0
 
 venv/bin/python - <<'PY'
 import sys

@@ -11,8 +11,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q duckdb==1.5.5 duckdb-extension-spatial==1.5.5 duckdb-extensions==1.5.5 geopandas==1.2.0 pyarrow==26.0.1 \
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile duckdb==1.5.5 duckdb-extension-spatial==1.5.5 duckdb-extensions==1.5.5 geopandas==1.2.0 pyarrow==26.0.1 \
   shapely==2.2.0 pyproj==3.7.2
 
 HOME=$folder venv/bin/python - <<'PY'

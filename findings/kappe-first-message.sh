@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q kappe==0.25.0 mcap==1.6.0 rosbags==0.11.9
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile kappe==0.25.0 mcap==1.6.0 rosbags==0.11.9
 
 cat > drive.py <<'PY'
 import subprocess

@@ -8,10 +8,10 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv lanelet2
-python3 -m venv simple
-lanelet2/bin/python -m pip install -q lanelet2==1.2.3
-simple/bin/python -m pip install -q simple-lanelet2==1.2.3
+python3 -m venv --without-pip lanelet2
+python3 -m venv --without-pip simple
+python3 -m pip --python lanelet2 install -q --no-compile lanelet2==1.2.3
+python3 -m pip --python simple install -q --no-compile simple-lanelet2==1.2.3
 
 cat > limits.py <<'PY'
 import json

@@ -9,8 +9,10 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q asammdf==8.8.28 mdfreader==4.3 mdfr==0.7.3 mf4-rs==3.7.0 numpy==2.4.6 pandas==3.1.1
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile asammdf==8.8.28 mf4-rs==3.7.0 numpy==2.4.6 pandas==3.1.1
+# Without polars, matplotlib and sympy, which are for their exports and formulas.
+python3 -m pip --python venv install -q --no-compile --no-deps mdfreader==4.3 mdfr==0.7.3
 
 venv/bin/python - <<'PY'
 import sys

@@ -9,8 +9,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q movingpandas==0.23.0 geopandas==1.2.0 pandas==3.1.1 shapely==2.2.0 pyproj==3.7.2 numpy==2.4.6
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile movingpandas==0.23.0 geopandas==1.2.0 pandas==3.1.1 shapely==2.2.0 pyproj==3.7.2 numpy==2.4.6
 
 venv/bin/python -W ignore - <<'PY'
 import sys

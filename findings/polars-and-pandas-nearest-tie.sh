@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q polars==2.1.0 pandas==3.1.1 pyarrow==26.0.1
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile polars==2.1.0 pandas==3.1.1
 
 venv/bin/python - <<'PY'
 import sys
@@ -21,10 +21,10 @@ import polars
 
 SPEED = 20.0
 begin_ns, period_ns = 1_700_000_000_000_000_000, 100_000_000
-poses = polars.DataFrame({"t_ns": [begin_ns + k * period_ns for k in range(21)], "ego_x": [SPEED * k / 10 for k in range(21)]})
-detections = polars.DataFrame({"t_ns": [begin_ns + k * period_ns + period_ns // 2 for k in range(20)]})
-by_polars = detections.join_asof(poses, on="t_ns", strategy="nearest")["ego_x"].to_list()
-by_pandas = pandas.merge_asof(detections.to_pandas(), poses.to_pandas(), on="t_ns", direction="nearest")["ego_x"].tolist()
+poses = {"t_ns": [begin_ns + k * period_ns for k in range(21)], "ego_x": [SPEED * k / 10 for k in range(21)]}
+detections = {"t_ns": [begin_ns + k * period_ns + period_ns // 2 for k in range(20)]}
+by_polars = polars.DataFrame(detections).join_asof(polars.DataFrame(poses), on="t_ns", strategy="nearest")["ego_x"].to_list()
+by_pandas = pandas.merge_asof(pandas.DataFrame(detections), pandas.DataFrame(poses), on="t_ns", direction="nearest")["ego_x"].tolist()
 apart = [a - b for a, b in zip(by_polars, by_pandas)]
 print("ego x by polars:", by_polars[:4], "by pandas:", by_pandas[:4])
 print(f"metres apart: {min(apart):.2f} to {max(apart):.2f} over {len(apart)} detections")

@@ -11,8 +11,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q pyproj==3.7.2 geopandas==1.2.0 shapely==2.2.0
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile pyproj==3.7.2 geopandas==1.2.0 shapely==2.2.0
 
 PROJ_NETWORK=OFF venv/bin/python - <<'PY'
 import sys

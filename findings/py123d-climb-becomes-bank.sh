@@ -11,9 +11,9 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
+python3 -m venv --without-pip venv
 # Only what the geometry needs: ray and others are left out by --no-deps.
-venv/bin/python -m pip install -q --no-deps py123d==0.7.0 numpy==2.2.6 shapely==2.1.2 pyquaternion==0.9.9 scipy==1.17.1 typing_extensions==4.16.0
+python3 -m pip --python venv install -q --no-compile --no-deps py123d==0.7.0 numpy==2.2.6 shapely==2.1.2 pyquaternion==0.9.9 scipy==1.17.1 typing_extensions==4.16.0
 
 venv/bin/python - <<'PY'
 import math

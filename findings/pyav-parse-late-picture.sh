@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q av==18.1.0 foxglove-sdk==0.30.3 mcap==1.6.0 mcap-protobuf-support==0.6.0 numpy==2.4.6
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile av==18.1.0 foxglove-sdk==0.30.3 mcap==1.6.0 mcap-protobuf-support==0.6.0 numpy==2.4.6
 
 venv/bin/python - <<'PY'
 import sys

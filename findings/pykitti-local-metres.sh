@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q pykitti==0.3.1 opencv-python-headless==5.0.0.93 numpy==2.4.6 pandas==3.1.1 matplotlib==3.11.2 pillow==13.0.0 pyproj==3.7.2
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile pykitti==0.3.1 opencv-python-headless==5.0.0.93 numpy==2.4.6 pandas==3.1.1 matplotlib==3.11.2 pillow==13.0.0 pyproj==3.7.2
 
 venv/bin/python - <<'PY'
 import sys

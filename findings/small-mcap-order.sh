@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q mcap==1.6.0 small-mcap==0.16.0
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile mcap==1.6.0 small-mcap==0.16.0
 
 venv/bin/python - <<'PY'
 import io

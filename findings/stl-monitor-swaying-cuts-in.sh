@@ -10,11 +10,11 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3.11 -m venv venv 2>/dev/null || python3 -m venv venv
-venv/bin/python -m pip install -q 'setuptools<80' commonroad-io==2024.3 commonroad-clcs==2025.2.0 commonroad-drivability-checker==2025.4.0 \
+python3.11 -m venv --without-pip venv 2>/dev/null || python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile 'setuptools<80' commonroad-io==2024.3 commonroad-clcs==2025.2.0 commonroad-drivability-checker==2025.4.0 \
   commonroad-route-planner==2025.1.0 pandas==2.3.3 ruamel.yaml typing-extensions
 # What it asks for contradicts itself (two runtimes of ANTLR); torch, gpytorch and shap are for learned models, which are not used here.
-venv/bin/python -m pip install -q --no-deps commonroad-stl-monitor==2025.1.1 rtamt==0.4.10 antlr4-python3-runtime==4.9.3
+python3 -m pip --python venv install -q --no-compile --no-deps commonroad-stl-monitor==2025.1.1 rtamt==0.4.10 antlr4-python3-runtime==4.9.3
 
 cat >seen.py <<'PY'
 import sys

@@ -10,8 +10,8 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-venv/bin/python -m pip install -q eclipse-sumo==1.28.0
+python3 -m venv --without-pip venv
+python3 -m pip --python venv install -q --no-compile eclipse-sumo==1.28.0
 
 cat > road.nod.xml <<'XML'
 <nodes><node id="a" x="0" y="0"/><node id="b" x="500" y="0"/></nodes>

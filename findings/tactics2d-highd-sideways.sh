@@ -10,12 +10,10 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-python3 -m venv venv
-# Only what the parser needs, by --no-deps: the whole is a gigabyte.
-venv/bin/python -m pip install -q --no-deps tactics2d==0.1.9 numpy==2.2.6 pandas==2.3.3 polars==1.44.1 polars-runtime-32==1.44.1 pyproj==3.7.1 \
-  certifi==2026.10.19.post1 shapely==2.0.7 scikit-learn==1.6.1 scipy==1.15.3 joblib==1.5.3 threadpoolctl==3.8.0 tabulate==0.10.0 orjson==3.13.0 \
-  geopandas==1.1.4 pyogrio==0.13.0 packaging==26.4 defusedxml==0.7.1 tfrecord==1.14.6 crc32c==2.9.post0 protobuf==6.33.4 \
-  python-dateutil==2.9.0.post0 six==1.17.0 pytz==2026.6 tzdata==2026.6
+python3 -m venv --without-pip venv
+# Only what the parser needs, by --no-deps: the whole is a gigabyte. Its package would import the parsers of all other data sets, too.
+python3 -m pip --python venv install -q --no-compile --no-deps tactics2d==0.1.9 numpy==2.2.6 pandas==2.3.3 polars==1.44.1 polars-runtime-32==1.44.1 \
+  pyproj==3.7.1 certifi==2026.10.19.post1 shapely==2.0.7 tabulate==0.10.0 python-dateutil==2.9.0.post0 six==1.17.0 pytz==2026.6 tzdata==2026.6
 
 cat > 01_recordingMeta.csv <<'CSV'
 id,frameRate,locationId,speedLimit,upperLaneMarkings,lowerLaneMarkings
@@ -26,10 +24,15 @@ id,width,height,initialFrame,finalFrame,numFrames,class,drivingDirection
 1,4.85,2.12,1,100,100,Car,2
 CSV
 venv/bin/python -W ignore - <<'PY'
+import importlib.util
 import sys
+import types
 from pathlib import Path
 
-from tactics2d.dataset_parser import LevelXParser
+parsers = types.ModuleType("tactics2d.dataset_parser")
+parsers.__path__ = [f"{importlib.util.find_spec('tactics2d').submodule_search_locations[0]}/dataset_parser"]
+sys.modules[parsers.__name__] = parsers
+from tactics2d.dataset_parser.parse_levelx import LevelXParser
 
 rows = ["frame,id,x,y,width,height,xVelocity,yVelocity,xAcceleration,yAcceleration,laneId"]
 for frame in range(1, 101):

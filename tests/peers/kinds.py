@@ -15,6 +15,8 @@ Row = dict[str, Any]
 REACTION_S = 0.3
 BRAKE_MPS2, BRAKE_LEAD_MPS2 = 10.0, 10.5
 ABRUPT_MPS2 = -2.0
+NEIGHBOUR_M, STRIP_M = 30.0, 15.0
+STANDING_MPS = 0.5
 
 
 class Kind(NamedTuple):
@@ -187,9 +189,31 @@ def _border_within_75_cm(pair: Pair, step: int) -> bool:
     return 0.2 < pair.values.get(step, 9.0) <= 0.75
 
 
+def _no_faster(row: Row, v_mps: float) -> list[Row]:
+    """Return the vehicles at a step that are no faster than v_mps and ahead in the lane, or beside it within 30 m."""
+    beside = [
+        other
+        for other in row["others"]
+        if not other["same_lane"]
+        and max(other["gap_m"], other["behind_m"]) <= NEIGHBOUR_M
+        and abs(other["d_m"] - row["d_m"]) <= STRIP_M
+    ]
+    return [other for other in [*ahead(row)[:1], *beside] if other["v_mps"] <= v_mps]
+
+
+def _slow_vehicle_beside(pair: Pair, step: int) -> bool:
+    """A vehicle ahead or beside is no faster than the ego."""
+    row = pair.steps.get(step)
+    return row is not None and bool(_no_faster(row, row["v_mps"]))
+
+
 def _time_to_speed_up(pair: Pair, step: int) -> bool:
-    """The ego has been in the recording for less than 10 s."""
-    return (step - min(pair.steps)) * pair.dt_s < 10.0
+    """In the 10 s before, a vehicle ahead or beside was no faster than the ego is now, or in the 15 s before the ego stood."""
+    row = pair.steps.get(step)
+    return row is not None and (
+        any(_no_faster(earlier, row["v_mps"]) for earlier in rows_before(pair, step, 10.0))
+        or any(earlier["v_mps"] <= STANDING_MPS < row["v_mps"] for earlier in rows_before(pair, step, 15.0))
+    )
 
 
 def _within_tolerance(pair: Pair, step: int) -> bool:
@@ -221,6 +245,7 @@ FACTS: Mapping[str, Callable[[Pair, int], bool]] = {
     "fewer_than_three_ahead": _fewer_than_three_ahead,
     "faster_than_walking_pace": _faster_than_walking_pace,
     "border_within_75_cm": _border_within_75_cm,
+    "slow_vehicle_beside": _slow_vehicle_beside,
     "time_to_speed_up": _time_to_speed_up,
     "within_tolerance": _within_tolerance,
     "limit_of_another_country": _limit_of_another_country,

@@ -8,7 +8,7 @@
 -- status = "stable"
 -- law = ["de"]
 -- sense = "holds"
--- reads = ["data_log", "ego_corridor", "ego_state", "lanelet", "pair", "passing"]
+-- reads = ["clock", "data_log", "ego_corridor", "ego_state", "lanelet", "neighbour", "pair", "passing"]
 -- requires = ["map", "registration", "ego_size", "handedness"]
 --
 -- [applies]
@@ -40,10 +40,22 @@
 --
 -- [reasons.broad_line_unknown]
 -- says = "the ego was on a lane of type {lane_type}: whether a broad line separated it from the through lanes is not known"
+--
+-- [reasons.log_ends_beside]
+-- says = "at the end of the log the ego was beside it and no slower: whether it got ahead is not known"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.occurrence, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type
-FROM passing p
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type, p.is_cut_off
+FROM (
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, ego_passes, side, same_lane, speed_mps, ego_speed_mps, false AS is_cut_off
+    FROM passing
+    UNION ALL BY NAME
+    -- A pass that the end of the log cuts off.
+    SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, b.actor_class, b.side, abs(b.d_m) < b.half_width_m AS same_lane, b.speed_mps, b.ego_speed_mps, true AS is_cut_off
+    FROM neighbour b
+    JOIN clock k ON k.drive_id = b.drive_id AND k.ego_id = b.ego_id AND k.t_end_ns = b.t_ns
+    WHERE b.gap_ahead_m <= 0 AND b.ahead_m > -order_change_m() AND abs(b.heading_diff_rad) < pi() / 2 AND coalesce(b.ego_speed_mps >= b.speed_mps, true)
+) p
 JOIN data_log g ON g.drive_id = p.drive_id
 JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
 LEFT JOIN ego_corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.t_ns = e.t_ns
@@ -58,7 +70,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type
     CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
         AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
         OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) THEN false END END AS holds,
-    CASE WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type}) END AS reason
+    CASE WHEN r.is_cut_off THEN why('log_ends_beside') WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type}) END AS reason
 FROM reference r
 JOIN (
     SELECT b.ref_id, count(*) FILTER (other.is_in_queue) AS n,

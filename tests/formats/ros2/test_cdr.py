@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -154,6 +155,14 @@ def test_an_empty_message_in_what_is_not_read_is_one_byte() -> None:
     data = bytes([0, 1, 0, 0, 2, 0, 0, 0, 0, 5, 0, 6, 7])
     table = decoder(types, "p/Top", {"after": None}).table(packets([data]))
     assert table.columns["after"].tolist() == [7]
+
+
+def test_an_empty_sequence_pads_nothing() -> None:
+    """pybag-sdk 0.13.0 reads what follows one four bytes late (findings/pybag-empty-sequence.sh)."""
+    types = {"p/Top": "float64[] gaps\nint32 lane\nint32 vehicles\nfloat64 speed"}
+    data = bytes([0, 1, 0, 0]) + struct.pack("<Iii4xd", 0, 2, 7, 20.0)
+    table = decoder(types, "p/Top", kept(types, "p/Top")).table(packets([data]))
+    assert [table.columns[name].tolist() for name in ("lane", "vehicles", "speed")] == [[2], [7], [20.0]]
 
 
 @pytest.mark.parametrize("length", range(len(WHOLE)))
