@@ -203,9 +203,11 @@ def deaf_to_ctrl_c() -> Iterator[None]:
 
 
 def begin_worker(parent: int) -> None:
-    """Prepare a worker: Ctrl-C is the driver's, and a worker whose driver was killed ends."""
+    """Prepare a worker: Ctrl-C and a terminal that is gone are the driver's, and a worker whose driver was killed ends."""
     leave_out_pandas()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if (hang_up := getattr(signal, "SIGHUP", None)) is not None:  # not on Windows
+        signal.signal(hang_up, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
     try:
         import ctypes
