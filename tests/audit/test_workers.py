@@ -106,7 +106,7 @@ class Clocks:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.computed = self.wall = 0.0
-        monkeypatch.setattr(pool, "_computed_s", lambda _process: self.computed)
+        monkeypatch.setattr(pool, "computed_s", lambda _process: self.computed)
         monkeypatch.setattr(pool, "monotonic", lambda: self.wall)
 
 

@@ -131,7 +131,7 @@ class _Worker:
 
     def look(self) -> Outcome | None:
         """Return that the worker was lost if it takes too much; then it is ended."""
-        if self._memory is not None and (taken := _resident_bytes(self._process.pid)) > self._memory:
+        if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
             return self._lost(
                 f"the worker took {taken / 1e6:.0f} MB of memory, and may take {self._memory / 1e6:.0f} MB"
             )
@@ -157,7 +157,7 @@ class _Worker:
         return task
 
     def _computed_s(self) -> float:
-        return _computed_s(self._process.pid)
+        return computed_s(self._process.pid)
 
     def end(self) -> None:
         """End the process."""
@@ -227,7 +227,7 @@ def cores() -> int:
         return os.cpu_count() or 1
 
 
-def _resident_bytes(process: int | None) -> int:
+def resident_bytes(process: int | None) -> int:
     """Return the memory that a process has at present; 0 where the system does not tell."""
     try:
         return int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
@@ -235,7 +235,7 @@ def _resident_bytes(process: int | None) -> int:
         return 0
 
 
-def _computed_s(process: int | None) -> float:
+def computed_s(process: int | None) -> float:
     """Return for how many seconds a process has computed; where the system does not tell, the time of day does for it."""
     try:
         told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
