@@ -61,13 +61,13 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
 
 def why_not_here(path: Path) -> str | None:
     """Return why there may be a log at a path that cannot be looked at, and what to do; None: it can be, or there is nothing."""
-    if path.is_symlink() and not path.exists():
+    if os.path.islink(path) and not path.exists():  # noqa: PTH114 - of a name that no file can have, as a damaged bag gives one
         return f"a dead link, to {path.readlink()}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
         return "a pointer of DVC, and what it stands for is not here: fetch that with dvc pull"
     if is_pipe_or_device(path):
         return "a pipe or a device, and a log is read more than once: write what it gives to a file, and name that"
-    if not path.is_dir():
+    if not os.path.isdir(path):  # noqa: PTH112 - as above
         return None
     try:
         with os.scandir(path):
