@@ -9,5 +9,6 @@ SELECT
     coalesce(sum(round(km * 1e6)::HUGEINT), 0) / 1e6 AS km,
     coalesce(sum(round(duration_s * 1e6)::HUGEINT), 0) / 3.6e9 AS hours,
     coalesce(sum(unknown), 0)::BIGINT AS unknown,
-    coalesce(sum(counts['error']), 0)::BIGINT AS errors
+    coalesce(sum(counts['error']), 0)::BIGINT AS errors,
+    coalesce(sum(beyond_limits), 0)::BIGINT AS beyond_limits
 FROM (SELECT *, coalesce(log_sha256, key) AS content FROM {of})

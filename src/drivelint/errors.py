@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import traceback
 from enum import IntEnum
 from typing import Final
@@ -19,6 +20,9 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
+LEAST_BYTES: Final = 2_000_000_000
+"""With fewer addresses (`ulimit -v`) libraries end the process while they are loaded, in words and with exit codes of their own."""
+_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and give the same command again"
 LONGEST_LINE: Final = 2000
 """Characters of an error that are shown: a damaged file may hold a name of a megabyte."""
 
@@ -74,12 +78,16 @@ class MapError(DriveLintError):
 
 
 class MemoryShortError(DriveLintError):
-    """The machine has too little memory to judge even one ego of a drive."""
+    """The machine has too little memory to judge even one ego of a drive; or its user has set a limit, and then the run ends (75)."""
 
     exit_code = ExitCode.NOT_JUDGED
 
     def __init__(self, what: str) -> None:
-        super().__init__(f"{what}: needs more memory than this machine has: use a larger one, or fewer --rules")
+        if least_limit_bytes() is None:
+            super().__init__(f"{what}: needs more memory than this machine has: use a larger one, or fewer --rules")
+        else:
+            super().__init__(f"{what}: {_LIMITED}")
+            self.exit_code = ExitCode.TEMPFAIL
 
 
 class TraceError(DriveLintError):
@@ -96,3 +104,35 @@ class InternalError(DriveLintError):
     """A fault of drivelint itself on one drive: the drive is not judged, the others are."""
 
     exit_code = ExitCode.NOT_JUDGED
+
+
+_NO_MEMORY: Final = (
+    "bad_alloc",
+    "cannot allocate memory",
+    "can't start new thread",
+    "out of memory",
+    "failed to allocate",
+)
+
+
+def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
+    """Return what to say of an error that is no fault of the program, and the exit code; None: it is one.
+
+    A limit of memory strikes anywhere, also where a library is loaded or a thread begins, and each library says it in its own words.
+    """
+    if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _NO_MEMORY):
+        limited = least_limit_bytes() is not None
+        return _LIMITED if limited else "there is too little memory: give the same command again", ExitCode.TEMPFAIL
+    if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+        return f"{error.filename}: the name is too long for this system: choose a shorter one", ExitCode.USAGE
+    return None
+
+
+def least_limit_bytes() -> int | None:
+    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    soft = [resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA)]
+    return min((limit for limit in soft if limit != resource.RLIM_INFINITY), default=None)

@@ -328,7 +328,7 @@ class _DeafInWorker:
 
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process."""
-    begin_worker(None, parent)
+    begin_worker(parent)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()

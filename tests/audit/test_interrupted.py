@@ -95,16 +95,22 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
 
 
 BLOCKED = """
+import multiprocessing
 import signal
-from drivelint.audit.executors.local import LocalPool
+from drivelint.audit.executors.local import deaf_to_ctrl_c
 
 def blocked():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
 
+def tell():
+    print(blocked(), flush=True)
+
 if __name__ == "__main__":
-    pool = LocalPool(1)
-    print(pool._pool.schedule(blocked).result(), blocked())
-    pool.close()
+    process = multiprocessing.get_context("spawn").Process(target=tell)
+    with deaf_to_ctrl_c():
+        process.start()
+    process.join()
+    print(blocked())
 """
 
 

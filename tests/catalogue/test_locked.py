@@ -97,6 +97,18 @@ ATTACKS = {
     "a sample of a table": (f"{GOOD} TABLESAMPLE 10%", 2, "a sample is another one every time"),
     "time travel": (f"{GOOD} AT (VERSION => 1)", 2, "AT (...) is not allowed"),
     "some rows": (f"{GOOD}\nLIMIT 5", 2, "LIMIT without ORDER BY"),
+    "a first row": (
+        GOOD.replace("speed_mps AS", "first(speed_mps) OVER (PARTITION BY ego_id) AS"),
+        1,
+        "first() without ORDER BY",
+    ),
+    "any row": (
+        of("(SELECT *, (SELECT any_value(x_m) FROM pair) AS y FROM ego_state)"),
+        2,
+        "any_value() without ORDER BY",
+    ),
+    "rows by number": (of("(SELECT *, row_number() OVER () AS n FROM ego_state)"), 2, "row_number() without ORDER BY"),
+    "a number beyond all": (of("ego_state", "1e999 > 2"), 1, "beyond all numbers"),
     "the order of rows": (of("ego_state POSITIONAL JOIN pair"), 2, "POSITIONAL JOIN depends"),
     "a CTE that shadows": (f"WITH\nstep AS (SELECT 1)\n{GOOD}", 2, "rename the CTE 'step'"),
     "a CTE like the engine's": (f"WITH _grid AS (SELECT 1)\n{GOOD}", 1, "rename the CTE '_grid'"),

@@ -71,6 +71,24 @@ def test_always(tmp_path: Path, values: list[Any], expected: tuple[str, str], wo
         assert row[column] is None or math.isfinite(row[column])
 
 
+@pytest.mark.parametrize(
+    ("sense", "column", "verdict"),
+    [
+        ("<=", "observed", "unknown"),
+        (">=", "required", "unknown"),
+        (">=", "observed", "fail"),
+        ("<=", "required", "fail"),
+    ],
+)
+def test_negative_infinity_keeps_nothing(tmp_path: Path, sense: str, column: str, verdict: str) -> None:
+    """It is no measure: where nothing was measured, a rule of an upper limit would pass."""
+    values = {"observed": "1.0", "required": "1.0", column: "'-inf'::DOUBLE + 0 * speed_mps"}
+    sql = f"SELECT drive_id, ego_id, t_ns, {values['observed']} AS observed, {values['required']} AS required FROM ego_state"
+    rule = write(tmp_path, INVARIANT | {"sense": f'"{sense}"', "unit": '"m/s"'} | SPEED, {"condition": sql})
+    (row,) = verdicts(rule, speeds([1.0, 1.0]))
+    assert row["verdict"] == verdict
+
+
 def test_infinity_is_stored_as_null(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL})
     (row,) = verdicts(rule, speeds([math.inf]))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from dataclasses import dataclass, field
+from time import monotonic
 from typing import TYPE_CHECKING, Final, Self
 
+from drivelint.audit.executors.local import computed_s, resident_bytes
 from tests.fuzz.outcome import Outcome
 from tests.fuzz.sources import removed, scratch
 from tests.fuzz.worker import Job, serve
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
 TIME_LIMIT_S: Final = 60.0
 START_LIMIT_S: Final = 180.0
 """The first answer of a process may take longer: it loads libraries and makes the valid files."""
+BUSY: Final = 30
+"""So many times a limit of computing is waited for: what else the machine does is no fault of a file."""
+MOST_BYTES: Final = 2**30
+"""Resident memory that a process may take for a file of some kilobytes."""
 CASES_PER_PROCESS: Final = 4000
 """What a process may keep is bounded by ending it."""
 
@@ -33,6 +39,8 @@ class Driver:
     _process: BaseProcess | None = None
     _connection: Connection | None = None
     _n: int = 0
+    _warm_bytes: int = 0
+    """What it had at its first answer, when libraries are loaded and the valid files of a kind are made."""
 
     def __enter__(self) -> Self:
         return self
@@ -50,9 +58,9 @@ class Driver:
             connection.send(job)
             try:
                 while True:
-                    if not connection.poll(limit):
+                    if (excess := self._excess(connection, limit)) is not None:
                         self._stop()
-                        yield Outcome(job.kind, at, "", "hang", f"no answer within {limit:g} s")
+                        yield Outcome(job.kind, at, "", *excess)
                         break
                     told = connection.recv()
                     limit = self.time_limit_s
@@ -80,8 +88,22 @@ class Driver:
         (self._home / "output").touch()
         self._process = context.Process(target=serve, args=(other, str(self._home / "output")), daemon=True)
         self._process.start()
+        self._warm_bytes = 0
         other.close()
         return self._connection, START_LIMIT_S
+
+    def _excess(self, connection: Connection, limit_s: float) -> tuple[str, str] | None:
+        """Wait for an answer. Return outcome and detail where the process computes, or stands still, for too long, or takes too much."""
+        assert self._process is not None
+        began_s, began_at = computed_s(self._process.pid), monotonic()
+        while not connection.poll(0.1):
+            took_s = computed_s(self._process.pid) - began_s
+            if took_s > limit_s or monotonic() - began_at > BUSY * limit_s:
+                return "hang", f"no answer within {limit_s:g} s of computing"
+            if self._warm_bytes and (taken := resident_bytes(self._process.pid) - self._warm_bytes) > MOST_BYTES:
+                return "memory", f"{taken >> 20} MiB more than the process has for valid files"
+        self._warm_bytes = self._warm_bytes or resident_bytes(self._process.pid)
+        return None
 
     def _ending(self) -> str:
         assert self._process is not None

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
+import subprocess
 import sys
+import time
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -17,10 +21,14 @@ from drivelint.formats import read_trace
 from drivelint.watch.server import ALARMS, LiveServer, alarm_schema, open_server
 from tests.shared_data import ROOT
 
-pytest.importorskip("foxglove")
 pytest.importorskip("websockets")
 
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Origin, Subprotocol
+
 from drivelint.watch.sources.foxglove_client import FoxgloveClient
+from drivelint.watch.sources.transports import is_loopback
 from tests.watch.foxglove_server import until
 
 if TYPE_CHECKING:
@@ -55,7 +63,7 @@ class AnyClient(FoxgloveClient):
         monkeypatch.setattr("drivelint.watch.sources.foxglove_client.is_watched", lambda _: True)
         super().__init__(f"ws://127.0.0.1:{server.port}")
         until(lambda: len(self._by_subscription) == n_channels)
-        until(lambda: sum(each.has_sinks() for each in server._channels.values()) == n_channels)
+        until(lambda: sum(server._server.n_subscriptions(each) for each in server._channels.values()) == n_channels)
 
     def messages(self, n: int) -> list[LiveMessage]:
         found: list[LiveMessage] = []
@@ -149,6 +157,103 @@ def test_a_port_that_is_taken_is_one_line() -> None:
 
 
 def test_without_the_extra_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "foxglove", None)
+    monkeypatch.delitem(sys.modules, "drivelint.watch.viewer_server", raising=False)
+    monkeypatch.setitem(sys.modules, "websockets.asyncio.server", None)
     with pytest.raises(UsageError, match=r"drivelint\[live\]"):
         LiveServer("127.0.0.1", 0)
+
+
+def test_a_page_of_another_site_is_refused_and_a_program_is_not(server: LiveServer) -> None:
+    uri = f"ws://127.0.0.1:{server.port}"
+    for origin in ("https://evil.example", "http://127.0.0.1:80", "null"):
+        with pytest.raises(InvalidStatus, match="403"):
+            connect(uri, origin=Origin(origin), subprotocols=[Subprotocol("foxglove.sdk.v1")])
+    until(lambda: len(server._server._notes) == 3)
+    assert server.notes()[0].startswith("--serve: a page of https://evil.example was refused: give --allow-origin")
+    assert server.notes() == []
+    with connect(uri, subprotocols=[Subprotocol("foxglove.sdk.v1")]) as program:
+        assert json.loads(program.recv())["op"] == "serverInfo"
+
+
+def test_a_page_that_is_allowed_may_watch() -> None:
+    with open_server("127.0.0.1:0", [], ["https://app.foxglove.dev/"]) as server:
+        assert server is not None
+        uri = f"ws://127.0.0.1:{server.port}"
+        with connect(
+            uri, origin=Origin("https://app.foxglove.dev"), subprotocols=[Subprotocol("foxglove.websocket.v1")]
+        ) as page:
+            assert json.loads(page.recv())["op"] == "serverInfo"
+
+
+def test_words_that_nobody_understands_end_no_connection(server: LiveServer) -> None:
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=[Subprotocol("foxglove.sdk.v1")]) as viewer:
+        viewer.send("no JSON")
+        viewer.send(b"\x00")
+        viewer.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 1}, 7]}))
+        viewer.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 4, "channelId": server._alarms}]}))
+        until(lambda: server._server.n_subscriptions(server._alarms) == 1)
+        server.publish_alarm(ALARM)
+        found = [viewer.recv(timeout=5) for _ in range(3)]
+    assert isinstance(found[-1], bytes)
+    assert found[-1][:5] == b"\x01\x04\x00\x00\x00"
+
+
+@pytest.mark.parametrize("address", [":0", "127.0.0.1:0", "localhost:0", "[::1]:0"])
+def test_without_a_host_this_machine_alone_can_watch(address: str) -> None:
+    if address == "[::1]:0" and not socket.has_ipv6:
+        pytest.skip("this machine has no IPv6")
+    with open_server(address, []) as server:
+        assert server is not None
+        (host, *_) = next(iter(server._server._server.sockets)).getsockname()
+        assert is_loopback(host)
+        assert server.notes() == []
+
+
+def test_an_address_that_others_reach_is_said() -> None:
+    with open_server("0.0.0.0:0", []) as server:
+        assert server is not None
+        assert server.notes() == ["--serve 0.0.0.0:0: whoever reaches this address can watch"]
+
+
+IDLE = """
+import socket, sys
+from drivelint.watch.server import LiveServer
+
+server = LiveServer("127.0.0.1", 0)
+print(server.port, flush=True)
+sys.stdin.readline()
+server.close()
+print("closed", flush=True)
+"""
+
+
+def test_a_hundred_idle_connections_do_not_keep_the_program_from_ending() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", IDLE],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
+    ) as program:
+        assert program.stdout is not None
+        assert program.stdin is not None
+        port = int(program.stdout.readline())
+        silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(50)]
+        begun = [socket.create_connection(("127.0.0.1", port)) for _ in range(48)]
+        for each in begun:
+            each.sendall(b"GET / HTTP/1.1\r\nHost: a\r\n")
+        idle = ExitStack()
+        for _ in range(2):
+            idle.enter_context(connect(f"ws://127.0.0.1:{port}", subprotocols=[Subprotocol("foxglove.sdk.v1")]))
+        program.stdin.write("\n")
+        program.stdin.flush()
+        began = time.monotonic()
+        assert program.wait(30) == 0
+        took_s = time.monotonic() - began
+        assert program.stderr is not None
+        assert program.stderr.read() == ""
+        for each in [*silent, *begun]:
+            each.close()
+        idle.close()
+    assert took_s < 10.0  # two seconds on a machine that does nothing else

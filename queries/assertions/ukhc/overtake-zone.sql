@@ -34,7 +34,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.
     -- An overtake that was not completed has no pull-out and cut-in angles of its own, so the profile `observed` has no zone: the rule
     -- fails if no other profile would have left enough time.
     coalesce(
-        any_value(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
+        max(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
         CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
     ) AS observed,
     -- The measure is the reason where there is one: what other profiles would have had is shown with the overtakes.

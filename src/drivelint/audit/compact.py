@@ -44,6 +44,7 @@ RECEIPT_SCHEMA: Final = pa.schema(
         ("counts", pa.map_(pa.string(), pa.int64())),
         ("failed", pa.map_(pa.string(), pa.int64())),
         ("unknown", pa.int64()),
+        ("beyond_limits", pa.int64()),
         ("tags", pa.map_(pa.string(), pa.string())),
         ("options", pa.string()),
         ("n_in_batch", pa.int64()),

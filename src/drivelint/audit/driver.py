@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.audit.model import AuditDrive, Receipt, Task
 from drivelint.audit.worker import TABLES, rows_sha256, with_key, write_batch
 from drivelint.drive.trace import DriveInput
+from drivelint.errors import DriveLintError, InternalError
 from drivelint.result import collect
 from drivelint.result.names import TABLE_OF_FILE
 from drivelint.result.schemas import empty_table
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from drivelint.audit.executors import Executor
+    from drivelint.audit.executors import Executor, Outcome
     from drivelint.audit.model import JudgeSettings
     from drivelint.audit.store import ResultStore
 
@@ -73,7 +74,7 @@ class Driver:
     done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
-        """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`."""
+        """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`; any other is that of its drives."""
         waiting = iter(todo)
         again: deque[Task] = deque()
         n_running = 0
@@ -88,10 +89,10 @@ class Driver:
                 return
             for outcome in self.executor.wait():
                 n_running -= 1
-                if outcome.error is not None:
+                if isinstance(outcome.error, DriveLintError) and not isinstance(outcome.error, InternalError):
                     raise outcome.error
-                if outcome.lost is not None:
-                    again.extend(self._after_loss(outcome.task, outcome.lost))
+                if (why := _loss(outcome)) is not None:
+                    again.extend(self._after_loss(outcome.task, why))
                 else:
                     self.done(outcome.task.drives)
                 for receipt in outcome.receipts:
@@ -134,6 +135,14 @@ class Driver:
             options=drive.options_json,
         )
         return write_batch(self.results, rows, [receipt])
+
+
+def _loss(outcome: Outcome) -> str | None:
+    """Return why a task has no result; None: it has one. An unexpected error, such as one for lack of memory, is of its drives."""
+    if outcome.error is None:
+        return outcome.lost
+    words = (str(outcome.error).splitlines() or [""])[0][:200]
+    return f"the worker met an unexpected error: {type(outcome.error).__name__}: {words}"
 
 
 def empty_rows() -> dict[str, pa.Table]:

@@ -82,6 +82,7 @@ class Receipt:
     of `n_in_batch` drives in all.
     `off_map`: the map does not fit it. `rows_sha256`: hash of these rows, whatever other drives are in the file.
     `counts`: verdict -> rows; `failed`: severity -> failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules.
+    `beyond_limits`: of the verdicts that are errors, those of rules that took too much time or memory.
     `options`: those of the drive, as JSON.
     """
 
@@ -104,6 +105,7 @@ class Receipt:
     counts: dict[str, int] = field(default_factory=dict)
     failed: dict[str, int] = field(default_factory=dict)
     unknown: int = 0
+    beyond_limits: int = 0
     tags: dict[str, str] = field(default_factory=dict)
     options: str = ""
     n_in_batch: int = 1

@@ -29,6 +29,7 @@ from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 from drivelint.errors import UsageError
 from drivelint.phrases import listed, plural
 from drivelint.result.files import parquet_bytes
@@ -50,6 +51,8 @@ RULES_FILE: Final = "rules.parquet"
 _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
+WORKER_BYTES: Final = 500_000_000
+"""What a worker takes beside its database: programs, rules, and a log that is being read."""
 _ALIKE: Final = 0.8
 """From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 
@@ -202,7 +205,7 @@ def _judge(
             driver = Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None)
             while True:
                 todo = claims.mine(listing.todo(con)) if claims else listing.todo(con)
-                driver.run(tasks(todo, request.out, id_, request.settings, ahead=ahead, most=most))
+                driver.run(tasks(todo, request.out, id_, _settings_of_workers(request), ahead=ahead, most=most))
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_taken:
@@ -212,12 +215,21 @@ def _judge(
     return counted
 
 
+def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
+    """Return the settings with so little memory for the database that the worker has enough beside it. It changes no result."""
+    if request.worker_memory is None:
+        return request.settings
+    memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
+    left = max(LEAST_MEMORY, request.worker_memory - WORKER_BYTES)
+    return replace(request.settings, memory=min(memory, left))
+
+
 def _compact_apart(out: str) -> None:
     """Pack what is whole in a process of its own, so that what its libraries keep does not add up in the driver. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
-        ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(None, os.getpid())) as apart,
+        ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(os.getpid(),)) as apart,
     ):
         with deaf_to_ctrl_c():
             packing = apart.submit(_compact_there, out)

@@ -32,6 +32,7 @@ class AuditSummary:
     """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
+    `errors`: verdicts that are errors; `beyond_limits`: of these, those of rules that took too much time or memory.
     `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
     their end. `copies`: judged drives whose logs have the content of another judged one's; `copies_not_judged`: those of the drives that
     were not judged. Of a whole audit, way, time, findings, contacts and unknown verdicts are those of each content once, as on the fleet
@@ -51,6 +52,7 @@ class AuditSummary:
     failed: dict[str, int] = field(default_factory=dict)
     unknown: int = 0
     errors: int = 0
+    beyond_limits: int = 0
     digest: str | None = None
     robust: bool = False
     n_asked: int | None = None
@@ -89,6 +91,7 @@ class AuditSummary:
         self.failed = dict(Counter(self.failed) + Counter(receipt.failed))
         self.unknown += receipt.unknown
         self.errors += receipt.counts.get("error", 0)
+        self.beyond_limits += receipt.beyond_limits
 
     def plus(self, other: AuditSummary) -> AuditSummary:
         """Return what both come to together, but for what is only told of a whole audit."""
@@ -104,6 +107,7 @@ class AuditSummary:
             "hours",
             "unknown",
             "errors",
+            "beyond_limits",
         )
         both = {name: getattr(self, name) + getattr(other, name) for name in names}
         return replace(self, **both, failed=dict(Counter(self.failed) + Counter(other.failed)))
@@ -111,7 +115,7 @@ class AuditSummary:
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
         """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0."""
         gating = SEVERITIES[: SEVERITIES.index(fail_on) + 1] if fail_on != "never" else ()
-        if self.errors:
+        if self.errors > self.beyond_limits:
             return ExitCode.USAGE
         if any(self.failed.get(severity) for severity in gating):
             return ExitCode.FAILED
@@ -119,6 +123,7 @@ class AuditSummary:
         if (
             self.refused
             or self.quarantined
+            or self.beyond_limits
             or self.off_map
             or self.missing_parts
             or nothing

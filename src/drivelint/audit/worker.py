@@ -31,7 +31,7 @@ from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
-from drivelint.result.model import off_map_reason
+from drivelint.result.model import BEYOND_LIMITS, off_map_reason
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -195,17 +195,22 @@ _warm: dict[JudgeSettings, Judge] = {}
 
 def run_task(task: Task) -> list[Receipt]:
     """Judge a task in this process, whose database stays for the next one. Errors: `OutputError`, `UsageError`, `RuleError`."""
-    if task.settings not in _warm:
-        for judge in _warm.values():
-            judge.close()
-        _warm.clear()
-        _warm[task.settings] = Judge(task.settings)
+    warm_up(task.settings)
     with ExitStack() as after_error:
         # an error may leave the database in any state, so the next task gets a new one
         after_error.callback(lambda: _warm.pop(task.settings).close())
         receipts = _warm[task.settings].judge(task)
         after_error.pop_all()
     return receipts
+
+
+def warm_up(settings: JudgeSettings) -> None:
+    """Open the database in which this process judges by these settings, if it is not open yet."""
+    if settings not in _warm:
+        for judge in _warm.values():
+            judge.close()
+        _warm.clear()
+        _warm[settings] = Judge(settings)
 
 
 def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
@@ -224,6 +229,7 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
     (about,) = rows["drives"].to_pylist()
     verdicts = rows["verdicts"]
     gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))
+    limited = pc.is_in(verdicts["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
     return {
         "status": "judged" if about["status"] == "judged" else "refused",
         "drive_id": about["drive_id"],
@@ -238,6 +244,7 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
         "counts": _counts(verdicts, "verdict"),
         "failed": _counts(gating.filter(pc.equal(gating["verdict"], "fail")), "severity"),
         "unknown": _counts(gating, "verdict").get("unknown", 0),
+        "beyond_limits": _counts(verdicts.filter(limited), "verdict").get("error", 0),
     }
 
 

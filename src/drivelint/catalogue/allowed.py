@@ -14,8 +14,9 @@ ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
 
 _FACTS: Final = toml_beside(__file__, "allowed.toml")
-NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES = (
-    frozenset[str](_FACTS[name]) for name in ("nodes", "sources", "expressions", "table_functions", "refused_names")
+NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES, ORDERED = (
+    frozenset[str](_FACTS[name])
+    for name in ("nodes", "sources", "expressions", "table_functions", "refused_names", "ordered")
 )
 _STOCK: Final = frozenset[str](chain.from_iterable(_FACTS["functions"].values()))
 _MACRO = re.compile(r"\bMACRO\s+(\w+)", re.IGNORECASE)

@@ -165,6 +165,8 @@ class _Found:
                 f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
                 "nothing but the tables, and the library's macros",
             )
+        if name in allowed.ORDERED and not _is_ordered(part):
+            self._refuse(part, f"{name}() without ORDER BY takes another row every time: order them, or write max(...)")
         if name == "why":
             place = self._text.at(offset_of(part))
             code, *rest = part["children"]
@@ -200,6 +202,11 @@ class _Found:
 
     def _refuse(self, part: Node, message: str) -> None:
         raise RuleError(f"{self._text.at(offset_of(part))}: {message}")
+
+
+def _is_ordered(part: Node) -> bool:
+    """Whether an aggregate or a window function has an order of its rows."""
+    return bool(part.get("orders") or (part.get("order_bys") or {}).get("orders"))
 
 
 def _results(part: Node) -> list[str]:

@@ -140,6 +140,8 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     the time to read them.
     """
     pack = file.resolve().parent
+    if not file.is_file():
+        raise RuleError(f"{file}: a rule stands in a file, and this is none")
     return _checked_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
 
 

@@ -21,7 +21,7 @@ from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.setting_options import known_settings, path_settings
-from drivelint.errors import DriveLintError, ExitCode, UsageError
+from drivelint.errors import LEAST_BYTES, DriveLintError, ExitCode, UsageError, least_limit_bytes, of_the_machine
 from drivelint.phrases import inert, inert_json, inert_line
 from drivelint.settings import find_settings, read_settings
 from drivelint.without_pandas import leave_out_pandas
@@ -172,8 +172,10 @@ def main() -> NoReturn:
     from typer.exceptions import TyperException
 
     streams.prepare()
+    if (limit := least_limit_bytes()) is not None and limit < LEAST_BYTES:
+        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: give more", ExitCode.TEMPFAIL)
     leave_out_pandas()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: what is judged is kept
+    _end_as_ctrl_c_does()
     try:
         code = app(standalone_mode=False, default_map=_settings())
         sys.stdout.flush()
@@ -191,6 +193,8 @@ def main() -> NoReturn:
     except Exception as error:  # noqa: BLE001 - Python's own exit code for it is that of a broken rule
         import traceback
 
+        if (told := of_the_machine(error)) is not None:
+            _fail(*told)
         streams.say(inert(traceback.format_exc().rstrip()))
         _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
@@ -198,6 +202,14 @@ def main() -> NoReturn:
         temporary.remove_all()
         os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
     sys.exit(code or 0)
+
+
+def _end_as_ctrl_c_does() -> None:
+    """Let SIGTERM, and SIGHUP of a terminal that is gone, end a command as Ctrl-C does: what is judged is kept. `nohup` holds."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    hang_up = getattr(signal, "SIGHUP", None)  # not on Windows
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        signal.signal(hang_up, signal.default_int_handler)
 
 
 def _asked(error: Exception) -> str:

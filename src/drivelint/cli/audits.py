@@ -51,10 +51,11 @@ def audit(
     memory: options.MemorySize = None,
     worker_memory: Annotated[
         str | None,
-        option("--worker-memory", "SIZE", "Address space of one worker; a drive that needs more is quarantined."),
+        option("--worker-memory", "SIZE", "Resident memory of one worker; a drive that needs more is quarantined."),
     ] = None,
     drive_timeout: Annotated[
-        float, option("--drive-timeout", "S", "Seconds for a drive; one that takes longer is quarantined.", min=1)
+        float,
+        option("--drive-timeout", "S", "Seconds of computing for a drive; one that takes more is quarantined.", min=1),
     ] = 1800.0,
     shard: Annotated[
         str | None, option("--shard", "I/N", "Judge the I-th of N parts; `drivelint merge DEST` packs them at the end.")

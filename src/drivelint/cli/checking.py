@@ -104,7 +104,7 @@ def check(
         option(
             "--rule-timeout",
             "S",
-            "Seconds that a rule may take on a batch of drives: beyond them that rule is an error, the others go on.",
+            "Seconds that a rule may compute on a batch of drives: beyond them that rule has not judged, the others go on.",
             min=0.1,
         ),
     ] = 30.0,

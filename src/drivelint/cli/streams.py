@@ -48,7 +48,12 @@ def _told(error: OSError) -> Exception:
 
 
 def prepare() -> None:
-    """Make both streams writable whatever the caller did: closed ones take what is written and lose it."""
+    """Make both streams writable whatever the caller did: closed ones take what is written and lose it.
+
+    A terminal of no columns, as some programs say of the one that they are, is one whose width is not known.
+    """
+    if not os.environ.get("COLUMNS", "").strip().lstrip("0"):
+        os.environ.pop("COLUMNS", None)
     for no, name in ((1, "stdout"), (2, "stderr")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(_to_nowhere(no), "w", encoding="utf-8"))

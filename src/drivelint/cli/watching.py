@@ -67,6 +67,14 @@ def watch(
         str | None,
         option("--serve", "HOST:PORT", "Show it live: a WebSocket server for Foxglove. Needs drivelint[live]."),
     ] = None,
+    allow_origin: Annotated[
+        Texts,
+        option(
+            "--allow-origin",
+            "ORIGIN",
+            "With --serve: pages of this origin may watch, such as https://app.foxglove.dev. Repeatable. Default: no page may.",
+        ),
+    ] = None,
     replay: Annotated[
         float | None,
         option(
@@ -149,6 +157,7 @@ def watch(
         advise=advise,
         on=tuple(on or ()),
         serve=serve,
+        allow_origin=tuple(allow_origin or ()),
     )
     emit, interruption = _Printer(), WatchInterruption()
     with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
@@ -206,7 +215,7 @@ def _watch_and_check(
         temporary_folder() as folder,
         # rules and map are read here: a fault in them ends the watch before the source or COMMAND starts
         WindowJudge(settings) as judge,
-        open_server(settings.serve, judge.rules) as server,
+        open_server(settings.serve, judge.rules, settings.allow_origin) as server,
         open_source(settings, progress) as opened,
         Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,
     ):

@@ -204,6 +204,8 @@ def _digest(path: Path) -> str:
     try:
         if path.is_dir():
             return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
+        if not path.is_file():
+            return ""
         with path.open("rb") as file:
             return file_digest(file, "sha256").hexdigest()
     except OSError:

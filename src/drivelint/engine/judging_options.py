@@ -28,4 +28,4 @@ class JudgingOptions(DriveInput):
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
     rule_timeout: float = DEFAULT_TIMEOUT_S
-    """Seconds that a rule may take on a batch of drives."""
+    """Seconds that a rule may compute on a batch of drives."""

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import with_columns
-from drivelint.engine.batch import are_few, are_large, skipped_egos_by_part
+from drivelint.engine.batch import BATCH_STATES, are_few, are_large, skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
 from drivelint.engine.interruption import InterruptedRunError, Interruption
@@ -131,6 +131,7 @@ class JudgingSession:
         if not drives:
             return
         done = False
+        self._limits.batches = sum(drive.size for drive in drives) / BATCH_STATES
         while not done:
             try:
                 one_core = store.one_thread(self._con) if are_few(drives) else nullcontext()

@@ -265,7 +265,7 @@ class Evaluation:
 
     def _record(self, binding: Binding, code: str, told: str | None = None, *, again: bool = False) -> None:
         values = {"no": binding.no, "code": code, "told": told, "again": again, "rule": binding.rule.id}
-        self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.seconds})
+        self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_s})
 
 
 def _is_shipped(binding: Binding) -> bool:

@@ -1,17 +1,19 @@
-"""Holds each rule to a wall clock and to an amount of memory.
+"""Holds each rule to an amount of computing time and of memory.
 
-A statement beyond its limit is interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that
-works on one huge value, or many of them, goes on. What to do about such a rule is for whoever made the limits (`DeafRules`).
+The time is that of the processor, so that verdicts do not depend on what else the machine does. A statement beyond its limit is
+interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that works on one huge value, or many of
+them, goes on. What to do about such a rule is for whoever made the limits (`DeafRules`).
 """
 
 from __future__ import annotations
 
 import os
+import threading
 from collections import Counter
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Event, Lock, Thread
-from time import monotonic
+from time import process_time
 from typing import TYPE_CHECKING, Final, Literal, NoReturn, Protocol
 
 from drivelint.receipts.events import machine_bound
@@ -22,12 +24,12 @@ if TYPE_CHECKING:
     import duckdb
 
 DEFAULT_TIMEOUT_S: Final = 30.0
-"""Per rule and batch."""
+"""Seconds of computing per rule and batch."""
 MOST_EXCESSES: Final = 3
 """A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
 _LOOK_S: Final = 0.05
 _MEMORY_GRACE_S: Final = 0.5
-"""How long a rule may take to heed an interrupt for its memory, unless it takes too much more meanwhile."""
+"""How long a rule may compute before it heeds an interrupt for its memory, unless it takes too much more meanwhile."""
 _MOST_EXCESS: Final = 1.25
 """A rule that has taken this many times its memory limit is not waited for any longer."""
 
@@ -60,8 +62,8 @@ class DeafRules(Protocol):
 class RuleLimits:
     """The limits of every rule of a run, and which rules have lost their turn.
 
-    `seconds`: per rule and batch, None: no limit. `deaf`: for rules that did not heed the interrupt within the same time again; None:
-    the interrupt is repeated until the rule ends.
+    `seconds`: of computing per rule and batch, None: no limit. `deaf`: for rules that did not heed the interrupt within the same time
+    again; None: the interrupt is repeated until the rule ends.
     """
 
     def __init__(
@@ -72,6 +74,8 @@ class RuleLimits:
         deaf: DeafRules | None = None,
     ) -> None:
         self.seconds = seconds
+        self.batches = 1.0
+        """How many batches what is judged makes, if it is more than one: a long drive is not cut."""
         self.memory: Callable[[], int | None] = lambda: None
         """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
@@ -79,6 +83,11 @@ class RuleLimits:
         self._lost: dict[str, Excess] = {}
         self._excesses: Counter[str] = Counter()
         self.forget()
+
+    @property
+    def allowed_s(self) -> float | None:
+        """Seconds that a rule may compute on what is judged at present."""
+        return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
     def lost(self, rule_id: str) -> Excess | None:
         """Return the limit because of which a rule is not tried any more; None: it is tried."""
@@ -99,7 +108,7 @@ class RuleLimits:
         if self.seconds is None:
             yield held
             return
-        args = (con, rule_id, held, alone)
+        args = (con, rule_id, held, alone, threading.get_native_id())
         watch = Thread(target=self._watch, args=args, daemon=True, name=f"limits of {rule_id}")
         watch.start()
         try:
@@ -112,13 +121,13 @@ class RuleLimits:
                 if self._excesses[rule_id] >= MOST_EXCESSES:
                     self._lost[rule_id] = held.excess
 
-    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool) -> None:
-        seconds = self.seconds or 0.0
-        until, before = monotonic() + seconds, resident_bytes()
+    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool, thread: int) -> None:
+        seconds = self.allowed_s or 0.0
+        work, before = Work(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # what the process may have at most before the rule is not waited for
         while not held.over.wait(min(_LOOK_S, seconds)):
-            now, resident = monotonic(), resident_bytes()
+            now, resident = work.seconds(), resident_bytes()
             excess = held.excess
             if excess is None:
                 memory = self.memory() if alone else None
@@ -127,7 +136,7 @@ class RuleLimits:
                 most = None if memory is None else before + int(_MOST_EXCESS * memory)
                 if memory is not None and resident - before > memory:
                     excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
-                elif now >= until:
+                elif now >= seconds:
                     excess, patience = "rule_timeout", now + seconds
                 else:
                     continue
@@ -141,6 +150,36 @@ class RuleLimits:
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
                     self._deaf.found(self._task, rule_id, excess)
+
+
+class Work:
+    """Counts the seconds that this process computes, but for its other Python threads, such as those that read logs meanwhile.
+
+    `thread`: the system's number of the thread whose work it is; the database's own threads work for it, too.
+    """
+
+    def __init__(self, thread: int) -> None:
+        self._thread = thread
+        self._seconds = 0.0
+        self._process_s, self._others_s = process_time(), self._others()
+
+    def seconds(self) -> float:
+        """Return the seconds of work until now."""
+        process_s, others_s = process_time(), self._others()
+        by_others = sum(now - self._others_s.get(thread, 0.0) for thread, now in others_s.items())
+        self._seconds += max(0.0, process_s - self._process_s - by_others)
+        self._process_s, self._others_s = process_s, others_s
+        return self._seconds
+
+    def _others(self) -> dict[int, float]:
+        """Return how long each other Python thread has computed; nothing where the system does not tell."""
+        found: dict[int, float] = {}
+        for thread in threading.enumerate():
+            if (number := thread.native_id) is not None and number != self._thread:
+                with suppress(OSError, ValueError, IndexError):
+                    told = Path(f"/proc/self/task/{number}/schedstat").read_text(encoding="ascii")
+                    found[number] = int(told.split()[0]) / 1e9
+        return found
 
 
 def resident_bytes() -> int:

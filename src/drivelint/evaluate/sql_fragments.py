@@ -78,21 +78,26 @@ def condition_ctes(rule: Rule) -> str:
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
     (NULL: unknown),
     gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
-    NaN is NULL. What is missed by less than the `error` of the value is unknown.
+    NaN is NULL, and so is negative infinity, which no measure is, where it would keep any limit. What is missed by less than the `error`
+    of the value is unknown.
     A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
     """
     has = rule.has_column
     measured = rule.sense != "holds"
     # for >= and <= values are rounded, so that 1.5 m still keeps "at least 1.5 m" after the rounding errors of geometry
     exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"
-    number = f"CASE WHEN isnan({{0}}::DOUBLE) THEN NULL ELSE {exact} END AS {{0}}"
+    number = f"CASE WHEN isnan({{0}}::DOUBLE){{1}} THEN NULL ELSE {exact} END AS {{0}}"
+    keeps_all = {"required" if rule.sense[0] == ">" else "observed": " OR {0}::DOUBLE = '-Infinity'::DOUBLE"}
     columns = [
         "drive_id::VARCHAR AS drive_id", "ego_id::VARCHAR AS ego_id", "t_ns::BIGINT AS t_ns",
         f"{'bounded_text(object_id)' if has('object_id') else 'NULL::VARCHAR'} AS object_id",
         f"{'ref_id' if has('ref_id') else 'NULL'}::INTEGER AS ref_id",
         f"{'bounded_text(profile)' if has('profile') else 'NULL::VARCHAR'} AS profile",
         f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
-        *(number.format(column) if measured else f"NULL::DOUBLE AS {column}" for column in ("observed", "required")),
+        *(
+            number.format(column, keeps_all.get(column, "").format(column)) if measured else f"NULL::DOUBLE AS {column}"
+            for column in ("observed", "required")
+        ),
         *(["holds::BOOLEAN AS holds"] if not measured else []),
         *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
         *(["coalesce(error::DOUBLE, 0.0) AS error"] if has("error") else []),

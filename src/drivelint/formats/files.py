@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import re
@@ -13,7 +14,7 @@ from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.commonroad import scenario as commonroad
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
-from drivelint.formats.search import tree, why_not_here
+from drivelint.formats.search import is_pipe_or_device, tree, why_not_here
 from drivelint.formats.sumo import fcd as sumo
 from drivelint.phrases import shown
 
@@ -167,6 +168,8 @@ def identify(path: Path) -> Identity:
 
     Errors: `TraceError` when it cannot be read.
     """
+    if (why := why_not_here(path)) is not None:
+        raise TraceError(f"{path}: {why}")
     try:
         if path.is_dir():
             folder = hashlib.sha256()
@@ -186,5 +189,7 @@ def identify(path: Path) -> Identity:
 
 
 def _sha256(path: Path) -> str:
+    if is_pipe_or_device(path):
+        raise OSError(errno.EINVAL, "it is a pipe or a device", str(path))
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.files import is_utf8
 from drivelint.formats.probe import wrapping
+from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import shown
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
@@ -43,6 +44,8 @@ def read_source(path: Path) -> MapSource:
     """Return the file's name and bytes; `MapError` when it is missing, unreadable, empty or far too large."""
     try:
         size = path.stat().st_size
+        if is_pipe_or_device(path):
+            raise MapError(f"map {path}: a pipe or a device: write what it gives to a file, and name that")
         content = path.read_bytes() if size <= MAX_BYTES else b""
     except FileNotFoundError:
         raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None

@@ -53,6 +53,8 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     `only_waivers`: the file is for waivers only, else they stand beside other settings. Errors: `UsageError` with file and line for
     bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
     """
+    if file.exists() and not file.is_file():
+        raise UsageError(f"{file}: waivers stand in a file, and this is none")
     try:
         text = file.read_text(encoding="utf-8")
         content = tomllib.loads(text) if only_waivers else settings_table(file)

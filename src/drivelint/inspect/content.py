@@ -17,6 +17,7 @@ from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.ros2.types import message_kind
+from drivelint.formats.search import is_pipe_or_device
 from drivelint.formats.tables import ipc, parquet
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import open_sheet
@@ -61,6 +62,8 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
         if bag.is_bag(path):
             return Content(channels=_channels(path), notes=notes)
         return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
+    if is_pipe_or_device(path):
+        return Content(notes=notes)  # who reads it as a drive says what is wrong with it
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):

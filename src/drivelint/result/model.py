@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
 """Reasons for which the signal `registration` is missing that tell of a map which does not fit."""
+BEYOND_LIMITS: Final = ("rule_timeout", "out_of_memory")
+"""Reason codes of errors that are no fault of a rule's SQL: it took too much time or memory. Another machine may judge by it."""
 
 
 class ExitStatus(NamedTuple):
@@ -98,8 +100,9 @@ class Result:
 def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
-    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2. What failed does
-    not hide what was not judged or was lost: whoever mends the one would meet the other in the next run.
+    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2, and one that went
+    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: whoever mends the one would meet the
+    other in the next run.
     """
     status = next(_outcomes(result))
     hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
@@ -110,10 +113,8 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     """Yield what the run comes to, weightiest first."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
-    erring = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))["rule_id"]
-    if len(erring):
-        rules = listed(sorted(erring.unique().to_pylist()))
-        yield ExitStatus(ExitCode.USAGE, f"{plural(len(erring), 'verdict')} in error: could not be run: {rules}")
+    if (erring := _erring(result, beyond_limits=False)).num_rows:
+        yield ExitStatus(ExitCode.USAGE, f"{_in_error(erring)}: could not be run: {_rules_of(erring)}")
     if result.halted is not None:
         yield ExitStatus(ExitCode.FAILED, result.halted)
     stopped, let_through = _stopped(result), _let_through(result)
@@ -135,6 +136,8 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
+    if (limited := _erring(result, beyond_limits=True)).num_rows:
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: went beyond its limits: {_rules_of(limited)}")
     off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
@@ -147,6 +150,21 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
     if too_little := too_little_decided(result):
         yield ExitStatus(ExitCode.NOT_JUDGED, too_little)
+
+
+def _erring(result: Result, *, beyond_limits: bool) -> pa.Table:
+    """Return the verdicts that are errors because a rule took too much time or memory, or the others."""
+    rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))
+    limited = pc.is_in(rows["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
+    return rows.filter(limited if beyond_limits else pc.invert(limited))
+
+
+def _in_error(rows: pa.Table) -> str:
+    return f"{plural(rows.num_rows, 'verdict')} in error"
+
+
+def _rules_of(rows: pa.Table) -> str:
+    return listed(sorted(rows["rule_id"].unique().to_pylist()))
 
 
 def _lossy(result: Result) -> Iterator[ExitStatus]:

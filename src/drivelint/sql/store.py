@@ -221,6 +221,8 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
         try:
             con.execute(f"LOAD {quoted(file)}")
         except duckdb.Error as error:
+            if "allocate memory" in str(error):
+                raise MemoryShortError("the database") from error
             raise DriveLintError(
                 f"duckdb {duckdb.__version__} cannot load its spatial extension {file}: {error}; "
                 "install duckdb and duckdb-extension-spatial in the same version"

@@ -36,3 +36,5 @@ class WatchOptions(JudgingOptions):
     """`SEL=COMMAND`: what is run when there is an alarm by one of these rules."""
     serve: str | None = None
     """`HOST:PORT` of the watch's own WebSocket server for viewers."""
+    allow_origin: tuple[str, ...] = ()
+    """Origins of pages that may watch at `serve`."""

@@ -225,7 +225,7 @@ class Watch:
             self.watched.broken = str(error)
             self._emit(messages.note(str(error)))
             frames = None
-        for text in self._source.notes():
+        for text in (*self._source.notes(), *(() if self._server is None else self._server.notes())):
             self._emit(messages.note(text))
         while self._window.jumps:
             since_ns, until_ns = self._window.jumps.pop(0)

@@ -20,11 +20,11 @@ from drivelint.errors import UsageError
 from drivelint.formats.foxglove import messages as foxglove_messages
 from drivelint.phrases import one_line
 from drivelint.result.text import finite
+from drivelint.watch.sources.transports import LOOPBACK, is_loopback
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    import foxglove
     from mcap.records import Schema
 
     from drivelint.annotate.actor_boxes import RecordChunk
@@ -45,15 +45,20 @@ _ALARM: Final = {
 
 
 @contextmanager
-def open_server(address: str | None, rule_ids: Iterable[str]) -> Iterator[LiveServer | None]:
-    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. `rule_ids`: those that are judged. Errors: `UsageError`."""
+def open_server(
+    address: str | None, rule_ids: Iterable[str], origins: Sequence[str] = ()
+) -> Iterator[LiveServer | None]:
+    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. `:PORT` is this machine alone.
+
+    `rule_ids`: those that are judged; `origins`: of the pages that may watch. Errors: `UsageError`.
+    """
     if address is None:
         yield None
         return
     host, _, port = address.rpartition(":")
-    if not host or not port.isdecimal():
+    if not port.isdecimal() or int(port) > 65535:
         raise UsageError(f"--serve {address}: give a host and a port, such as 127.0.0.1:8765")
-    server = LiveServer(host, int(port), rule_ids)
+    server = LiveServer(host.strip("[]") or LOOPBACK, int(port), rule_ids, origins)
     try:
         yield server
     finally:
@@ -63,25 +68,23 @@ def open_server(address: str | None, rule_ids: Iterable[str]) -> Iterator[LiveSe
 class LiveServer:
     """Serves viewers at `ws://host:port`. Port 0: any that is free. `rule_ids`: the rules that may have margins.
 
-    Errors: `UsageError` where the extra is missing, or where nothing can be served there.
+    `origins`: of the pages that may watch. Errors: `UsageError` where the extra is missing, or where nothing can be served there.
     """
 
-    def __init__(self, host: str, port: int, rule_ids: Iterable[str] = ()) -> None:
+    def __init__(self, host: str, port: int, rule_ids: Iterable[str] = (), origins: Sequence[str] = ()) -> None:
         try:
-            import foxglove
+            from drivelint.watch.viewer_server import ViewerServer
         except ImportError as error:
             raise UsageError(
                 f"--serve {host}:{port}: {error.name} is not installed: pip install 'drivelint[live]'"
             ) from error
-        self._foxglove = foxglove
-        self._context = foxglove.Context()
         try:
-            self._server = foxglove.start_server(name="drivelint watch", host=host, port=port, context=self._context)
-        except (RuntimeError, OSError, ValueError) as error:
+            self._server = ViewerServer(host, port, origins)
+        except OSError as error:
             raise UsageError(f"--serve {host}:{port}: nothing can be served there: {one_line(str(error))}") from error
-        self._channels: dict[str, foxglove.Channel] = {}
+        self._notes = [] if is_loopback(host) else [f"--serve {host}:{port}: whoever reaches this address can watch"]
+        self._channels: dict[str, int] = {}
         self._clock: LogClock | None = None
-        self._is_closed = False
         scene, transform = foxglove_messages.schema("SceneUpdate"), foxglove_messages.schema("FrameTransform")
         # announced at once, so that a viewer can choose them before anything happens
         self._scene = self._channel(f"{PREFIX}/scene", "protobuf", scene)
@@ -93,7 +96,12 @@ class LiveServer:
     @property
     def port(self) -> int:
         """The port that is served."""
-        return int(self._server.port)
+        return self._server.port
+
+    def notes(self) -> list[str]:
+        """Return what is to be said of the address and of those who were refused, once."""
+        found, self._notes = self._notes, []
+        return [*found, *self._server.notes()]
 
     def publish_scene(self, trace_window: Trace) -> None:
         """Show the boxes of all who are there at the newest step of a window, instead of those shown before."""
@@ -106,9 +114,9 @@ class LiveServer:
         clock = self._times(newest.as_py())
         at = clock.at(newest.as_py())
         boxes = b"".join(_contents(actor_boxes.messages(there, rows, clock, 0)))
-        self._scene.log(draw.deletion(at) + boxes, log_time=at)
+        self._server.publish(self._scene, draw.deletion(at) + boxes, at)
         for content in _contents(actor_boxes.ego_transforms(there, rows, clock, 0)):
-            self._transform.log(content, log_time=at)
+            self._server.publish(self._transform, content, at)
 
     def publish_alarm(self, message: Mapping[str, Any]) -> None:
         """Publish an alarm of `drivelint.watch.messages`, at the time at which its rule was broken."""
@@ -122,24 +130,20 @@ class LiveServer:
 
     def close(self) -> None:
         """Send viewers away. May be called twice."""
-        if not self._is_closed:
-            self._is_closed = True
-            self._server.stop()
+        self._server.close()
 
-    def _margins(self, rule_id: str) -> foxglove.Channel:
+    def _margins(self, rule_id: str) -> int:
         topic = f"{PREFIX}/{measures.margin_topic(rule_id)}"
         return self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
 
-    def _channel(self, topic: str, encoding: str, schema: Schema) -> foxglove.Channel:
-        own = self._foxglove.Schema(name=schema.name, encoding=schema.encoding, data=schema.data)
-        made = self._foxglove.Channel(topic, message_encoding=encoding, schema=own, context=self._context)
-        self._channels[topic] = made
-        return made
+    def _channel(self, topic: str, encoding: str, schema: Schema) -> int:
+        self._channels[topic] = number = self._server.add_channel(topic, encoding, schema)
+        return number
 
-    def _log(self, channel: foxglove.Channel, message: Mapping[str, Any], t_ns: int) -> None:
+    def _log(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message has no field whose value is unknown
         known = {name: value for name, value in message.items() if finite(value) is not None}
-        channel.log(msgspec.json.encode(known), log_time=self._times(t_ns).at(t_ns))
+        self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
 
     def _times(self, t_ns: int) -> LogClock:
         """Return the clock of the log times: one for the whole watch, which no time before 0 can have begun."""

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import struct
+import zlib
 from typing import TYPE_CHECKING
 
 import pytest
+import zstandard
 from mcap.writer import CompressionType
 
 from drivelint.errors import TraceError
+from drivelint.formats.mcap import chunk
 from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.resume import MAGIC
 from tests.formats.logs import log, quality, read
 from tests.formats.mcap.damage import put, records
 from tests.formats.osi import osi_log
@@ -77,6 +81,53 @@ def test_chunk_bomb(whole: Path) -> None:
         TraceError, match=rf"byte {at}: a chunk of \d+ bytes that says it unpacks to {2**40}, beyond 512 MiB"
     ):
         read(put(whole, bytes(data)))
+
+
+def chunks_of(records_: bytes, n: int) -> bytes:
+    """Return an MCAP file of n chunks that hold these records."""
+    packed = zstandard.compress(records_, 19)
+    sizes = struct.pack("<QQQII", 0, 0, len(records_), zlib.crc32(records_), 4)
+    packed_chunk = sizes + b"zstd" + struct.pack("<Q", len(packed)) + packed
+    head = record(1, bytes(8)) + record(4, struct.pack("<HH", 1, 0) + bytes(12))
+    return MAGIC + head + record(6, packed_chunk) * n + record(15, bytes(4)) + record(2, bytes(20)) + MAGIC
+
+
+def record(opcode: int, body: bytes) -> bytes:
+    return struct.pack("<BQ", opcode, len(body)) + body
+
+
+def test_a_chunk_of_zeros_is_no_chunk_of_empty_records(tmp_path: Path) -> None:
+    """Each nine zeros were taken for a record without a name: half a gigabyte of them cost a hundred seconds."""
+    path = tmp_path / "zeros.mcap"
+    path.write_bytes(chunks_of(bytes(900), 1))
+    with pytest.raises(TraceError, match="a chunk with zero bytes in place of a record"):
+        messages(path)
+
+
+def test_more_records_than_a_file_of_its_size_can_have_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(chunk, "FREE_RECORDS", 1_000)
+    path = tmp_path / "many.mcap"
+    message = record(5, struct.pack("<HIQQ", 1, 0, 0, 0))
+    path.write_bytes(chunks_of(message * 900, 1))
+    assert len(messages(path)) == 900
+    path.write_bytes(chunks_of(message * 900, 2))
+    with pytest.raises(TraceError, match=r"many\.mcap: byte \d+: more than \d+ records in chunks of \d+ bytes"):
+        messages(path)
+
+
+def test_chunks_that_together_grow_too_much_are_refused_before_they_are_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(chunk, "FREE_BYTES", 100_000)
+    path = tmp_path / "grows.mcap"
+    empty = record(0x80, bytes(50_000))
+    path.write_bytes(chunks_of(empty, 1))
+    assert messages(path) == []
+    path.write_bytes(chunks_of(empty, 9))
+    with pytest.raises(TraceError, match=r"grows\.mcap: byte \d+: chunks of \d+ bytes that say they unpack to"):
+        messages(path)
 
 
 @pytest.mark.parametrize("compression", [CompressionType.ZSTD, CompressionType.LZ4, CompressionType.NONE])

@@ -188,6 +188,26 @@ def test_tcp_that_listens(tmp_path: Path, form: str) -> None:
     assert "lost_time" in {row["check_id"] for row in read(source.recording).tables["quality"].to_pylist()}
 
 
+@pytest.mark.parametrize("name", ["tcp://:{}", "tcp-listen://:{}", "udp://:{}", "TCP-LISTEN://:{}"])
+def test_without_a_host_this_machine_alone_is_listened_to(tmp_path: Path, name: str) -> None:
+    kind = socket.SOCK_DGRAM if name.startswith("udp") else socket.SOCK_STREAM
+    port = free_port(kind)
+    source = open_source(name.format(port), tmp_path, idle_s=5.0)
+    with socket.socket(socket.AF_INET, kind) as other:
+        other.bind(("127.0.0.2", port))  # taken, if the source had all addresses
+    assert source.notes() == []
+    source.close()
+
+
+@pytest.mark.parametrize("form", ["tcp-listen://0.0.0.0:{}", "udp://0.0.0.0:{}"])
+def test_an_address_that_others_reach_is_said(tmp_path: Path, form: str) -> None:
+    name = form.format(free_port(socket.SOCK_DGRAM if form.startswith("udp") else socket.SOCK_STREAM))
+    source = open_source(name, tmp_path, idle_s=5.0)
+    assert source.notes() == [f"{name}: whoever reaches this address can send what is judged"]
+    assert source.notes() == []
+    source.close()
+
+
 def test_tcp_waits_for_who_is_not_there_yet(tmp_path: Path) -> None:
     source = open_source(f"tcp://127.0.0.1:{free_port()}", tmp_path, idle_s=0.2)
     assert drained(source) == []

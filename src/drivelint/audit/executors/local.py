@@ -1,4 +1,4 @@
-"""A pool of processes on this machine: one warm worker per core, with a limit of memory and of time for each task."""
+"""A pool of processes on this machine: one warm worker per core, each held to an amount of memory and of computing time."""
 
 from __future__ import annotations
 
@@ -6,78 +6,187 @@ import multiprocessing
 import os
 import signal
 import sys
-from concurrent.futures import FIRST_COMPLETED, CancelledError, wait
-from concurrent.futures import TimeoutError as TookTooLongError
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections import deque
+from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
-from typing import TYPE_CHECKING
-
-from pebble import ProcessExpired, ProcessPool
+from multiprocessing.connection import wait
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Final
 
 from drivelint.audit.executors import Outcome
-from drivelint.audit.worker import run_task
+from drivelint.audit.worker import run_task, warm_up
+from drivelint.errors import InternalError
 from drivelint.without_pandas import leave_out_pandas
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from concurrent.futures import Future
+    from multiprocessing.connection import Connection
 
     from drivelint.audit.model import Receipt, Task
 
-TASKS_PER_WORKER = 500
+TASKS_PER_WORKER: Final = 500
 """After so many tasks a worker is replaced, so that nothing that a library keeps can add up."""
+_LOOK_S: Final = 0.1
+_BEGUN: Final = "begun"
+"""What a worker sends when it has opened its database, from where on its time counts."""
 
 
 class LocalPool:
-    """Runs tasks in processes. A process that dies is replaced.
+    """Runs tasks in processes. A process that dies is replaced, and one that takes too much is ended.
 
-    `workers`: number of processes, None: one per core. `memory`: limit of one process in bytes. `timeout_s`: limit per drive in seconds.
+    `workers`: number of processes, None: one per core. `memory`: resident bytes of one process. `timeout_s`: seconds per drive for which
+    a process may compute; its start does not count, nor the time in which others have the machine.
     """
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
-        self._workers = workers or cores()
+        self._capacity = workers or cores()
         self._memory = memory
         self._timeout_s = timeout_s
-        self._pool = self._started()
-        self._running: dict[Future[list[Receipt]], Task] = {}
+        self._waiting: deque[Task] = deque()
+        self._workers: list[_Worker] = []
 
     @property
     def capacity(self) -> int:
         """See `Executor.capacity`."""
-        return self._workers
+        return self._capacity
 
     def submit(self, task: Task) -> None:
         """See `Executor.submit`."""
-        limit = None if self._timeout_s is None else self._timeout_s * len(task.drives)
-        self._running[self._pool.schedule(run_task, args=[task], timeout=limit)] = task
+        self._waiting.append(task)
+        self._hand_over()
 
     def wait(self) -> list[Outcome]:
         """See `Executor.wait`."""
-        ended = wait(self._running, return_when=FIRST_COMPLETED).done if self._running else set()
-        if any(isinstance(future.exception(), BrokenProcessPool) for future in ended):
-            # a worker died between two tasks, and the pool has given up all of them
-            self.close()
-            self._pool = self._started()
-            ended = set(self._running)
-        return [_outcome(future, self._running.pop(future)) for future in ended]
-
-    def _started(self) -> ProcessPool:
-        pool = ProcessPool(
-            max_workers=self._workers,
-            max_tasks=TASKS_PER_WORKER,
-            initializer=begin_worker,
-            initargs=(self._memory, os.getpid()),
-            context=multiprocessing.get_context("spawn"),  # a fork would copy threads that hold locks
-        )
-        with deaf_to_ctrl_c():
-            _ = pool.active  # this starts the threads that start the processes
-        return pool
+        while busy := [worker for worker in self._workers if worker.task is not None]:
+            heard = wait([worker.pipe for worker in busy], timeout=_LOOK_S)
+            found = [worker.hear() if worker.pipe in heard else worker.look() for worker in busy]
+            if ended := [outcome for outcome in found if outcome is not None]:
+                self._hand_over()
+                return ended
+        return []
 
     def close(self) -> None:
         """See `Executor.close`."""
-        self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
+        for worker in self._workers:
+            worker.end()
+        self._workers.clear()
+
+    def _hand_over(self) -> None:
+        """Give waiting tasks to workers that have none, and start workers as far as there may be more."""
+        for worker in [each for each in self._workers if each.is_over]:
+            worker.end()
+            self._workers.remove(worker)
+        while self._waiting:
+            idle = next((worker for worker in self._workers if worker.task is None), None)
+            if idle is None and len(self._workers) == self._capacity:
+                return
+            if idle is None:
+                idle = _Worker(self._memory, self._timeout_s)
+                self._workers.append(idle)
+            idle.begin(self._waiting.popleft())
+
+
+class _Worker:
+    """One process and the task that it has, if any."""
+
+    def __init__(self, memory: int | None, timeout_s: float | None) -> None:
+        context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
+        self.pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(theirs, os.getpid()), daemon=True)
+        with deaf_to_ctrl_c():
+            self._process.start()
+        theirs.close()
+        self._memory = memory
+        self._timeout_s = timeout_s
+        self._n_tasks = 0
+        self.task: Task | None = None
+        self._begun_s: float | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has no task and is to get none any more."""
+        return self.task is None and (self._n_tasks >= TASKS_PER_WORKER or not self._process.is_alive())
+
+    def begin(self, task: Task) -> None:
+        """Hand over a task."""
+        self.task, self._begun_s = task, None
+        self._n_tasks += 1
+        with suppress(OSError):  # it has died, and `hear` says so
+            self.pipe.send(task)
+
+    def hear(self) -> Outcome | None:
+        """Return what came of the task; None: it has only begun."""
+        try:
+            told: str | list[Receipt] | Exception = self.pipe.recv()
+        except (EOFError, OSError):
+            self._process.join()
+            return self._lost(f"the worker died (exit code {self._process.exitcode})")
+        if isinstance(told, str):
+            self._begun_s = self._last_s = self._computed_s()
+            self._moved_at = monotonic()
+            return None
+        task = self._taken()
+        return Outcome(task, error=told) if isinstance(told, Exception) else Outcome(task, told)
+
+    def look(self) -> Outcome | None:
+        """Return that the worker was lost if it takes too much; then it is ended."""
+        if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
+            return self._lost(
+                f"the worker took {taken / 1e6:.0f} MB of memory, and may take {self._memory / 1e6:.0f} MB"
+            )
+        if self._timeout_s is None or self._begun_s is None or self.task is None:
+            return None
+        limit_s, now_s = self._timeout_s * len(self.task.drives), self._computed_s()
+        if now_s - self._begun_s > limit_s:
+            return self._lost(f"the worker took too long: it computed for more than {limit_s:g} s")
+        if now_s > self._last_s:
+            self._last_s, self._moved_at = now_s, monotonic()
+        elif monotonic() - self._moved_at > limit_s:
+            return self._lost(f"the worker took too long: it did nothing for {limit_s:g} s")
+        return None
+
+    def _lost(self, why: str) -> Outcome:
+        self.end()
+        return Outcome(self._taken(), lost=why)
+
+    def _taken(self) -> Task:
+        task, self.task = self.task, None
+        if task is None:
+            raise ValueError("a worker without a task has no outcome")
+        return task
+
+    def _computed_s(self) -> float:
+        return computed_s(self._process.pid)
+
+    def end(self) -> None:
+        """End the process."""
+        self.pipe.close()
+        self._process.kill()
+        self._process.join()
+
+
+def _serve(pipe: Connection, parent: int) -> None:
+    """Run the tasks that come, in a process of its own."""
+    begin_worker(parent)
+    while True:
+        try:
+            task: Task = pipe.recv()
+        except (EOFError, OSError):
+            return
+        told: list[Receipt] | Exception
+        try:
+            warm_up(task.settings)
+            pipe.send(_BEGUN)
+            told = run_task(task)
+        except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
+            told = error
+        try:
+            pipe.send(told)
+        except OSError:
+            return
+        except Exception:  # noqa: BLE001 - some errors of libraries cannot be handed on as they are
+            pipe.send(InternalError(f"{type(told).__name__}: {told}"))
 
 
 @contextmanager
@@ -93,30 +202,16 @@ def deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _outcome(future: Future[list[Receipt]], task: Task) -> Outcome:
-    try:
-        return Outcome(task, future.result())
-    except (BrokenProcessPool, CancelledError):
-        return Outcome(task, lost="the workers died")
-    except ProcessExpired as error:
-        return Outcome(task, lost=f"the worker died (exit code {error.exitcode})")
-    except TookTooLongError:
-        return Outcome(task, lost="the worker took too long")
-    except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
-        return Outcome(task, error=error)
-
-
-def begin_worker(memory: int | None, parent: int) -> None:
-    """Prepare a worker: Ctrl-C is the driver's, memory has a limit, and a worker whose driver was killed ends."""
+def begin_worker(parent: int) -> None:
+    """Prepare a worker: Ctrl-C and a terminal that is gone are the driver's, and a worker whose driver was killed ends."""
     leave_out_pandas()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if (hang_up := getattr(signal, "SIGHUP", None)) is not None:  # not on Windows
+        signal.signal(hang_up, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
     try:
         import ctypes
-        import resource
 
-        if memory is not None:
-            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
         ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
         if os.getppid() != parent:
             os._exit(1)
@@ -130,3 +225,20 @@ def cores() -> int:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not Linux
         return os.cpu_count() or 1
+
+
+def resident_bytes(process: int | None) -> int:
+    """Return the memory that a process has at present; 0 where the system does not tell."""
+    try:
+        return int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+def computed_s(process: int | None) -> float:
+    """Return for how many seconds a process has computed; where the system does not tell, the time of day does for it."""
+    try:
+        told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
+        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads
+    except (OSError, ValueError, IndexError):
+        return monotonic()

@@ -6,6 +6,7 @@ assumed speed, and whoever is detected is placed at his measured distance ahead,
 
 from __future__ import annotations
 
+import os
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -116,6 +117,8 @@ def is_video_mapping(name: str) -> bool:
     """Say whether a mapping, given as a file or as a shipped name, is for filmed drives."""
     if name in shipped_mappings():
         return True
+    if not os.path.isfile(name):  # noqa: PTH113 - also of a name that is too long for a file
+        return False
     try:
         raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
@@ -125,7 +128,7 @@ def is_video_mapping(name: str) -> bool:
 
 def load(name: str) -> tuple[str, VideoMapping]:
     """Return a mapping and its name. Errors: `UsageError` naming file and key."""
-    path = Path(name) if Path(name).is_file() else MAPPINGS_FOLDER / f"{name}.toml"
+    path = Path(name) if os.path.isfile(name) else MAPPINGS_FOLDER / f"{name}.toml"  # noqa: PTH113 - as above
     raw = read_toml(path)
     if "extends" in raw:
         base = raw.pop("extends")

@@ -10,6 +10,12 @@ from drivelint.errors import TraceError
 
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
 """A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
+FREE_BYTES = 1 << 30
+MOST_GROWTH = 250
+"""All chunks together may unpack to `FREE_BYTES`, and to so many times their size; of real logs none grew by more than thirty times."""
+FREE_RECORDS = 500_000
+LEAST_RECORD_BYTES = 4
+"""So many records a file may have whatever its size, and of more each takes so many packed bytes: its time alone takes as many."""
 COMPRESSIONS = frozenset({"", "zstd", "lz4"})
 _CHUNK = struct.Struct("<QQQII")
 
@@ -29,6 +35,33 @@ class ChunkHead(NamedTuple):
     crc: int
     compression: str
     packed: memoryview
+
+
+class Work:
+    """Counts what a file asks for, and refuses one that asks for too much for its size: some kilobytes could keep a reader for hours."""
+
+    def __init__(self) -> None:
+        self._packed = self._unpacked = self._records = 0
+
+    def unpacked(self, head: ChunkHead, where: str) -> bytes:
+        """Return the records of a chunk, if it may be unpacked. Errors: as `chunk_records`, and `TraceError`."""
+        packed, size = self._packed + len(head.packed), self._unpacked + head.size
+        if head.size <= MAX_CHUNK_BYTES and size > FREE_BYTES + MOST_GROWTH * packed:
+            raise TraceError(
+                f"{where}: chunks of {packed} bytes that say they unpack to {size}: no recorder writes such a log: record or copy it again"
+            )
+        records = chunk_records(head, where)
+        self._packed, self._unpacked = packed, size
+        return records
+
+    def record(self, where: str) -> None:
+        """Count a record of a chunk. Errors: `TraceError`."""
+        self._records += 1
+        if self._records > FREE_RECORDS + self._packed // LEAST_RECORD_BYTES:
+            raise TraceError(
+                f"{where}: more than {self._records - 1} records in chunks of {self._packed} bytes: no recorder "
+                "writes such a log: record or copy it again"
+            )
 
 
 def chunk_head(body: memoryview) -> ChunkHead:

@@ -22,7 +22,7 @@ from mcap.records import Channel, DataEnd, Footer, Header, Metadata, Schema, Sta
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.chunk import ChunkError, Work, chunk_head
 from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD, MessageCounts
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.resume import MAGIC, next_record
@@ -97,6 +97,7 @@ class Container:
     _data_crc: int = 0
     _statistics: Statistics | None = None
     _places: set[int] = field(default_factory=set)
+    _work: Work = field(default_factory=Work)
 
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file.
@@ -253,9 +254,10 @@ class Container:
             self.channels[channel.id] = channel
 
     def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[Packet]:
+        where = f"{self.path}: byte {at}"
         try:
             head = chunk_head(body)
-            records = chunk_records(head, f"{self.path}: byte {at}")
+            records = self._work.unpacked(head, where)
         except ChunkError as error:
             raise self._damaged(at, str(error), end if error.framed else None) from error
         self._unprotected += head.crc == 0
@@ -263,6 +265,7 @@ class Container:
         self.counts.begin_chunk()
         while place < len(view):
             opcode, start, stop = self._inner(view, place, at, end)
+            self._work.record(where)
             try:
                 yield from self._content(opcode, view[start:stop], at, end)
             except DamageError as error:
@@ -282,6 +285,8 @@ class Container:
         start = place + _RECORD.size
         if start <= len(view):
             opcode, length = _RECORD.unpack_from(view, place)
+            if opcode == 0:
+                raise self._damaged(at, "a chunk with zero bytes in place of a record", end)
             if length <= len(view) - start:
                 return opcode, start, start + length
         raise self._damaged(at, "a chunk that ends within a record", end)

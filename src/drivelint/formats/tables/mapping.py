@@ -7,6 +7,7 @@ such a table is wide, one group per actor.
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from pathlib import Path
@@ -16,6 +17,7 @@ import msgspec
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
+from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import hint
 from drivelint.sql.words import nearest
 
@@ -170,7 +172,9 @@ def shipped_mappings() -> list[str]:
 def refuse_if_none(name: str) -> None:
     """Refuse a name that is neither a file's nor a shipped mapping's. Errors: `UsageError` with the nearest."""
     known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # those of films too
-    if not Path(name).is_file() and name not in known:
+    if is_pipe_or_device(name):
+        raise UsageError(f"mapping {name}: a pipe or a device: write what it gives to a file, and name that")
+    if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
         raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
 
 
@@ -180,7 +184,7 @@ def load(name: str) -> tuple[str, Mapping]:
     Errors: `UsageError` naming file, key and the nearest valid one.
     """
     path = Path(name)
-    if not path.is_file():
+    if not os.path.isfile(name):  # noqa: PTH113 - as above
         refuse_if_none(name)
         path = MAPPINGS_FOLDER / f"{name}.toml"
     raw = read_toml(path)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from urllib.parse import urlsplit
 
 from drivelint.errors import UsageError
+from drivelint.watch.sources.transports import LOOPBACK
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -74,15 +75,16 @@ def _tcp(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
     host, port = _address(name, None)
-    if not host or name.startswith("tcp-listen://"):
-        return osi.open_tcp_server(host, port, options.folder, idle_s=options.idle_s)
+    if not host or name.lower().startswith("tcp-listen://"):
+        return osi.open_tcp_server(host or LOOPBACK, port, options.folder, idle_s=options.idle_s)
     return osi.open_tcp(host, port, options.folder, idle_s=options.idle_s)
 
 
 def _udp(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
-    return osi.open_udp(*_address(name, UDP_PORT), options.folder, idle_s=options.idle_s)
+    host, port = _address(name, UDP_PORT)
+    return osi.open_udp(host or LOOPBACK, port, options.folder, idle_s=options.idle_s)
 
 
 def _foxglove(name: str, options: SourceOptions) -> Source:

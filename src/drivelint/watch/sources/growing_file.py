@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import time
 from typing import TYPE_CHECKING, Final
 
@@ -57,6 +58,10 @@ class GrowingFile:
         try:
             if self._file is None:
                 try:
+                    if not stat.S_ISREG(self.path.stat().st_mode):
+                        raise TraceError(
+                            f"{self.path}: a pipe, a device or a folder: a file that grows is watched, and - reads stdin"
+                        )
                     self._file = self.path.open("rb", buffering=0)
                 except FileNotFoundError:
                     return b""

@@ -190,9 +190,12 @@ def _write_down(recording: BinaryIO, data: bytes) -> None:
 class DatagramReceiver:
     """Puts together the messages that come over UDP, and writes down those that are whole."""
 
-    def __init__(self, where: str, receiver: socket.socket, recording: BinaryIO, *, idle_s: float | None) -> None:
+    def __init__(
+        self, where: str, receiver: socket.socket, recording: BinaryIO, notes: list[str], *, idle_s: float | None
+    ) -> None:
         self._where = where
         self._recording = recording
+        self._notes = notes
         self._assembler = Assembler(where)
         self._told = 0
         self._ended = False
@@ -220,11 +223,12 @@ class DatagramReceiver:
 
     def notes(self) -> list[str]:
         """See `Receiver`. Losses are told when there are twice as many as were told, and in the end."""
+        found, self._notes = [f"{self._where}: {note}" for note in self._notes], []
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):
             self._told = losses.total
-            return [f"{self._where}: lost so far: {losses.told()}"]
-        return []
+            found.append(f"{self._where}: lost so far: {losses.told()}")
+        return found
 
     def close(self) -> None:
         """See `Receiver`."""
@@ -255,7 +259,7 @@ def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None)
     where = f"tcp-listen://{host}:{port}"
     server = transports.bound_socket(socket.SOCK_STREAM, host, port, where)
     server.listen(1)
-    notes: list[str] = []
+    notes = transports.open_to_others(host)
     with _closed_on_error(server):
         return _stream(where, transports.listening(server, idle_s, notes), folder, notes)
 
@@ -266,7 +270,8 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
     receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
     with _closed_on_error(receiver):
         recording, file = _new_recording(folder)
-        return OsiSource(recording, DatagramReceiver(where, receiver, file, idle_s=idle_s))
+        notes = transports.open_to_others(host)
+        return OsiSource(recording, DatagramReceiver(where, receiver, file, notes, idle_s=idle_s))
 
 
 @contextmanager

@@ -6,6 +6,7 @@ import os
 import select
 import socket
 import time
+from ipaddress import ip_address
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
@@ -17,6 +18,22 @@ if TYPE_CHECKING:
 BLOCK: Final = 1 << 18
 RETRY_S: Final = 0.5
 """So often it is tried again to connect to a writer that is not there yet."""
+
+
+LOOPBACK: Final = "127.0.0.1"
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only programs of this machine reach an address."""
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host.casefold() == "localhost"
+
+
+def open_to_others(host: str) -> list[str]:
+    """Return the note that other machines reach an address; nothing where they do not."""
+    return [] if is_loopback(host) else ["whoever reaches this address can send what is judged"]
 
 
 class Patience:
@@ -110,9 +127,9 @@ def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> 
 
 
 def bound_socket(kind: socket.SocketKind, host: str, port: int, where: str) -> socket.socket:
-    """Return a socket bound to an address of this machine, an empty host being all of them. Errors: `TraceError` where it is taken."""
+    """Return a socket bound to an address of this machine. Errors: `TraceError` where it is taken."""
     try:
-        family = socket.getaddrinfo(host, port, type=kind)[0][0] if host else socket.AF_INET
+        family = socket.getaddrinfo(host, port, type=kind)[0][0]
         bound = socket.socket(family, kind)
         try:
             if kind == socket.SOCK_STREAM:

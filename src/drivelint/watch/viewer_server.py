@@ -1,0 +1,222 @@
+"""A Foxglove WebSocket server: announces channels, and sends their messages to those who subscribed to them.
+
+Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. A page of another site is refused by its
+`Origin`, which Foxglove's own server does not look at; and nobody who is connected keeps the program from ending.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import json
+import logging
+import struct
+from collections import deque
+from contextlib import suppress
+from threading import Thread
+from typing import TYPE_CHECKING, Any, Final
+
+from websockets.asyncio.server import ServerConnection, serve
+from websockets.exceptions import WebSocketException
+from websockets.typing import Subprotocol
+
+from drivelint.phrases import inert_line
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mcap.records import Schema
+    from websockets.asyncio.server import Server
+    from websockets.http11 import Request, Response
+
+SUBPROTOCOLS: Final = (Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.v1"))
+BACKLOG: Final = 1024
+"""Messages that are kept for a viewer that does not keep up; then the oldest go."""
+FLUSH_S: Final = 0.5
+CLOSE_S: Final = 0.5
+"""So long the end waits until viewers have what was published, and until they have said that they leave."""
+MOST_BYTES: Final = 1 << 16
+"""A viewer only subscribes; what is longer is no viewer's."""
+_MESSAGE: Final = struct.Struct("<BIQ")
+_MESSAGE_DATA: Final = 1
+
+
+def _silent() -> logging.Logger:
+    """Return a logger that says nothing: who connects and leaves is nobody's matter, and stderr has our words only."""
+    logger = logging.getLogger("drivelint.viewers")
+    logger.disabled = True
+    return logger
+
+
+class _Viewer:
+    """One who is connected, and what waits for it."""
+
+    def __init__(self, connection: ServerConnection) -> None:
+        self.connection = connection
+        self.subscriptions: dict[int, int] = {}
+        """By its own number: the channel."""
+        self.waiting: deque[bytes | str] = deque(maxlen=BACKLOG)
+        self.news = asyncio.Event()
+
+    def put(self, message: bytes | str) -> None:
+        self.waiting.append(message)
+        self.news.set()
+
+    async def send(self) -> None:
+        while True:
+            await self.news.wait()
+            self.news.clear()
+            while self.waiting:
+                await self.connection.send(self.waiting.popleft())
+
+
+class ViewerServer:
+    """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any that is free.
+
+    `allowed`: origins of pages that may connect. Errors: `OSError` where nothing can be served there.
+    """
+
+    def __init__(self, host: str, port: int, allowed: Sequence[str] = ()) -> None:
+        self._allowed = frozenset(each.rstrip("/").casefold() for each in allowed)
+        self._channels: list[dict[str, Any]] = []
+        self._n_channels = 0
+        self._viewers: set[_Viewer] = set()
+        self._notes: list[str] = []
+        self._refused: set[str] = set()
+        self._loop = asyncio.new_event_loop()
+        self._thread = Thread(target=self._loop.run_forever, daemon=True, name="viewers")
+        self._thread.start()
+        try:
+            self._server = asyncio.run_coroutine_threadsafe(self._started(host, port), self._loop).result()
+        except BaseException:
+            self._end()
+            raise
+
+    @property
+    def port(self) -> int:
+        """The port that is served."""
+        return int(next(iter(self._server.sockets)).getsockname()[1])
+
+    def add_channel(self, topic: str, encoding: str, schema: Schema) -> int:
+        """Announce a channel, and return its number. `schema`: as a log has it."""
+        text = base64.b64encode(schema.data) if schema.encoding == "protobuf" else schema.data
+        self._n_channels += 1
+        channel = {
+            "id": self._n_channels,
+            "topic": topic,
+            "encoding": encoding,
+            "schemaName": schema.name,
+            "schemaEncoding": schema.encoding,
+            "schema": text.decode(),
+        }
+        self._call(self._announce, channel)
+        return self._n_channels
+
+    def publish(self, channel: int, content: bytes, log_ns: int) -> None:
+        """Send a message to those who subscribed to its channel."""
+        self._call(self._put, channel, content, log_ns)
+
+    def n_subscriptions(self, channel: int) -> int:
+        """Return how many viewers get a channel."""
+        return sum(channel in viewer.subscriptions.values() for viewer in list(self._viewers))
+
+    def notes(self) -> list[str]:
+        """Return what is to be said of those who tried to connect, once."""
+        found = list(self._notes)
+        del self._notes[: len(found)]  # the thread may have added more
+        return found
+
+    def close(self) -> None:
+        """Send viewers away; it does not wait for those who do not go. May be called twice."""
+        if self._thread.is_alive():
+            with suppress(TimeoutError):
+                asyncio.run_coroutine_threadsafe(self._stopped(), self._loop).result(FLUSH_S + 2 * CLOSE_S)
+            self._end()
+
+    def _end(self) -> None:
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(CLOSE_S)
+
+    def _call(self, function: Any, *arguments: object) -> None:
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(function, *arguments)
+
+    async def _started(self, host: str, port: int) -> Server:
+        return await serve(
+            self._connected,
+            host,
+            port,
+            subprotocols=SUBPROTOCOLS,
+            process_request=self._refusal,
+            compression=None,
+            max_size=MOST_BYTES,
+            close_timeout=CLOSE_S,
+            server_header=None,
+            logger=_silent(),
+        )
+
+    async def _stopped(self) -> None:
+        for _ in range(int(FLUSH_S / 0.01)):
+            if not any(viewer.waiting for viewer in self._viewers):
+                break
+            await asyncio.sleep(0.01)
+        self._server.close()
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._server.wait_closed(), CLOSE_S)
+        left = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in left:
+            task.cancel()
+        if left:
+            await asyncio.wait(left, timeout=CLOSE_S)
+
+    def _refusal(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Return the answer to a page of another site; None: whoever asks may connect. A program that is no page has no origin."""
+        origins = request.headers.get_all("Origin")
+        if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
+            return None
+        told = inert_line(" ".join(origins))[:200]
+        if told not in self._refused and len(self._refused) < BACKLOG:
+            self._refused.add(told)
+            self._notes.append(f"--serve: a page of {told} was refused: give --allow-origin {told} if it is to watch")
+        return connection.respond(403, "pages of this origin may not connect\n")
+
+    async def _connected(self, connection: ServerConnection) -> None:
+        viewer = _Viewer(connection)
+        viewer.put(json.dumps({"op": "serverInfo", "name": "drivelint watch", "capabilities": [], "metadata": {}}))
+        if self._channels:
+            viewer.put(json.dumps({"op": "advertise", "channels": self._channels}))
+        self._viewers.add(viewer)
+        sending = asyncio.ensure_future(viewer.send())
+        try:
+            async for said in connection:
+                self._understand(viewer, said)
+        except WebSocketException:
+            pass  # it has left, and did not say so
+        finally:
+            self._viewers.discard(viewer)
+            sending.cancel()
+            with suppress(asyncio.CancelledError, WebSocketException):
+                await sending
+
+    def _understand(self, viewer: _Viewer, said: str | bytes) -> None:
+        """Do what a viewer asks for; what is none of its words is passed over."""
+        with suppress(ValueError, KeyError, TypeError):
+            told = json.loads(said)
+            if told["op"] == "subscribe":
+                for each in told["subscriptions"]:
+                    if len(viewer.subscriptions) < BACKLOG and 0 <= each["id"] < 1 << 32:
+                        viewer.subscriptions[each["id"]] = each["channelId"]
+            elif told["op"] == "unsubscribe":
+                for number in told["subscriptionIds"]:
+                    viewer.subscriptions.pop(number, None)
+
+    def _announce(self, channel: dict[str, Any]) -> None:
+        self._channels.append(channel)
+        for viewer in self._viewers:
+            viewer.put(json.dumps({"op": "advertise", "channels": [channel]}))
+
+    def _put(self, channel: int, content: bytes, log_ns: int) -> None:
+        for viewer in self._viewers:
+            for number, subscribed in viewer.subscriptions.items():
+                if subscribed == channel:
+                    viewer.put(_MESSAGE.pack(_MESSAGE_DATA, number, log_ns) + content)
