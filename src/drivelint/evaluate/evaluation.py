@@ -90,13 +90,16 @@ class Evaluation:
         self._work(todo)
         if self.release:
             self.release()
-        self._run("blind", "closed", "named", "failed")
+        self._run("blind", "closed")
+        unexplained = "FROM _closed WHERE verdict = 'unknown' AND reason IS NULL AND tells_no_cause(code)"
+        self._run("cause" if self._count(f"SELECT count(*) {unexplained}") else "no_cause", "named", "failed")
         make_reason_table(
             self.con,
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        self._run("finding", "verdict", *(("margin",) if self.margins else ()))
+        n_failed = self._count("SELECT count(*) FROM _failed")
+        self._run(*(("finding",) if n_failed else ()), "verdict", *(("margin",) if self.margins else ()))
         if self.keep_measure_series:
             self._run("course")
 

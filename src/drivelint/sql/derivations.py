@@ -105,6 +105,11 @@ def _with_sources(tables: Iterable[str]) -> list[Derivation]:
     return [_derivation(table) for table in TopologicalSorter(dict(sorted(graph.items()))).static_order()]
 
 
+def derived_tables() -> frozenset[str]:
+    """Return the names of the tables that have a derivation."""
+    return frozenset(_files())
+
+
 def with_sources(tables: Iterable[str]) -> frozenset[str]:
     """Return these tables and the library tables from which they are derived."""
     return _names_with_sources(frozenset(tables))
