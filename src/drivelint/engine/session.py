@@ -22,7 +22,7 @@ from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
-from drivelint.sql.derivations import derived_tables, needed
+from drivelint.sql.derivations import ALWAYS_NEEDED, NEEDED_OF_DRIVES, NEEDED_OF_RULES, derived_tables, needed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -75,6 +75,9 @@ class JudgingSession:
         self._params = params
         self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
+        self._also = NEEDED_OF_DRIVES
+        if rules:
+            self._also = ALWAYS_NEEDED if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
         self._memory = memory or Memory(con, None)
         self._interruption = interruption or Interruption()
         self._limits = limits or RuleLimits()
@@ -219,7 +222,7 @@ class JudgingSession:
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
         """Judge the egos that are not skipped in this part."""
-        derive(self._con, self._tables, of_the_map=False)
+        derive(self._con, self._tables, of_the_map=False, also=self._also)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(
             self._con,
@@ -256,7 +259,7 @@ class JudgingSession:
                 for table, rows in environment.tables.items():
                     if not (known and store.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
-            derive(self._con, self._tables, of_the_map=True)
+            derive(self._con, self._tables, of_the_map=True, also=self._also)
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
         store.recreate_with_enums(self._con, self._filled("drive", "part"), _drive_ids(drives), _actors(drives))
@@ -269,7 +272,7 @@ class JudgingSession:
 
     def _filled(self, *lifetimes: str) -> list[str]:
         """Return the tables of these lifetimes that are ever filled: those of a log, and those derived that the rules need."""
-        unneeded = derived_tables() - {each.table for each in needed(self._tables)}
+        unneeded = derived_tables() - {each.table for each in needed(self._tables, self._also)}
         return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
     def _attach(self, path: Path) -> None:
