@@ -75,7 +75,7 @@ class JudgingSession:
         self._params = params
         self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
-        self._also = NEEDED_OF_DRIVES
+        self._also: tuple[str, ...] = NEEDED_OF_DRIVES
         if rules:
             self._also = ALWAYS_NEEDED if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
         self._memory = memory or Memory(con, None)
