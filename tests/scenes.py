@@ -349,6 +349,7 @@ def derived(
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map
             bench._maps = frozenset()  # all of the map once more, with these
+        bench._tables |= wanted  # or they would keep the rows of the scene before
         bench._load(drives)
         derive(con, wanted, of_the_map=False)
     return con

@@ -114,6 +114,19 @@ def test_help_loads_nothing_heavy() -> None:
     assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "lxml", "mcap", "shapely", "yaml", "msgspec"}
 
 
+def test_listing_rules_loads_nothing_that_only_logs_need(tmp_path: Path) -> None:
+    probe = (
+        "import sys; sys.argv = ['drivelint', 'rules', 'list']\n"
+        "from drivelint.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: print('|'.join(sorted(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True, cwd=tmp_path)
+    loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
+    assert "drivelint" in loaded
+    assert not loaded & {"numpy", "pyarrow", "shapely", "mcap", "google", "lxml"}
+
+
 def test_a_check_loads_neither_pandas_nor_what_only_reports_need(tmp_path: Path) -> None:
     """DuckDB and pyarrow load pandas wherever it is installed: half a second."""
     assert find_spec("pandas") is not None

@@ -1,8 +1,8 @@
--- Every step of an invariant's grid, judged or not; '' stands for no object, profile or label.
+-- Every step of an invariant's grid, judged or not.
 -- The conditions are left-joined to the grid on keys alone: a row that the author's join lost is an unknown step.
-CREATE OR REPLACE TEMP TABLE _judged AS
+INSERT INTO _judged BY NAME
 WITH {condition}, {grid}, _joined AS (
-    SELECT g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, {profile} AS profile,
+    SELECT $_no AS rule_no, g.drive_id, g.ego_id, coalesce(g.object_id, '') AS object_id, coalesce(g.object_id, '') AS who, {profile} AS profile,
         coalesce(g.label, '') AS label, NULL::INTEGER AS ref_id, g.t_ns, g.k, g.seg,
         g.applies AND (v.t_ns IS NULL OR v.applies) AS applies, v.holds, v.gain, v.observed, v.required,
         CASE WHEN g.applies IS NULL THEN g.doubt WHEN v.t_ns IS NULL THEN 'missing_step'

@@ -1,6 +1,6 @@
 -- Every expected point, judged or not; combined over objects where the rule says so.
 -- A point of a window at which the automated driver does not drive is not judged: what happens there is not its doing.
-CREATE OR REPLACE TEMP TABLE _judged AS
+INSERT INTO _judged BY NAME
 WITH {condition}, _point_to_judge AS ({points}
 ), _joined AS (
     SELECT g.ref_no AS ref_id, g.drive_id, g.ego_id, g.object_id, {profile} AS profile,
@@ -20,5 +20,5 @@ WITH {condition}, _point_to_judge AS ({points}
     {condition_joins}
 ), _expected AS (SELECT * FROM _joined WHERE applies IS DISTINCT FROM false
 ){series}
-SELECT * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()
+SELECT $_no AS rule_no, '' AS label, * REPLACE (coalesce(object_id, '') AS object_id, coalesce(who, '') AS who), row_number()
     OVER (PARTITION BY ref_id, drive_id, ego_id, object_id, profile ORDER BY t_ns) AS n FROM _point

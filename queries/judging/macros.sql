@@ -41,3 +41,17 @@ CREATE OR REPLACE TEMP MACRO amount(value, unit) AS format('{:.6g}', value) || c
 CREATE OR REPLACE TEMP MACRO threshold(sense, value, unit) AS CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least '
     WHEN '<' THEN 'less than ' ELSE 'at most ' END || amount(value, unit);
 CREATE OR REPLACE TEMP MACRO capital(words) AS upper(words[1]) || words[2:];
+
+-- The rank of a step among those of its episode or reference point: the least decides. `eventually`: one step that holds suffices.
+CREATE OR REPLACE TEMP MACRO step_rank(holds, eventually, sense) AS CASE WHEN holds = eventually THEN 0
+    WHEN (holds IS NULL) = (sense = 'holds') THEN 1 ELSE 2 END;
+
+-- The step that decides: of the least rank, then of the least margin (eventually: the greatest), then the earliest. For the sense 'holds' an
+-- unknown step decides before one that decides nothing. The first fields are never NULL and differ from step to step.
+CREATE OR REPLACE TEMP MACRO deciding_step(eventually, sense, holds, gain, t_ns, who, observed, required, code, reason) AS min({'b': step_rank(holds, eventually, sense),
+    'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE WHEN eventually THEN -gain ELSE gain END, 't': coalesce(t_ns, unknown_time_ns()),
+    'who': coalesce(who, ''), 'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason});
+
+-- The earliest step that could not be judged.
+CREATE OR REPLACE TEMP MACRO first_unknown_step(holds, t_ns, who, observed, required, code, reason) AS min({'t': coalesce(t_ns, unknown_time_ns()), 'code': coalesce(code, 'null_value'),
+    'who': coalesce(who, ''), 'reason': reason, 'observed': observed, 'required': required}) FILTER (holds IS NULL);

@@ -1,7 +1,7 @@
 -- Each reference point with its window, and whether the rule applies there.
-CREATE OR REPLACE TEMP TABLE _occasion AS
-SELECT r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_id) AS ref_no,
+INSERT INTO _occasion BY NAME
+SELECT $_no AS rule_no, r.ref_id, r.ref_id - min(r.ref_id) OVER (PARTITION BY r.drive_id, r.ego_id) AS ref_no,
     r.drive_id::VARCHAR AS drive_id, r.ego_id::VARCHAR AS ego_id, {own_object}::VARCHAR AS object_id, r.t_ns::BIGINT AS t_ref_ns,
-    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {in_force} AS applies, {doubt} AS doubt
+    ({start})::BIGINT AS a_ns, ({end})::BIGINT AS b_ns, {in_force} AS applies, {doubt} AS doubt, {crowd} AS crowd
 FROM reference r
 {condition_joins}

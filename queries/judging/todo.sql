@@ -36,6 +36,9 @@ CROSS JOIN (
 ) e
 WHERE NOT r.of_standing;
 
+-- The subjects at no step of which the conditions of a rule's header hold.
+CREATE OR REPLACE TEMP TABLE _outside AS SELECT rule_no, drive_id, ego_id FROM _excluded WHERE code = 'outside_conditions';
+
 -- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing, if it is
 -- not one that a log is taken to have.
 CREATE OR REPLACE TEMP TABLE _gated AS

@@ -11,6 +11,7 @@ from drivelint.casefile.scene import fill
 from drivelint.catalogue import Rule
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate, query_plans
+from drivelint.evaluate.evaluation import Evaluation
 from drivelint.sql import store
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
 
@@ -93,6 +94,36 @@ def test_verdicts_are_appended_and_nothing_is_left_behind(con: duckdb.DuckDBPyCo
         ("pack.speed", 3),
     ]
     assert con.execute("SELECT table_name FROM duckdb_tables() ORDER BY ALL").fetchall() == before
+
+
+@pytest.mark.parametrize("most", [0, 1_000_000], ids=["rule by rule", "at once"])
+def test_where_outcomes_of_several_rules_fail_each_rule_is_judged_alone(
+    con: duckdb.DuckDBPyConnection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    packs = rules(tmp_path)
+    query = "SELECT * FROM verdict ORDER BY ALL"
+    evaluate(con, packs)
+    usual = con.execute(query).fetchall()
+    con.execute("DELETE FROM verdict; DELETE FROM finding")
+    conclude, sizes = Evaluation.conclude, []
+
+    def fail(self: Evaluation) -> None:
+        sizes.append(len(self._pending))
+        if len(self._pending) > 1 or self._pending[0].rule.id.endswith("map"):
+            self.con.execute("SELECT 9_223_372_036_854_775_807 + n FROM range(1, 2) t(n)")
+        conclude(self)
+
+    monkeypatch.setattr(Evaluation, "conclude", fail)
+    monkeypatch.setattr("drivelint.evaluate.evaluation.MOST_PENDING_ROWS", most)
+    evaluate(con, packs)
+    found = con.execute(query).fetchall()
+    assert (max(sizes) > 1) == (most > 0)
+    kept, new = ([row for row in rows if not row[2].endswith("map")] for rows in (usual, found))
+    assert new == kept
+    blamed = con.execute(
+        "SELECT DISTINCT verdict, reason_code FROM verdict WHERE rule_id LIKE '%map' AND drive_id = 'a'"
+    ).fetchall()
+    assert blamed == [("error", "rule_error")]
 
 
 def test_parameters_override_the_default(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:

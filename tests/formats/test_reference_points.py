@@ -17,7 +17,7 @@ import pytest
 
 from drivelint.drive.trace import EgoSize
 from drivelint.formats.foxglove import scene as foxglove_scene
-from drivelint.formats.registry import READERS
+from drivelint.formats.registry import readers
 from drivelint.formats.ros2 import reader as ros2_reader
 from tests.formats.commonroad.scenario_text import state as commonroad_state
 from tests.formats.foxglove import foxglove_log
@@ -302,7 +302,7 @@ def test_the_velocity_is_that_of_the_box_centre(name: str, tmp_path: Path) -> No
     assert "velocity_mismatch" not in trace.tables["quality"]["check_id"].to_pylist()
 
 
-@pytest.mark.parametrize("module", [*READERS, ros2_reader, foxglove_scene], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [*readers(), ros2_reader, foxglove_scene], ids=lambda module: module.__name__)
 def test_every_reader_says_where_its_places_are(module: object) -> None:
     said = re.sub(r"\s+", " ", module.__doc__ or "")
     assert re.search(r"box centre|centre of (the|its|their) box|front bumper|rear axle", said), said

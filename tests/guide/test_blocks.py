@@ -230,8 +230,8 @@ def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytes
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
 
-    monkeypatch.setattr(registry, "READERS", (*registry.READERS[:-1], module, registry.READERS[-1]))
-    monkeypatch.setitem(registry.FORMATS, "json-lines", module.formats["json-lines"])
+    monkeypatch.setitem(sys.modules, "drivelint.formats.jsonlines", module)
+    monkeypatch.setattr(registry, "READERS", (*registry.READERS[:-1], "jsonlines", registry.READERS[-1]))
     states = [
         {"t_s": k / 10, "id": actor, "x": k + 10.0 * actor, "y": 0.0, "heading": 0.0, "kind": "car"}
         for k in range(20)

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_type_hints
 import msgspec
 
 from drivelint.drive import conditions
-from drivelint.drive.trace import Quantity  # noqa: TC001 - msgspec reads it
 from drivelint.errors import RuleError
 from drivelint.memo import SQL_CODE, Memo
 from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
-from drivelint.sql.words import vocabularies
+from drivelint.sql.words import Quantity, vocabularies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

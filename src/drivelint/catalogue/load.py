@@ -77,6 +77,12 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return "object_id" in self.columns["condition"]
 
     @property
+    def looks_at_others(self) -> bool:
+        """Whether it reads of others than the ego, or names them; of a section with a star that is not known, and taken to be so."""
+        whole = self.columns.keys() >= self.sections.keys()
+        return OTHERS in self.needed or not whole or any("object_id" in columns for columns in self.columns.values())
+
+    @property
     def needed(self) -> tuple[str, ...]:
         """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
         return (*self.requires, *((OTHERS,) if "pair" in with_sources(self.reads) else ()))

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
-
-from drivelint.arrays import spelled
 from drivelint.resources import toml_beside
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.drive.trace import States
 
 HEADLIGHTS: Final = "headlights"
@@ -32,6 +29,12 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
 
     `states` in order of actor and time. An actor that declares its headlights itself is left as it is.
     """
+    import numpy as np
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    from drivelint.arrays import spelled
+
     codes = states.codes.get(HEADLIGHTS)
     if codes is None or not (codes >= 0).any():
         return events

@@ -10,7 +10,7 @@ import numpy as np
 
 from drivelint.drive import conditions
 from drivelint.phrases import listed
-from drivelint.sql.words import words
+from drivelint.sql.words import Quantity, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Indices, Mask, Times
 
 Severity = Literal["info", "warning", "error"]
-Quantity = Literal["existence", "identity", "position", "heading", "velocity", "size", "class"]
 
 STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 """The double columns of `actor_state`, in its order."""

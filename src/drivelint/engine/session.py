@@ -22,6 +22,7 @@ from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
+from drivelint.sql.derivations import ALWAYS_NEEDED, NEEDED_OF_DRIVES, NEEDED_OF_RULES, derived_tables, needed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -74,6 +75,9 @@ class JudgingSession:
         self._params = params
         self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
+        self._also: tuple[str, ...] = NEEDED_OF_DRIVES
+        if rules:
+            self._also = ALWAYS_NEEDED if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
         self._memory = memory or Memory(con, None)
         self._interruption = interruption or Interruption()
         self._limits = limits or RuleLimits()
@@ -154,7 +158,7 @@ class JudgingSession:
             undo.pop_all()
         self._seen.update(ids)
         if not are_few(drives):  # a few take little memory, and the next batch recreates their tables anyway
-            store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
+            store.recreate_empty(self._con, self._filled("drive", "part"))
 
     @property
     def n_waiting(self) -> int:
@@ -191,7 +195,7 @@ class JudgingSession:
             todo = skipped_egos_by_part(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
-                    store.recreate_empty(self._con, store.tables_of_lifetime("part"))
+                    store.recreate_empty(self._con, self._filled("part"))
                 if deferred:
                     egos = pa.table({"drive_id": ids * len(deferred), "ego_id": deferred})
                     store.insert(self._con, "deferred_ego", egos)
@@ -219,7 +223,7 @@ class JudgingSession:
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
         """Judge the egos that are not skipped in this part."""
-        derive(self._con, self._tables, of_the_map=False)
+        derive(self._con, self._tables, of_the_map=False, also=self._also)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(
             self._con,
@@ -256,18 +260,21 @@ class JudgingSession:
                 for table, rows in environment.tables.items():
                     if not (known and store.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
-            derive(self._con, self._tables, of_the_map=True)
+            derive(self._con, self._tables, of_the_map=True, also=self._also)
             self._maps = frozenset(environments)
             self._keep_maps(environments.keys() - self._kept_maps)
-        store.recreate_with_enums(
-            self._con, store.tables_of_lifetime("drive", "part"), _drive_ids(drives), _actors(drives)
-        )
+        store.recreate_with_enums(self._con, self._filled("drive", "part"), _drive_ids(drives), _actors(drives))
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
             store.insert(self._con, table, rows)
         del rows
         for drive in drives:
             set_aside(self._con, drive.trace)
+
+    def _filled(self, *lifetimes: str) -> list[str]:
+        """Return the tables of these lifetimes that are ever filled: those of a log, and those derived that the rules need."""
+        unneeded = derived_tables() - {each.table for each in needed(self._tables, self._also)}
+        return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
     def _attach(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -302,7 +309,7 @@ class JudgingSession:
 
     def _forget_copies(self, ids: Sequence[str]) -> None:
         """Delete what the database has of these drives; a kept one never had copies."""
-        store.recreate_empty(self._con, store.tables_of_lifetime("drive", "part"))
+        store.recreate_empty(self._con, self._filled("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])

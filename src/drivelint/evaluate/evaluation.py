@@ -1,15 +1,15 @@
-"""One evaluation: which statements a rule needs, in order, and when it can stop early."""
+"""One evaluation: which statements a rule needs, in order, when it can stop early, and what is done for all rules at once."""
 
 from __future__ import annotations
 
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import duckdb
 
-from drivelint.evaluate import findings, invariant, reference_points, temp_tables
+from drivelint.evaluate import invariant, reference_points, temp_tables
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import rule_statement
 from drivelint.reasons.reason_table import make_reason_table
@@ -29,6 +29,17 @@ LEAST_STEPS_FOR_TWO_CONNECTIONS: Final = 2_000
 """Steps below which they are not: the tables that the second one needs cost more than it would save."""
 MOST_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
 """Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
+LEAST_STEPS_FOR_A_FIRST_PASS: Final = 2_000
+"""Steps from which on groups that are kept are settled first: on fewer, a second statement costs more than the steps."""
+MOST_PENDING_ROWS: Final = 50_000
+"""With more judged steps than these, they are made into outcomes before another rule is judged."""
+
+
+class _StepsToJudge(NamedTuple):
+    """Which steps of an invariant's grid are judged one by one, and how many they are; -1: that is not known."""
+
+    which: invariant.Steps
+    n: int
 
 
 @dataclass
@@ -46,12 +57,22 @@ class Evaluation:
     alone: bool = True
     """No rule is judged on a second connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
+    _outside: set[int] = field(default_factory=set, init=False)
+    """The rules whose conditions hold at no step."""
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
     _has_doubts: bool = field(default=False, init=False)
     _has_sensors: bool = field(default=False, init=False)
     _empty: set[str] = field(default_factory=set, init=False)
+    _is_short: bool = field(default=False, init=False)
+    _pending: list[Binding] = field(default_factory=list, init=False)
+    """The rules whose judged steps are not yet made into outcomes."""
+    _n_pending: int = field(default=0, init=False)
+    _may_be_double: bool = field(default=False, init=False)
+    """The pending steps may be more than one for a key."""
+    _alone: set[int] = field(default_factory=set, init=False)
+    """The rules that share no outcomes with others: something failed when they did."""
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
@@ -69,13 +90,16 @@ class Evaluation:
         self._work(todo)
         if self.release:
             self.release()
-        self._run("blind", "closed", "named", "failed")
+        self._run("blind", "closed")
+        unexplained = "FROM _closed WHERE verdict = 'unknown' AND reason IS NULL AND tells_no_cause(code)"
+        self._run("cause" if self._count(f"SELECT count(*) {unexplained}") else "no_cause", "named", "failed")
         make_reason_table(
             self.con,
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        self._run("finding", "verdict", *(("margin",) if self.margins else ()))
+        n_failed = self._count("SELECT count(*) FROM _failed")
+        self._run(*(("finding",) if n_failed else ()), "verdict", *(("margin",) if self.margins else ()))
         if self.keep_measure_series:
             self._run("course")
 
@@ -102,6 +126,25 @@ class Evaluation:
 
     def _work(self, todo: deque[Binding]) -> None:
         """Judge by the rules that are still to do, until there are none."""
+        self._take(todo)
+        while self._pending:
+            try:
+                with store.telling_short_memory():
+                    self.conclude()
+            except duckdb.Error:
+                self._take(deque(self._apart(self._pending)))
+
+    def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
+        """Forget what came of these rules, and let each be judged by itself: the fault of one is not the others'."""
+        again = list(bindings)
+        numbers = [binding.no for binding in again]
+        for table in temp_tables.OUTCOME_TABLES:
+            self.con.execute(f"DELETE FROM {table} WHERE list_contains(?, rule_no)", [numbers])
+        self._alone.update(numbers)
+        self._forget_pending()
+        return again
+
+    def _take(self, todo: deque[Binding]) -> None:
         while True:
             try:
                 binding = todo.popleft()
@@ -112,19 +155,28 @@ class Evaluation:
                 continue
             if self._has_no_occasion(binding):
                 continue
+            concludes = False
             with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
                 try:
                     with store.telling_short_memory():
                         self.judge_rule(binding)
+                        concludes = binding.no in self._alone or self._n_pending > MOST_PENDING_ROWS
+                        if concludes:
+                            self.conclude()
                 except duckdb.Error as error:
                     failure = error
                 else:
                     continue
+            self._pending = [other for other in self._pending if other is not binding]
+            if concludes:
+                todo.extendleft(self._apart(self._pending))
             self._blame(binding, failure, held.excess)
 
     def prepare(self) -> None:
         """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
-        self._n_todo = temp_tables.create_tables(self.con, self.bindings)
+        self._n_todo, self._outside = temp_tables.create_tables(self.con, self.bindings)
+        self._forget_pending()
+        self._is_short = self._count("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
         self._n_subjects = self._count("SELECT count(*) FROM _subject")
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
         self._run("watched")
@@ -140,7 +192,8 @@ class Evaluation:
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
-        """Run the statements of one rule."""
+        """Judge the steps by one rule; `conclude` makes outcomes of them."""
+        self._pending.append(binding)
         if binding.rule.kind == "invariant":
             self._invariant(binding)
         else:
@@ -151,46 +204,46 @@ class Evaluation:
         return bool(binding.rule.occasion_needs & self._empty) and _is_shipped(binding)
 
     def _is_quick(self, binding: Binding) -> bool:
-        """Whether the first pass can settle groups; margins need every step anyway."""
-        return not self.margins and invariant.has_default_grid(binding.rule)
+        """Whether the first pass is to settle groups; margins need every step anyway."""
+        return not self._is_short and not self.margins and invariant.has_default_grid(binding.rule)
 
     def _is_partial(self, binding: Binding) -> bool:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
 
     def _invariant(self, binding: Binding) -> None:
-        rule, partial, quick = binding.rule, self._is_partial(binding), self._is_quick(binding)
+        rule, partial, steps = binding.rule, self._is_partial(binding), self._first_pass(binding)
+        if steps is None:
+            return
+        n_judged = self._execute(
+            invariant.judged_steps_sql(rule, partial, self._check_engagement, steps.which), binding
+        )
+        self._n_pending += n_judged
+        # as many rows as the grid has steps: none can be double
+        self._may_be_double |= self._check_engagement or n_judged != steps.n
+
+    def _first_pass(self, binding: Binding) -> _StepsToJudge | None:
+        """Settle what can be settled without looking at each step; return the steps that are left, None: there are none."""
+        rule, partial = binding.rule, self._is_partial(binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
-        if rule.per_object and "applies" not in rule.sections:
+        if rule.per_object and "applies" not in rule.sections and "lost_object" not in self._empty:
             self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
-        n_steps = -1
-        if quick:
+        if binding.no in self._outside and _is_shipped(binding):
+            return None
+        if self._is_quick(binding):
             self._execute(invariant.first_pass_sql(rule, partial), binding)
             if self._has_doubts:
                 self._execute(statement("judging/doubt_of_groups"), binding)
-            n_steps = self._count(
-                f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
-            )
-            if self._has_near_misses(binding, "_group", "clean"):
-                self._execute(findings.first_pass_measure_series_sql(binding.rule), binding)
-            if self._may_stop(n_steps):
-                return
-        elif self._may_stop(
-            self._execute(invariant.steps_to_judge_sql(rule, partial, self._check_engagement), binding)
-        ):
-            return
-        n_judged = self._execute(invariant.second_pass_sql(rule, partial, quick, self._check_engagement), binding)
-        if self._may_stop(n_judged):
-            return
-        if self._check_engagement or n_judged != n_steps:  # as many rows as the grid has steps: none can be double
-            self._execute(statement("judging/error_of_grid"), binding)
-        if self._has_doubts:
-            self._execute(statement("judging/doubt_of_short_time"), binding)
-        self._doubt_steps(binding, "object_id")
-        self._execute(invariant.episodes_sql(rule), binding)
-        if self._has_holes:
-            self._execute(statement("judging/outcome_of_holes"), binding)
-        self._leave(binding)
+            left = f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
+            n_steps = self._count(left)
+            near = f"FROM _group JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND clean AND is_near_miss(margin, near_margin)"
+            if self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}")):
+                self._execute(invariant.first_pass_measure_series_sql(rule), binding)
+            return None if self._may_stop(n_steps) else _StepsToJudge("unsettled", n_steps)
+        if "applies" in rule.sections or not self._is_short:
+            n_steps = self._execute(invariant.steps_to_judge_sql(rule, partial, self._check_engagement), binding)
+            return None if self._may_stop(n_steps) else _StepsToJudge("asked", -1)
+        return _StepsToJudge("all", -1)
 
     def _occasion(self, binding: Binding) -> None:
         rule = binding.rule
@@ -202,35 +255,40 @@ class Evaluation:
         self._execute(reference_points.references_sql(columns), binding)
         self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
+        self.con.execute(statement("judging/reference_step", rule_no=str(binding.no)))
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
-        self._execute(reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding)
-        self._doubt_steps(binding, "coalesce(nullif(who, ''), object_id)")
-        self._execute(statement("judging/error_of_references"), binding)
-        self._execute(reference_points.outcomes_sql(rule, own_object), binding)
-        self._leave(binding)
+        self._n_pending += self._execute(
+            reference_points.judged_steps_sql(rule, own_object, self._check_engagement), binding
+        )
+        self._may_be_double = True
 
-    def _doubt_steps(self, binding: Binding, whom: str) -> None:
-        """Take back what was judged by data in doubt, or missed by less than a sensor can tell; `whom`: the object of a step, in SQL."""
-        if self._has_doubts:
-            self._execute(statement("judging/doubt_of_steps", object=whom), binding)
-        if self._has_sensors and binding.rule.sense != "holds":
-            self._execute(statement("judging/error_of_measuring"), binding)
-
-    def _leave(self, binding: Binding) -> None:
-        if self._has_near_misses(binding, "_outcome", "verdict = 'pass'"):
-            self._execute(findings.near_miss_measure_series_sql(binding.rule), binding)
+    def conclude(self) -> None:
+        """Make the pending steps into outcomes, failing stretches, measure series and margins, of all their rules at once."""
+        kinds = {binding.rule.kind == "invariant" for binding in self._pending}
+        if not self._may_stop(self._n_pending):
+            if self._may_be_double:
+                self._run("error_of_steps")
+            if self._has_doubts:
+                self._run("doubt_of_short_time", "doubt_of_steps")
+            if self._has_sensors:
+                self._run("error_of_measuring")
+            if True in kinds:
+                self._run("outcome_of_episodes", *(["outcome_of_holes"] if self._has_holes else []))
+        if False in kinds and not self._may_stop(self._count("SELECT count(*) FROM (FROM _occasion LIMIT 1)")):
+            self._run("outcome_of_references")
+        near = "FROM _outcome JOIN _rule USING (rule_no) WHERE verdict = 'pass' AND is_near_miss(margin, near_margin)"
+        if self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}")):
+            self._run("course_of_near_misses")
         if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
-            self._execute(findings.stretches_sql(binding.rule), binding)
-            if self.keep_measure_series:
-                self._execute(findings.measure_series_sql(binding.rule), binding)
+            self._run("stretch", *(["course_of_stretches"] if self.keep_measure_series else []))
         if self.margins:
-            self._execute(findings.margins_sql(binding.rule), binding)
+            self._run("margin_of_steps")
+        self._forget_pending()
 
-    def _has_near_misses(self, binding: Binding, table: str, kept: str) -> bool:
-        """Whether measure series are asked for, and some kept rows of a table of outcomes are near misses."""
-        near = f"FROM {table} JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND {kept} AND is_near_miss(margin, near_margin)"
-        return self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}"))
+    def _forget_pending(self) -> None:
+        self._pending, self._n_pending, self._may_be_double = [], 0, False
+        self.con.execute(statement("judging/pending"))  # what is only deleted would take its room
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
@@ -283,6 +341,7 @@ class PlanRecorder(Evaluation):
         """Make the run's tables; holes and drivers that are not engaged are always looked for."""
         super().prepare()
         self._has_holes = self._check_engagement = True
+        self._empty, self._outside = set(), set()
 
     def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
         return False
@@ -292,3 +351,9 @@ class PlanRecorder(Evaluation):
         rows = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchall()
         self.plans += [str(plan) for _, plan in rows]
         return super()._execute(sql, binding)
+
+    def _run(self, *names: str) -> None:
+        for name in names:
+            rows = self.con.execute(f"EXPLAIN {statement(f'judging/{name}')}").fetchall()
+            self.plans += [str(plan) for _, plan in rows]
+            super()._run(name)

@@ -5,14 +5,17 @@ Groups that are whole and kept are settled by one aggregation without a join; on
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from drivelint.evaluate import applicability
-from drivelint.evaluate.sql_fragments import rule_statement, subject_join
+from drivelint.evaluate.sql_fragments import deciding_step, rule_statement, subject_join
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
+
+Steps = Literal["all", "unsettled", "asked"]
+"""All steps of a rule's grid, those of the groups that a first pass did not settle, or those of the table `_asked`."""
 
 
 def has_default_grid(rule: Rule) -> bool:
@@ -34,6 +37,16 @@ def first_pass_sql(rule: Rule, partial: bool) -> str:
         grid="pair" if rule.per_object else "step",
         same_object=" AND g.object_id = s.object_id" if rule.per_object else "",
         todo=subject_join(partial, "g"),
+        deciding_step=deciding_step(rule),
+    )
+
+
+def first_pass_measure_series_sql(rule: Rule) -> str:
+    """Return the SQL that appends to `_course` the measure's values around near misses of groups that the first pass settled."""
+    return rule_statement(
+        "course_of_near_groups",
+        rule,
+        object="coalesce(object_id, '')" if rule.per_object else "''",
     )
 
 
@@ -76,8 +89,8 @@ def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str
     return statement("judging/asked", grid=_grid(rule, partial, False, check_engagement))
 
 
-def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
-    """Return the SQL for `_judged`: every step of the grid, which is what a first pass left unsettled, or `_asked`."""
+def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: Steps) -> str:
+    """Return the SQL that appends to `_judged` these steps of the grid."""
     same_key = ""
     if rule.per_object:
         # an author's own grid may hold a step at which it is not known which object is meant
@@ -88,15 +101,10 @@ def second_pass_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement
     if rule.exempt_after_s != 0:
         numbered = _steps_with_episode("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
         kept = statement("judging/aged", steps_with_episode=numbered)
-    grid = _grid(rule, partial, True, check_engagement) if unsettled else "_step_to_judge AS (SELECT * FROM _asked)"
+    grid = "_step_to_judge AS (SELECT * FROM _asked)"
+    if steps != "asked":
+        grid = _grid(rule, partial, steps == "unsettled", check_engagement)
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
-
-
-def episodes_sql(rule: Rule) -> str:
-    """Return the SQL that appends to `_outcome` one row per episode of `_judged`."""
-    broken = "SEMI JOIN (FROM _key_summary WHERE broken) f USING (drive_id, ego_id, object_id, profile, label)"
-    numbered = _steps_with_episode(f"SELECT l.* FROM _applicable_step l {broken}")
-    return rule_statement("outcome_of_episodes", rule, steps_with_episode=numbered)
 
 
 def _steps_with_episode(source: str) -> str:

@@ -1,7 +1,7 @@
 """Builds the SQL of rules with reference points: executions, preconditions and postconditions.
 
 References come first; where there is none the rule stops. Then the points that must be judged (`reference_step`), the
-conditions left-joined to them on keys alone (`_judged`), and one outcome per reference, profile and object (unless combined).
+conditions left-joined to them on keys alone (`_judged`).
 """
 
 from __future__ import annotations
@@ -32,11 +32,12 @@ def references_sql(columns: Sequence[str]) -> str:
 
 
 def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
-    """Return the SQL for `_occasion`: each reference point with its window, and whether the rule applies there."""
+    """Return the SQL that appends to `_occasion`: each reference point with its window, and whether the rule applies there."""
     has_window = rule.subtype != "physical"
     return statement(
         "judging/occasion",
         own_object="r.object_id" if own_object else "NULL",
+        crowd="true" if rule.per_object and not own_object else "false",
         start="r.t_ns - $_window_ns" if has_window and rule.kind == "precondition" else "r.t_ns",
         end="r.t_ns + $_window_ns" if has_window and rule.kind == "postcondition" else "r.t_ns",
         **applicability.fragments(rule, "r", "r.t_ns", check_engagement),
@@ -44,7 +45,7 @@ def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
 
 
 def reference_steps_sql(rule: Rule) -> str:
-    """Return the SQL for `reference_step`: where each reference is judged; t_ns is NULL for an anchor that is not known."""
+    """Return the SQL that appends to `_reference_step` where each reference is judged; t_ns is NULL for an anchor that is not known."""
     if rule.subtype == "temporal":
         return statement("judging/reference_step_of_windows")
     if rule.subtype == "physical":
@@ -53,7 +54,7 @@ def reference_steps_sql(rule: Rule) -> str:
 
 
 def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
-    """Return the SQL for `_judged`: every expected point, judged or not; combined over objects where the rule says so."""
+    """Return the SQL that appends to `_judged` every expected point, judged or not; combined over objects where the rule says so."""
     points = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m, NULL::VARCHAR AS lost FROM reference_step"
     if rule.per_object and not own_object:
         points = statement("judging/points_with_objects")
@@ -79,20 +80,4 @@ def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> st
         same_key=same_key,
         condition_joins=joins,
         series=series,
-    )
-
-
-def outcomes_sql(rule: Rule, own_object: bool) -> str:
-    """Return the SQL that appends to `_outcome` one row per reference, profile and (combine = each) object present."""
-    crowd = rule.per_object and not own_object
-    coverage = "cover_of_windows" if rule.subtype == "temporal" else "cover_of_points"
-    return rule_statement(
-        "outcome_of_references",
-        rule,
-        coverage=statement(f"judging/{coverage}"),
-        somebody="o.ref_id IN (SELECT ref_id FROM reference_step JOIN pair USING (drive_id, ego_id, t_ns))"
-        if crowd
-        else "true",
-        object_id="s.object_id" if crowd and rule.combine == "each" else "o.object_id",
-        who="object_id" if rule.combine == "each" else "CASE WHEN of_step THEN unknown.who ELSE worst.who END",
     )

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 _NS = 1_000_000_000
+_PROFILES = "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule_no = $_no) p USING (drive_id, ego_id)"
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
@@ -36,11 +37,8 @@ class Binding:
             **params,
             "_no": no,
             "_sense": rule.sense,
-            "_eventually": rule.quantifier == "eventually",
             "_all": rule.combine == "all",
             "_combined": rule.combine != "each",
-            "_physical": rule.subtype == "physical",
-            "_metres": rule.unit == "m",
             **applicability.bound_values(rule),
         }
         for field, name in _ENGINE.items():
@@ -60,14 +58,12 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
 
 
 def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
-    """Return `queries/judging/<name>.sql` for a rule: with its condition, how its steps decide, its profiles, and `fragments`."""
+    """Return `queries/judging/<name>.sql` for a rule: with its condition, its profiles, and `fragments`."""
     return statement(
         f"judging/{name}",
         condition=condition_ctes(rule),
-        deciding_step=deciding_step(rule),
-        first_unknown_step=first_unknown_step(rule),
         profile="p.profile" if rule.per_profile else "''",
-        profiles="JOIN _profile_set p USING (drive_id, ego_id)" if rule.per_profile else "",
+        profiles=_PROFILES if rule.per_profile else "",
         **fragments,
     )
 
@@ -133,21 +129,13 @@ def subject_join(partial: bool, alias: str) -> str:
 
 
 def deciding_step(rule: Rule) -> str:
-    """Return the aggregate that picks the deciding step: (b, g, t, [who,] observed, required, holds, code, reason).
-
-    always: least margin, or the earliest failing, else unknown, else first step (sense = holds); eventually: the
-    greatest margin, or
-    the earliest holding, else unknown, else failing step. Ties take the earliest step. The leading fields are never
-    NULL and t is unique
-    in its group, so NULLs in the payload are never compared.
-    """
+    """Return the aggregate that picks the deciding step of `_state`: as the macro `deciding_step`, without `who`."""
     eventually = rule.quantifier == "eventually"
     good, bad = (0, 1) if eventually else (1, 0)
     unknown = 2
     if rule.sense == "holds":
         good, unknown, bad = (0, 1, 2) if eventually else (2, 1, 0)
-    sign = "-" if eventually else ""
-    return step_by_rank(good, bad, unknown, sign, _who(rule))
+    return step_by_rank(good, bad, unknown, "-" if eventually else "", "")
 
 
 def step_by_rank(good: int, bad: int, unknown: int, sign: str, whose: str) -> str:
@@ -157,16 +145,3 @@ def step_by_rank(good: int, bad: int, unknown: int, sign: str, whose: str) -> st
         f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, unknown_time_ns()), "
         f"{whose}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )
-
-
-def first_unknown_step(rule: Rule) -> str:
-    """Return the aggregate that picks the earliest step that could not be judged: (t, code, [who,] reason, observed, required)."""
-    return (
-        f"min({{'t': coalesce(t_ns, unknown_time_ns()), 'code': coalesce(code, 'null_value'), {_who(rule)}'reason': reason, "
-        "'observed': observed, 'required': required}) "
-        "FILTER (holds IS NULL)"
-    )
-
-
-def _who(rule: Rule) -> str:
-    return "'who': coalesce(who, ''), " if rule.combine != "each" else ""

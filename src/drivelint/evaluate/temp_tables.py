@@ -29,8 +29,11 @@ _QUANTITIES = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
 _MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
-def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> dict[int, int]:
-    """Create the run's temporary tables and return rule number -> subjects for which it is to be run."""
+def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
+    """Create the run's temporary tables.
+
+    Return rule number -> subjects for which it is to be run, and the rules whose conditions hold at no step of any of these.
+    """
     for name in ("macros", "sentences", "tables"):
         con.execute(statement(f"judging/{name}"))
     # as Arrow tables: lists bound as parameters took a tenth of a second each
@@ -38,8 +41,9 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     store.insert(con, "_needs", _needs(bindings))
     store.insert(con, "_allowed", _allowed(bindings))
     con.execute(statement("judging/todo"))
-    counts = con.execute("SELECT rule_no, count(*) FROM _todo GROUP BY rule_no").fetchall()
-    return {int(no): int(n) for no, n in counts}
+    sql = "SELECT rule_no, count(*), count(o.rule_no) FROM _todo t LEFT JOIN _outside o USING (rule_no, drive_id, ego_id) GROUP BY rule_no"
+    counts = con.execute(sql).fetchall()
+    return {int(no): int(n) for no, n, _ in counts}, {int(no) for no, n, n_outside in counts if n == n_outside}
 
 
 def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
@@ -49,7 +53,7 @@ def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
 
 
 def _rules(bindings: Sequence[Binding]) -> pa.Table:
-    told = ("kind", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
+    told = ("kind", "subtype", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
     rows = []
     for binding in bindings:
         rule, sources = binding.rule, with_sources(binding.rule.reads)
@@ -61,7 +65,8 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
             "of_contact": CONTACT in rule.tags,
             "of_standing": STANDING in rule.tags,
         }
-        row |= {"by_object": rule.combine == "each"}
+        row |= {"by_object": rule.combine == "each", "eventually": rule.quantifier == "eventually"}
+        row |= {"merge_ns": binding.values(["_merge_ns"])["_merge_ns"]}
         limits = applicability.bound_values(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
     return pa.Table.from_pylist(rows)

@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING
 
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.commonroad import scenario as commonroad
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.search import is_pipe_or_device, tree, why_not_here
-from drivelint.formats.sumo import fcd as sumo
 from drivelint.phrases import shown
 
 if TYPE_CHECKING:
@@ -122,10 +120,13 @@ def is_log_name(name: str) -> bool:
 
 def _is_xml_log(file: Path) -> bool:
     """Say whether a file is a log; one that cannot be opened may be, and is refused by its reader."""
+    from drivelint.formats.commonroad.scenario import has_obstacles
+    from drivelint.formats.sumo.fcd import is_fcd
+
     try:
         with file.open("rb") as opened:
             head = opened.read(_HEAD_BYTES)
-        return sumo.is_fcd(file, head) or commonroad.has_obstacles(file, head)
+        return is_fcd(file, head) or has_obstacles(file, head)
     except OSError:
         return True
 

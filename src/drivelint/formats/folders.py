@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.formats.mcap.bag import METADATA_FILE, is_bag
-from drivelint.formats.mcap.bag import mcap_files as files_of_bag
+from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
 from drivelint.formats.search import why_not_here
 
 if TYPE_CHECKING:
@@ -84,9 +83,11 @@ def drive_files(path: Path) -> list[Path]:
         return [path]
     kind = folder_kind(path)
     if kind == "bag":
+        from drivelint.formats.mcap.bag import mcap_files
+
         return [
             path / METADATA_FILE,
-            *(path / file.name for file in files_of_bag(path) if (path / file.name).is_file()),
+            *(path / file.name for file in mcap_files(path) if (path / file.name).is_file()),
         ]
     patterns = next((known.files for known in KINDS if known.name == kind), ())
     return [file for pattern in patterns for file in _files(path, pattern)]

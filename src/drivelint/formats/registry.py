@@ -3,53 +3,55 @@
 from __future__ import annotations
 
 import codecs
-from typing import TYPE_CHECKING, Final
+from importlib import import_module
+from typing import TYPE_CHECKING, Final, cast
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
-from drivelint.formats.argoverse2 import forecasting, sensor
-from drivelint.formats.commonroad import scenario
-from drivelint.formats.d123 import reader as d123
 from drivelint.formats.files import file_states, identify
-from drivelint.formats.film import reader as film
 from drivelint.formats.folders import is_drive_folder
-from drivelint.formats.mcap import trace as mcap
-from drivelint.formats.osi import reader as osi_file
 from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
-from drivelint.formats.scenarionet import reader as scenarionet
 from drivelint.formats.search import why_not_followed, why_not_here
-from drivelint.formats.sumo import fcd
-from drivelint.formats.tables import canonical, mapped_table
 from drivelint.formats.tables.mapping import refuse_if_none
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from drivelint.drive.trace import IngestOptions, Trace
 
-READERS: Final[tuple[Reader, ...]] = (
-    film,
-    canonical,
-    d123,
-    mcap,
-    osi_file,
-    scenarionet,
-    scenario,
-    fcd,
-    sensor,
-    forecasting,
-    mapped_table,  # last: it accepts any text without markup
+READERS: Final = (
+    "film.reader",
+    "tables.canonical",
+    "d123.reader",
+    "mcap.trace",
+    "osi.reader",
+    "scenarionet.reader",
+    "commonroad.scenario",
+    "sumo.fcd",
+    "argoverse2.sensor",
+    "argoverse2.forecasting",
+    "tables.mapped_table",  # last: it accepts any text without markup
 )
-"""The first that accepts a file reads it."""
+"""The modules of the readers. The first that accepts a file reads it; those behind it are not even imported."""
 FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
 """Suffix -> how each file with it must begin, behind a byte order mark if there is one: another one is refused as damaged."""
 UNPROTECTED: Final = QualityFinding(
     "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
 )
 """The finding of every log that is not MCAP. The MCAP reader adds its own, for chunks without a CRC."""
-FORMATS: Final = {name: told for reader in READERS for name, told in reader.formats.items()}
-"""What `data_log.format` may be beside the name of a mapping -> the format's title, and how its ego is known."""
+
+
+def readers() -> Iterator[Reader]:
+    """Yield the readers in the order in which they are asked, each imported when it is its turn."""
+    for name in READERS:
+        yield cast("Reader", import_module(f"drivelint.formats.{name}"))
+
+
+def format_words(name: str) -> tuple[str, str] | None:
+    """Return the title of a format, and how its ego is known; None: `name`, as `data_log.format` has it, is that of a mapping."""
+    return next((reader.formats[name] for reader in readers() if name in reader.formats), None)
 
 
 def read_trace(path: Path, options: IngestOptions) -> Trace:
@@ -62,11 +64,11 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     probe = _probe(path, options)
     before = file_states(path)
     identity = identify(path)
-    if reader := next((each for each in READERS if each.accepts(probe)), None):
+    if reader := next((each for each in readers() if each.accepts(probe)), None):
         recording = reader.read(probe)
         if file_states(path) != before:  # what was read is not what the hash is of
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
-        if reader is not mcap and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
+        if "osi-mcap" not in reader.formats and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
             recording.findings.append(UNPROTECTED)
         if options.mapping is not None and not reader.takes_mapping:
             refuse_if_none(options.mapping)
@@ -90,7 +92,7 @@ def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
         probe = _probe(path, options)
     except TraceError:
         return False
-    return not any(reader.accepts(probe) for reader in READERS if reader is not mapped_table)
+    return not any(reader.accepts(probe) for reader in list(readers())[:-1])
 
 
 def _probe(path: Path, options: IngestOptions) -> Probe:

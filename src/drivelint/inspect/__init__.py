@@ -17,7 +17,7 @@ from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
-from drivelint.formats.registry import FORMATS, may_be_mapped_table
+from drivelint.formats.registry import format_words, may_be_mapped_table
 from drivelint.formats.search import why_not_here
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
@@ -74,7 +74,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
         unread = model.File(name=name, bytes=size)
         return model.Inspection(file=unread, content=_content_of_unread(path, options), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
-    mapping = None if log["format"] in FORMATS else request.mapping or log["format"]
+    mapping = None if format_words(log["format"]) else request.mapping or log["format"]
     return model.Inspection(
         file=msgspec.convert({**log, "name": name, "bytes": size}, model.File),
         content=content(path, mapping, list(trace.notes), read=True),
@@ -225,7 +225,8 @@ def _ego_source(trace: Trace, asked: str | None) -> str:
     if "ego_assumed" in said:
         return "assumed: the first vehicle of the file, as the mapping says (--ego ID to choose another)"
     log_format = trace.tables["data_log"]["format"][0].as_py()
-    return FORMATS[log_format][1] if log_format in FORMATS else f"named by the mapping {log_format}"
+    words = format_words(log_format)
+    return words[1] if words else f"named by the mapping {log_format}"
 
 
 def _road(environment: MapTables, *, given: bool) -> model.Road:

@@ -10,6 +10,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.bag_folder import is_bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.resume import MAGIC
 from drivelint.formats.mcap.summary import Summary, read_index
@@ -51,7 +52,7 @@ _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
 def size_bytes(path: Path) -> int:
     """Return the bytes of a file, or of the files of a folder that are read as one drive."""
     files = drive_files(path)
-    if bag.is_bag(path):
+    if is_bag(path):
         files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
     return sum(file.stat().st_size for file in files if file.is_file())
 
@@ -59,7 +60,7 @@ def size_bytes(path: Path) -> int:
 def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) -> Content:
     """Return the channels, tables and columns of a file, and what is read from them."""
     if path.is_dir():
-        if bag.is_bag(path):
+        if is_bag(path):
             return Content(channels=_channels(path), notes=notes)
         return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
     if is_pipe_or_device(path):

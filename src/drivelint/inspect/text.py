@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.formats.registry import FORMATS
+from drivelint.formats.registry import format_words
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import grouped
@@ -71,8 +71,8 @@ def _title(found: model.Inspection) -> Text:
     file = found.file
     about = [_size(file.bytes)]
     if file.format is not None:
-        mapped = f"a table, read through the mapping {file.format}"
-        about.insert(0, FORMATS[file.format][0] if file.format in FORMATS else mapped)
+        words = format_words(file.format)
+        about.insert(0, words[0] if words else f"a table, read through the mapping {file.format}")
     return Text(file.name, style="bold").append(f"  {', '.join(about)}", style="default")
 
 

@@ -52,9 +52,9 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
     """Return how to provide a signal in a log of this format. `advice`: what the reason why it is lacking asks for."""
     if signal == "registration" and advice:
         return advice  # the map is not at fault
-    from drivelint.formats.registry import FORMATS  # the readers of all formats, which the catalogue needs not
+    from drivelint.formats.registry import format_words  # the readers, which the catalogue needs not
 
-    name = log_format if log_format in FORMATS else "mapped"
+    name = "mapped" if format_words(log_format) is None else log_format
     # what a format cannot hold is given in the Parquet tables of a converted log
     tables = TEXTS["where"]["canonical-parquet"].items()
     where = {key: f"drivelint convert --to parquet, and in its tables {table}" for key, table in tables}

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.phrases import one_line
-from drivelint.report.terminal import NARROW_WIDTH
+from drivelint.report import NARROW_WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

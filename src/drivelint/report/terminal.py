@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.phrases import listed
-from drivelint.report import terminal_summary
+from drivelint.report import NARROW_WIDTH, terminal_summary
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
@@ -30,8 +30,6 @@ MAX_RULES: Final = 10
 """Rules shown per reason."""
 MAX_ROWS: Final = 20
 """Rows shown per section; the files hold them all."""
-NARROW_WIDTH: Final = 96
-"""Below this width findings take two lines each, and columns that only repeat are left out."""
 
 _STYLE: Final = {
     "pass": "green",

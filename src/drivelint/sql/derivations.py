@@ -23,11 +23,21 @@ if TYPE_CHECKING:
 
 _OCCASION: Final = re.compile(r"^-- occasion: (\w+(?:, \w+)*)$", re.MULTILINE)
 _GIVEN = {"profile"}  # filled from queries/profiles.toml
-# What the engine and the drive table read themselves, whatever the rules are.
-ALWAYS_NEEDED = (
-    *("clock", "step", "ego_state", "pair", "lost_object"),
-    *("ego_condition", "capability", "registration", "exposure", "recorded"),
+NEEDED_OF_DRIVES: Final = (
+    "clock",
+    "step",
+    "ego_state",
+    "ego_condition",
+    "capability",
+    "registration",
+    "exposure",
+    "recorded",
 )
+"""What the drive table and `inspect` read, without any rule."""
+NEEDED_OF_RULES: Final = (*NEEDED_OF_DRIVES, "pair")
+"""What the evaluation and the evidence of findings read besides, whatever the rules are."""
+ALWAYS_NEEDED: Final = (*NEEDED_OF_RULES, "lost_object")
+"""What the evaluation reads of rules that look at others than the ego."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +113,11 @@ def _with_sources(tables: Iterable[str]) -> list[Derivation]:
             graph[table] = sorted(_derivation(table).reads)
             todo += graph[table]
     return [_derivation(table) for table in TopologicalSorter(dict(sorted(graph.items()))).static_order()]
+
+
+def derived_tables() -> frozenset[str]:
+    """Return the names of the tables that have a derivation."""
+    return frozenset(_files())
 
 
 def with_sources(tables: Iterable[str]) -> frozenset[str]:

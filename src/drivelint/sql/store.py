@@ -345,12 +345,14 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     if codes := _codes(con):
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
     bodies = dict(_TABLE.findall(_declarations()))
+    made = []
     for table in tables:
         body = bodies[table]
         as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # which has the ids of more than one batch
         for column in types.keys() & column_comments()[table].keys() if not as_text else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
-        con.execute(f"CREATE OR REPLACE TABLE {table} (\n{body})")
+        made.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
+    con.execute(";".join(made))
 
 
 def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:

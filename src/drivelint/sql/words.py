@@ -10,7 +10,7 @@ import re
 import tomllib
 from difflib import get_close_matches
 from functools import cache
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 from drivelint.errors import DriveLintError, InternalError
 from drivelint.phrases import hint
@@ -29,6 +29,10 @@ _NEAR: Final = 0.55
 """How alike a word that is proposed must be: `cyclist` and `bicycle` are 0.57."""
 _MISSPELLED: Final = 0.85
 """So alike to a word of an open vocabulary is none of its own, but that word misspelled."""
+
+
+Quantity = Literal["existence", "identity", "position", "heading", "velocity", "size", "class"]
+"""In what of an actor a log may be doubted."""
 
 
 class Vocabulary(NamedTuple):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
+from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-METADATA_FILE = "metadata.yaml"
-_ROOT = "rosbag2_bagfile_information"
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
 FOXGLOVE_ROLES: Final = {
@@ -27,15 +26,6 @@ FOXGLOVE_ROLES: Final = {
     "foxglove.FrameTransforms": "frames",
 }
 """Schema, of ROS as `message_kind` names it, -> what is read from its messages."""
-
-
-def is_bag(path: Path) -> bool:
-    """Say whether `path` is a folder that rosbag2 recorded."""
-    try:
-        with (path / METADATA_FILE).open("rb") as file:
-            return _ROOT.encode() in file.read(65536)
-    except OSError:
-        return False
 
 
 def mcap_files(path: Path) -> list[Path]:
@@ -81,7 +71,7 @@ def _information(path: Path) -> Any:
     import yaml  # logs of other formats do without
 
     try:
-        return yaml.safe_load((path / METADATA_FILE).read_bytes())[_ROOT]
+        return yaml.safe_load((path / METADATA_FILE).read_bytes())[METADATA_ROOT]
     except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise _unreadable(path, error) from error
 
