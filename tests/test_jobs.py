@@ -111,8 +111,8 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     assert judged.asked is not None
     drives = sorted(judged.asked.traces)
     notes = tuple(run.LogNote(Path(judged.asked.traces[drive]), "said", once=True) for drive in drives)
-    one = run.JudgedLogs(replace(judged, **_of(judged, drives[:2], inside=True)), notes[:2], ())
-    first, second = parallel._without_copies([one, run.JudgedLogs(judged, notes, ())])
+    one = run.JudgedLogs(replace(judged, **_of(judged, drives[:2], inside=True)), notes[:2], (), {})
+    first, second = parallel._without_copies([one, run.JudgedLogs(judged, notes, (), {})])
     assert first is one
     assert set(second.result.drives["drive_id"].to_pylist()) == {*drives[2:], "m"}
     assert not set(second.result.verdicts["drive_id"].to_pylist()) & set(drives[:2])

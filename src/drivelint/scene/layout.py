@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from drivelint.scene.document import Crossing, LaneText, Layout, RoadText, Roundabout
 
-_COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
+_COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
 _THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
 _NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
@@ -232,7 +232,7 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
     """Return the arms, and for each the part of the ring that begins behind it, driven anticlockwise."""
     found: dict[str, RoadText] = {}
     gap = 10.0 / roundabout.radius  # half of what an arm's junction takes of the ring, as an angle
-    angles = sorted((_COMPASS[arm] % (2 * math.pi), arm) for arm in roundabout.arms)
+    angles = sorted((_COMPASS[arm], arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))
     width = _lane_words(lane)[1] if isinstance(lane, str) else lane.width
     inner = roundabout.radius - width / 2
@@ -241,7 +241,7 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
         start = [away * math.cos(angle), away * math.sin(angle), math.degrees(angle)]
         found[arm] = msgspec.structs.replace(roundabout.road, start=start)
         until = angles[(n + 1) % len(angles)][0]
-        turn = (until - angle - 1e-9) % (2 * math.pi) + 1e-9 - 2 * gap
+        turn = until - angle + (0.0 if until > angle else 2 * math.pi) - 2 * gap
         begin = angle + gap
         found[f"ring {arm}"] = msgspec.structs.replace(
             roundabout.road,
@@ -256,7 +256,7 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
 
 
 def _ring_turns(roundabout: Roundabout) -> list[tuple[str, int, str, int]]:
-    arms = [arm for _, arm in sorted((_COMPASS[arm] % (2 * math.pi), arm) for arm in roundabout.arms)]
+    arms = [arm for _, arm in sorted((_COMPASS[arm], arm) for arm in roundabout.arms)]
     found = []
     for n, arm in enumerate(arms):
         before = arms[n - 1]

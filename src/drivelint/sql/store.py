@@ -188,9 +188,8 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
     it cannot keep makes it evict all it can: for a few milliseconds, with tables of some megabytes written to the spill folder.
     The C library keeps the pages of what was freed, until it is told to return them.
     """
-    with suppress(
-        duckdb.OutOfMemoryException, duckdb.IOException
-    ):  # an IOException: the disk is full, and the blocks stay
+    # an IOException: the disk is full, and the blocks stay
+    with suppress(duckdb.OutOfMemoryException, duckdb.IOException):
         con.execute("SET memory_limit='1B'")
     try:
         ctypes.CDLL(None).malloc_trim(0)
@@ -344,8 +343,7 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     types = {}
     if codes := _codes(con):
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
-    bodies = dict(_TABLE.findall(_declarations()))
-    made = []
+    bodies, made = dict(_TABLE.findall(_declarations())), list[str]()
     for table in tables:
         body = bodies[table]
         as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # which has the ids of more than one batch

@@ -198,7 +198,9 @@ def test_types_are_numbered_anew_in_each_part(tmp_path: Path) -> None:
     first = set()
     for file in folder.glob("*.mcap"):
         with file.open("rb") as stream:
-            first.add(make_reader(stream).get_summary().schemas[1].name)
+            summary = make_reader(stream).get_summary()
+            assert summary is not None
+            first.add(summary.schemas[1].name)
     assert len(first) == 2
     assert rows(read(folder)) == rows(seen(tmp_path, messages))
 

@@ -65,8 +65,8 @@ class _Boxes(NamedTuple):
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
 """Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
-BESIDE_M: Final = 0.1
-"""Places tremble by so much from one sample to the next."""
+BESIDE_M: Final = 0.3
+"""Places and headings of tracks tremble by so much."""
 BESIDE_SHARE: Final = 2 / 3
 """Who share no more than this of the narrower width at first may drive beside each other: places may be off across as well as along."""
 HIT_MPS: Final = 1.5

@@ -6,7 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from drivelint.errors import ChangedLogError
-from drivelint.formats.mcap.bag import is_bag, mcap_files
+from drivelint.formats.mcap.bag import mcap_files
+from drivelint.formats.mcap.bag_folder import is_bag
 from drivelint.formats.mcap.original import Original, opened
 from drivelint.formats.mcap.part_copy import PartCopy
 from drivelint.formats.mcap.resume import MAGIC
