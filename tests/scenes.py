@@ -27,6 +27,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import store
+from drivelint.sql.derivations import ALWAYS_NEEDED
 from drivelint.sql.derivations import derivations, needed
 from tests.formats.opendrive import xodr
 from tests.together import Question, SceneTables, answers
@@ -350,6 +351,7 @@ def derived(
             bench._tables |= of_the_map
             bench._maps = frozenset()  # all of the map once more, with these
         bench._tables |= wanted  # or they would keep the rows of the scene before
+        bench._also = ALWAYS_NEEDED
         bench._load(drives)
         derive(con, wanted, of_the_map=False)
     return con
