@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _WRITES: Final = frozenset("wax+")
 _WRITE_FLAGS: Final = os.O_WRONLY | os.O_RDWR
 _NO_INPUT: Final = frozenset({"/dev/null", "/dev/urandom", "/proc/self/statm", "/proc/meminfo"})
-"""Files that say nothing, or how much memory there is, on which no result depends."""
+"""Files that say nothing, or how much memory there is, on which no result depends; nor does one on what was computed (`schedstat`)."""
 
 
 class Recorder:
@@ -53,6 +53,7 @@ class Recorder:
             whole in self._states
             or whole in self._written
             or whole in _NO_INPUT
+            or (whole.startswith("/proc/self/") and whole.endswith("/schedstat"))
             or self._is_own(os.path.realpath(whole))
         ):
             return
