@@ -27,8 +27,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import store
-from drivelint.sql.derivations import ALWAYS_NEEDED
-from drivelint.sql.derivations import derivations, needed
+from drivelint.sql.derivations import ALWAYS_NEEDED, derivations, needed
 from tests.formats.opendrive import xodr
 from tests.together import Question, SceneTables, answers
 
