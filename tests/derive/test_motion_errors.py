@@ -100,3 +100,17 @@ def test_whom_sensors_measured_accelerates_by_1_6_mps2_more_or_less(
 
     assert fails_by(fails_at)
     assert not fails_by(fails_at - 0.6)
+
+
+def measured(ego: Actor) -> set[str]:
+    """Return the rules of comfort that an ego breaks whom the sensors of somebody else measured."""
+    scene = drive([ego], None, sensor_range_m=50.0)
+    row = {"drive_id": "d", "check_id": "ego_chosen", "actor_id": "ego", "severity": "info", "message": "", "n": 1}
+    scene.trace.tables["quality"] = pa.Table.from_pylist([row], schema=scene.trace.tables["quality"].schema)
+    return {row["rule_id"] for row in judged([scene], rules=COMFORT) if row["verdict"] == "fail"}
+
+
+def test_whom_sensors_measured_gains_speed_as_engines_let_it() -> None:
+    assert "comfort.nuplan" in measured(straight(2 + 5.0 * T))
+    assert not measured(straight(2 + 7.0 * T))
+    assert "comfort.nuplan" in measured(straight(60 - 7.0 * T))
