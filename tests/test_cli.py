@@ -343,7 +343,8 @@ def test_data_known_to_be_bad_make_no_pass_of_a_fail(name: str, tmp_path: Path, 
     rules = [*ON_ROAD, "--rules", "ukhc", "--no-annotate", NO_COPIES]
     assert ran("check", str(good), *rules, "--out", str(tmp_path / "good"))[0] == 1
     code, out, _ = ran("check", str(bad), *rules, "--out", str(tmp_path / "bad"))
-    assert (code, "(lossy)" in out) == (3, True)
+    assert code in {3, 4}  # 4: nothing is decided
+    assert "(lossy)" in out
     failed = {
         (row["rule_id"], row["profile"])
         for row in pq.read_table(tmp_path / "good" / "verdicts.parquet").to_pylist()

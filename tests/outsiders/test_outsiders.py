@@ -37,7 +37,6 @@ KNOWN: Final = {
     "bike_cut_back_o criticality.thw": "its front is clear of the cyclist already, the tail of its turned box is not",
     "obst_wait_o criticality.thw": "its front is clear of the van already, the tail of its turned box is not",
     "wrong_side_turn_o ukhc.r180.corner-cut": "it comes to the junction on the wrong side: where it entered that is not known",
-    "gb-town-reverse-fast_p comfort.accel-iso15622": "3 m/s2 at 12.8 m/s is a little more than the limit there",
 }
 """Where product and outsider still differ, as `scene rule`, and why; never a breach that passes."""
 BY_CI: Final = PERSONS[-1:]

@@ -109,7 +109,7 @@ def test_the_sheet_has_a_page_of_them(bag: Path, out: Path) -> None:
     assert "img-src data:" in page
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_twenty_findings_of_noise_make_a_page_of_under_six_megabytes_and_a_tenth_of_the_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
