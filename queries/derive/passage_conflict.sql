@@ -21,8 +21,8 @@ encounter AS (
                 + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
             true
         )) AS is_driven,
-        -- Who leaves the ground in the ego's direction, late enough, turned into the same road behind it.
-        coalesce(c.pet_s >= merging_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
+        -- The other turns into the ego's road behind the ego, sooner than rules ask of who comes across.
+        coalesce(c.pet_s >= merging_s() AND c.pet_s < asked_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
     FROM passage p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
@@ -45,18 +45,17 @@ approach AS (
     GROUP BY m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, m.heading_rad
 ),
 encounter_by_relation AS (
-    SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, actor_class, pet_s, decel_mps2 FROM encounter WHERE is_on_foot
+    SELECT drive_id, ego_id, occurrence, 'pedestrian' AS relation, object_id, actor_class, pet_s, decel_mps2, false AS merges FROM encounter WHERE is_on_foot
     UNION ALL
-    SELECT * EXCLUDE (merges)
-    FROM (
-        SELECT m.drive_id, m.ego_id, m.occurrence, unnest(relations_of(c.from_rad, m.straightest_rad)) AS relation, m.object_id, m.actor_class, m.pet_s, m.decel_mps2, m.merges
-        FROM encounter m JOIN approach c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
-        WHERE m.is_driven
-    )
-    WHERE NOT (merges AND relation = 'oncoming')
+    SELECT m.drive_id, m.ego_id, m.occurrence, unnest(relations_of(c.from_rad, m.straightest_rad)), m.object_id, m.actor_class, m.pet_s, m.decel_mps2, m.merges
+    FROM encounter m JOIN approach c USING (drive_id, ego_id, occurrence, object_id, t_object_in_ns)
+    WHERE m.is_driven
 ),
 nearest_encounter AS (
-    SELECT drive_id, ego_id, occurrence, relation, min({'pet_s': pet_s, 'object_id': object_id, 'actor_class': actor_class, 'decel_mps2': decel_mps2}) AS other
+    SELECT
+        drive_id, ego_id, occurrence, relation,
+        min({'pet_s': pet_s, 'object_id': object_id, 'actor_class': actor_class, 'decel_mps2': decel_mps2}) FILTER (NOT merges OR relation <> 'oncoming') AS other,
+        min({'pet_s': pet_s, 'object_id': object_id}) FILTER (merges AND relation = 'oncoming') AS merging
     FROM encounter_by_relation
     GROUP BY drive_id, ego_id, occurrence, relation
 ),
@@ -177,8 +176,10 @@ passage_relation AS (
 ),
 relation_result AS (
     SELECT
-        a.drive_id, a.ego_id, a.occurrence, a.relation, n.other, h.braking,
-        coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) END) AS reason
+        a.drive_id, a.ego_id, a.occurrence, a.relation, h.braking,
+        -- Who leaves enough time says nothing where another one may have left too little.
+        CASE WHEN n.merging IS NULL OR n.other.pet_s < asked_s() THEN n.other END AS other,
+        coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) WHEN n.merging IS NOT NULL THEN why('turns_in_behind', n.merging) END) AS reason
     FROM passage_relation a
     JOIN ego_log_reason o USING (drive_id, ego_id, occurrence)
     LEFT JOIN nearest_encounter n USING (drive_id, ego_id, occurrence, relation)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from tests.bench import before, copying, formats, growth, profiling, stages
+from tests.bench import before, copying, formats, growth, pictures, profiling, stages
 from tests.bench.commit import UnknownCommitError
 from tests.bench.place import TINY, Place, Sizes
 from tests.bench.rivals import boxes, postgis, reading, temporal
@@ -33,6 +33,7 @@ SECTIONS: dict[str, Callable[[Place], list[Row]]] = {
     "formats": formats.formats,
     "growth": growth.growth,
     "copy": copying.copying,
+    "pictures": pictures.pictures,
     "shapely": boxes.compare,
     "rtamt": temporal.compare,
     "omega": reading.compare,

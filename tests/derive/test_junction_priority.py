@@ -50,7 +50,7 @@ def test_nobody_is_certain_where_everybody_is_placed() -> None:
     [
         ("we", "sn", "from_right"), ("we", "ns", "from_left"), ("nw", "we", None), ("sn", "we", "from_left"),
         ("wn", "ew", "oncoming"), ("ws", "ew", None), ("en", "we", None), ("nw", "sn", None),
-        ("se", "we", "from_left"), ("ws", "ns", "from_left"), ("wn", "en", None),
+        ("se", "we", "from_left"), ("ws", "ns", "from_left"), ("wn", "en", "oncoming"),
     ],
 )  # fmt: skip
 def test_where_they_came_from(hand: str, ego: str, other: str, relation: str | None) -> None:
@@ -125,17 +125,32 @@ def test_the_one_with_the_least_pet() -> None:
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
-@pytest.mark.parametrize(("s0", "hit"), [(110.0, True), (92.0, False)])
-def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_follows_it(
-    hand: str, s0: float, hit: bool
+@pytest.mark.parametrize(("s0", "pet_s"), [(110.0, (0.0, 1.0)), (103.0, None), (92.0, (2.0, 4.0))])
+def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_perhaps_follows_it(
+    hand: str, s0: float, pet_s: tuple[float, float] | None
 ) -> None:
-    """Both leave the ground in one direction: 1 s or more behind the ego, the other follows."""
+    """From 1 s to 2 s behind the ego, whether the other had to wait is not known; 2 s are enough in any case."""
     ways = cross(hand)
     ego, other = ("wn", "en") if hand == "rht" else ("ws", "es")
-    found = answers(going(ways[ego]), going(ways[other], s0=s0, name="other"), way=ways["we"])
-    assert seen(found) == ({"oncoming": "other"} if hit else {})
-    if hit:
-        assert 0 < found["oncoming"]["pet_s"] < 1
+    row = answers(going(ways[ego]), going(ways[other], s0=s0, name="other"), way=ways["we"])["oncoming"]
+    if pet_s is None:
+        assert (row["object_id"], row["pet_s"]) == (None, None)
+        assert row["reason"].startswith("other turned into the same road 1.")
+    else:
+        assert row["object_id"] == "other"
+        assert pet_s[0] < row["pet_s"] < pet_s[1]
+
+
+def test_one_that_turns_in_behind_hides_nobody_who_comes_across() -> None:
+    ways = cross()
+    behind = going(ways["en"], s0=103.0, name="behind")
+    across = going(ways["ew"], s0=108.0, name="across")
+    row = answers(going(ways["wn"]), behind, across, way=ways["we"])["oncoming"]
+    assert row["object_id"] == "across"
+    assert 0 < row["pet_s"] < 2
+    late = going(ways["ew"], s0=80.0, name="across")
+    row = answers(going(ways["wn"]), behind, late, way=ways["we"])["oncoming"]
+    assert (row["object_id"], row["pet_s"]) == (None, None)
 
 
 def test_how_hard_the_other_had_to_brake() -> None:

@@ -288,7 +288,7 @@ class Evaluation:
 
     def _forget_pending(self) -> None:
         self._pending, self._n_pending, self._may_be_double = [], 0, False
-        self.con.execute(statement("judging/pending"))  # what is only deleted would take its room
+        self.con.execute(statement("judging/pending"))  # a new table: DuckDB keeps the room of deleted rows
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0

@@ -64,7 +64,7 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
             return Content(channels=_channels(path), notes=notes)
         return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
     if is_pipe_or_device(path):
-        return Content(notes=notes)  # who reads it as a drive says what is wrong with it
+        return Content(notes=notes)  # reading it as a drive reports the fault
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):

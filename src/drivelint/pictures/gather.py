@@ -77,7 +77,7 @@ class Camerawork:
                 with CameraLog(drive.files) as log:
                     for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
                         asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
-                        rows += _taken(log, drive, asked, troubles)
+                        rows += _picture_rows(log, drive, asked, troubles)
             except (OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
                 troubles[Trouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
         if not rows:
@@ -85,7 +85,7 @@ class Camerawork:
         return pa.Table.from_pylist(rows, schema=arrow_schemas()["picture"]), list(troubles)
 
 
-def _taken(
+def _picture_rows(
     log: CameraLog, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
 ) -> list[dict[str, Any]]:
     """Return the rows of the shots of one moment by one camera, in time order, each of another frame."""

@@ -50,8 +50,8 @@ def states(actor: Actor, seconds: float, rate: float, *, left: bool, with_height
     motion = actor.motion(seconds)
     picked = np.arange(0, len(motion.t), round(1 / rate / DT_S))
     t = motion.t[picked]
-    kept = _kept(actor, t)
-    picked, t = picked[kept], t[kept]
+    present = _present_steps(actor, t)
+    picked, t = picked[present], t[present]
     x, y, yaw, vx, vy = _recorded(actor, motion, picked, seed)
     hand = -1.0 if left else 1.0
     n, unknown = len(t), actor.text.faults.unknown
@@ -83,12 +83,13 @@ def light_rows(lights: Mapping[str, Sequence[tuple[float, str]]], seconds: float
             yield {"signal_id": name, "t_ns": round(float(when) * 1e9), "state": state}
 
 
-def _kept(actor: Actor, t: Floats) -> Mask:
+def _present_steps(actor: Actor, t: Floats) -> Mask:
+    """Return at which times (n) the recorder has the actor."""
     first, last = actor.text.there or (-1.0, math.inf)
-    kept: Mask = (t >= first - 1e-6) & (t <= last + 1e-6)
+    present: Mask = (t >= first - 1e-6) & (t <= last + 1e-6)
     for begin, end in actor.text.faults.lost:
-        kept &= ~_within(t, begin, end)
-    return kept
+        present &= ~_within(t, begin, end)
+    return present
 
 
 def _recorded(actor: Actor, motion: Motion, picked: Any, seed: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:

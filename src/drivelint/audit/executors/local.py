@@ -126,7 +126,7 @@ class _Worker:
             self._begun_s = self._last_s = self._computed_s()
             self._moved_at = monotonic()
             return None
-        task = self._taken()
+        task = self._task_without_outcome()
         return Outcome(task, error=told) if isinstance(told, Exception) else Outcome(task, told)
 
     def look(self) -> Outcome | None:
@@ -148,9 +148,9 @@ class _Worker:
 
     def _lost(self, why: str) -> Outcome:
         self.end()
-        return Outcome(self._taken(), lost=why)
+        return Outcome(self._task_without_outcome(), lost=why)
 
-    def _taken(self) -> Task:
+    def _task_without_outcome(self) -> Task:
         task, self.task = self.task, None
         if task is None:
             raise ValueError("a worker without a task has no outcome")

@@ -68,7 +68,7 @@ BEGIN_MPS: Final = 2.0
 BESIDE_M: Final = 0.3
 """Places and headings of tracks tremble by so much."""
 BESIDE_SHARE: Final = 2 / 3
-"""Who share no more than this of the narrower width at first may drive beside each other: places may be off across as well as along."""
+"""Two boxes that overlap by no more than this share of the narrower width may be beside each other: the error may be across the road."""
 HIT_MPS: Final = 1.5
 """A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
 HELD_NS: Final = 2_000_000_000

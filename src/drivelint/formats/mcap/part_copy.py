@@ -189,7 +189,7 @@ class PartCopy:
             self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=head.read_prefixed_string()))
 
     def _take_index(self, record: Record) -> None:
-        """Copy a message index that can be relied on; another is left out and found anew."""
+        """Copy a message index if its chunk can be relied on. Otherwise the index is left out, and the copy makes a new one."""
         if self._chunk is None or not self._original.indexed:
             self._skip(record)
             return

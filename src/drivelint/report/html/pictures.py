@@ -57,11 +57,11 @@ def _shot(row: dict[str, Any]) -> dict[str, Any]:
         "width": row["width_px"],
         "height": row["height_px"],
         "is_at": row["shot"] == "at",
-        "told": _told(row["t_frame_ns"] - row["t_ns"]),
+        "told": _offset_text(row["t_frame_ns"] - row["t_ns"]),
     }
 
 
-def _told(off_ns: int) -> str:
+def _offset_text(off_ns: int) -> str:
     """Return in words when a frame was taken, seen from the moment."""
     if abs(off_ns) < _SAME_NS:
         return "at the moment"
