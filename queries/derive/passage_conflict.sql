@@ -22,7 +22,7 @@ encounter AS (
             true
         )) AS is_driven,
         -- The other turns into the ego's road behind the ego, sooner than rules ask of who comes across.
-        coalesce(c.pet_s >= merging_s() AND c.pet_s < asked_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
+        coalesce(c.pet_s >= merging_s() AND c.pet_s < least_junction_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
     FROM passage p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_in_ns
@@ -178,7 +178,7 @@ relation_result AS (
     SELECT
         a.drive_id, a.ego_id, a.occurrence, a.relation, h.braking,
         -- Who leaves enough time says nothing where another one may have left too little.
-        CASE WHEN n.merging IS NULL OR n.other.pet_s < asked_s() THEN n.other END AS other,
+        CASE WHEN n.merging IS NULL OR n.other.pet_s < least_junction_s() THEN n.other END AS other,
         coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) WHEN n.merging IS NOT NULL THEN why('turns_in_behind', n.merging) END) AS reason
     FROM passage_relation a
     JOIN ego_log_reason o USING (drive_id, ego_id, occurrence)

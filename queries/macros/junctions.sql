@@ -51,8 +51,8 @@ CREATE OR REPLACE MACRO governed_m() AS 50.0;
 CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 -- A vehicle that turns into the ego's road this long after the ego perhaps follows it, and perhaps had to wait for it.
 CREATE OR REPLACE MACRO merging_s() AS 1.0;
--- The most time that rules ask between the ego and another vehicle at a junction.
-CREATE OR REPLACE MACRO asked_s() AS 2.0;
+-- The least time that rules require between the ego and another vehicle at a junction.
+CREATE OR REPLACE MACRO least_junction_s() AS 2.0;
 -- To say that nobody came, the log must go on for at least this long after the ego has left (twice what rules ask for).
 CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
 -- An actor that is not seen for a while may have been where ways meet if it was this near to that place, or could have come this near.

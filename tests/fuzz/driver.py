@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Final, Self
 
-from drivelint.audit.executors.local import computed_s, resident_bytes
+from drivelint.audit.executors.local import computed_s
+from drivelint.evaluate.limits import resident_bytes
 from tests.fuzz.outcome import Outcome
 from tests.fuzz.sources import removed, scratch
 from tests.fuzz.worker import Job, serve

@@ -182,9 +182,10 @@ class Work:
         return found
 
 
-def resident_bytes() -> int:
-    """Return the memory that this process has at present; 0 where the system does not tell."""
+def resident_bytes(process: int | None = None) -> int:
+    """Return the memory that a process (None: this one) has at present; 0 where the system does not tell."""
     try:
-        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except OSError:
+        told = Path(f"/proc/{process or 'self'}/statm").read_text(encoding="ascii")
+        return int(told.split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError):  # a process that ends meanwhile may leave the file empty
         return 0

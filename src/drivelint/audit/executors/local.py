@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.audit.executors import Outcome
 from drivelint.audit.worker import run_task, warm_up
 from drivelint.errors import InternalError
+from drivelint.evaluate.limits import resident_bytes
 from drivelint.without_pandas import leave_out_pandas
 
 if TYPE_CHECKING:
@@ -225,14 +226,6 @@ def cores() -> int:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not Linux
         return os.cpu_count() or 1
-
-
-def resident_bytes(process: int | None) -> int:
-    """Return the memory that a process has at present; 0 where the system does not tell."""
-    try:
-        return int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, ValueError, IndexError):
-        return 0
 
 
 def computed_s(process: int | None) -> float:
