@@ -18,7 +18,7 @@
 -- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
 -- by the course. They are NULL where there are too few samples to tell. Of an ego that the sensors of somebody else measured they are at least
 -- what a place that is off by a decimetre makes of it, or a speed that is not that of the places; such an ego does not gain speed faster
--- than engines let it, and is not believed within a second of a change that no tyre makes.
+-- than engines let it, and is not believed within a second of a change that no tyre makes, or of sliding sideways against its heading.
 --
 -- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
 -- in the table.
@@ -38,7 +38,9 @@ sample AS (
         round(1e9 * wrap_rad(course.rad - lag(course.rad) OVER w))::BIGINT AS course_turned,
         st.t_ns - min(st.t_ns) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg) AS age_ns,
         CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns,
-        g.sensor_range_m IS NOT NULL AND coalesce(CASE WHEN o.are_all THEN NOT coalesce(list_contains(o.of_recorder, st.ego_id), false) ELSE list_contains(o.by_user, st.ego_id) END, false) AS is_measured
+        g.sensor_range_m IS NOT NULL AND coalesce(CASE WHEN o.are_all THEN NOT coalesce(list_contains(o.of_recorder, st.ego_id), false) ELSE list_contains(o.by_user, st.ego_id) END, false) AS is_measured,
+        -- also where it reverses
+        coalesce(s.speed_mps > 5.0 AND abs(sin(course.rad - s.yaw_rad)) > sin(slides_rad()), false) AS slides
     FROM step st
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g ON g.drive_id = st.drive_id
@@ -59,7 +61,7 @@ unwrapped_sample AS (
 ),
 slope_sample AS (
     SELECT
-        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured, abs(avg(v - v_of_places) OVER near) / (2 * half_ns) AS off_places_mps2,
+        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured, slides, abs(avg(v - v_of_places) OVER near) / (2 * half_ns) AS off_places_mps2,
         CASE WHEN whole_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near, half_ns) THEN
             CASE WHEN count(v) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(v) OVER near, sum(age_ns * v) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
@@ -88,7 +90,7 @@ jerk_sample AS (
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(a) OVER near, sum(age_ns * a) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
             ) END
         END AS jerk_mps3,
-        CASE WHEN abs(accel_mps2) > tyre_mps2() OR is_measured AND (accel_mps2 > engine_mps2() OR max(abs(accel_mps2)) OVER near_noise > tyre_mps2()) THEN 'inf'::DOUBLE
+        CASE WHEN abs(accel_mps2) > tyre_mps2() OR is_measured AND (accel_mps2 > engine_mps2() OR max(abs(accel_mps2)) OVER near_noise > tyre_mps2() OR bool_or(slides) OVER near_noise) THEN 'inf'::DOUBLE
             ELSE greatest(CASE WHEN is_measured THEN greatest(measured_mps2(), off_places_mps2) END, 3e-9 * avg(round(1e9 * v_line.error)::HUGEINT) OVER near_noise, 2 * max(v_line.error) OVER just_here, contradiction(accel_mps2, place_line.slope, place_line.error)) END AS accel_error_mps2,
         CASE WHEN abs(v_long_mps * yaw_rate_radps) > tyre_mps2() THEN 'inf'::DOUBLE
             ELSE greatest(CASE WHEN is_measured THEN measured_mps2() END, abs(v_long_mps) * greatest(3e-9 * avg(round(1e9 * yaw_line.error)::HUGEINT) OVER near_noise, 2 * max(yaw_line.error) OVER just_here, contradiction(yaw_rate_radps, course_line.slope, course_line.error))) END AS lat_error_mps2

@@ -22,6 +22,12 @@ CREATE OR REPLACE TEMP MACRO known_time_ns(t_ns) AS nullif(t_ns, unknown_time_ns
 -- Whether a code says at what time something is not known, and not why.
 CREATE OR REPLACE TEMP MACRO tells_no_cause(code) AS code IN ('missing_step', 'null_value', 'applies_unknown');
 
+-- Off a straight line by more than the rounding of single precision, some 1 km from its origin.
+CREATE OR REPLACE TEMP MACRO bend_m() AS 0.0003;
+-- Whether a sample of a track that was interpolated is a key frame, which was measured; some logs' clocks jitter.
+CREATE OR REPLACE TEMP MACRO is_key_frame(t_ns, first_ns, every_ns) AS
+    abs((t_ns - first_ns) / every_ns - round((t_ns - first_ns) / every_ns)) < 0.1;
+
 -- Why an object has no place, as a code.
 CREATE OR REPLACE TEMP MACRO lack(off_level, x_m, y_m, yaw_rad, length_m, width_m) AS CASE WHEN off_level THEN 'off_level'
     WHEN x_m IS NULL OR y_m IS NULL THEN 'no_position' WHEN yaw_rad IS NULL THEN 'no_heading'

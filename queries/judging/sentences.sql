@@ -23,6 +23,8 @@ WITH _parts AS (
                 || coalesce(' (' || amount(bound, unit) || ', required ' || threshold(sense, asked, unit) || ')', '') || '.'
             WHEN 'within_error' THEN 'Missed by less than the measuring error at ' || at_time
                 || coalesce(' (' || amount(bound, unit) || ', required ' || threshold(sense, asked, unit) || ')', '') || '.'
+            WHEN 'one_sample' THEN 'Missed in one measurement only, at ' || at_time
+                || coalesce(' (' || amount(bound, unit) || ', required ' || threshold(sense, asked, unit) || ')', '') || '.'
             WHEN 'applies_unknown' THEN 'Whether the rule applies is not known' || if_at_time
                 || CASE WHEN reason IS NOT NULL THEN ': ' || words ELSE '' END || '.'
             WHEN 'engaged_unknown' THEN 'Whether the automated driver drives is not known' || if_at_time
@@ -79,7 +81,7 @@ WITH _parts AS (
 SELECT *, coalesce(replace(label, '_', ' ') || ': ', '')
         || CASE WHEN reason IS NULL AND cause IS NOT NULL THEN format('{}; {}.', rtrim(told, '.'), words) ELSE told END AS sentence,
     coalesce(reason IS NULL AND CASE verdict
-        WHEN 'unknown' THEN code IN ('only_a_bound', 'within_error') AND bound IS NOT NULL AND asked IS NOT NULL
+        WHEN 'unknown' THEN code IN ('only_a_bound', 'within_error', 'one_sample') AND bound IS NOT NULL AND asked IS NOT NULL
         WHEN 'not_applicable' THEN false
         ELSE code <> 'nobody_there' AND sense <> 'holds' AND observed IS NOT NULL AND required IS NOT NULL END, false) AS reason_measures
 FROM _parts_with_told;

@@ -59,5 +59,7 @@ CREATE OR REPLACE MACRO measured_m() AS 0.1;
 CREATE OR REPLACE MACRO measured_meeting_m() AS 0.3;
 -- An acceleration of somebody whose places are off by measured_m() to one side, to the other, and back, half a second apart.
 CREATE OR REPLACE MACRO measured_mps2() AS 4 * measured_m() / 0.5 ** 2;
+-- A car whose tyres hold moves within a few degrees of its heading; a track at more than that may change from one car to another.
+CREATE OR REPLACE MACRO slides_rad() AS radians(4);
 -- Cars for the road gain speed no faster (0 to 100 km/h in 4.6 s); a few sports cars do, and are taken for badly measured.
 CREATE OR REPLACE MACRO engine_mps2() AS 6.0;

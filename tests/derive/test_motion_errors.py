@@ -114,3 +114,20 @@ def test_whom_sensors_measured_gains_speed_as_engines_let_it() -> None:
     assert "comfort.nuplan" in measured(straight(2 + 5.0 * T))
     assert not measured(straight(2 + 7.0 * T))
     assert "comfort.nuplan" in measured(straight(60 - 7.0 * T))
+
+
+@pytest.mark.parametrize(
+    ("aside_mps", "at_s", "expected"),
+    [(1.5, 3.4, set()), (0.7, 3.4, {"comfort.nuplan"}), (1.5, 0.6, {"comfort.nuplan"})],
+)
+@pytest.mark.parametrize("side", [1, -1])
+def test_whom_sensors_measured_sliding_sideways_is_not_believed(
+    aside_mps: float, at_s: float, expected: set[str], side: int
+) -> None:
+    """Braking of 7 m/s2 from 3 s on, and 0.6 s of moving sideways at an unchanged heading: by 3 to 8 degrees."""
+    speed = np.clip(16 - 7 * np.clip(T - 3, 0, None), 0, None)
+    along = straight(speed)
+    vy = np.where((at_s <= T) & (at_s + 0.6 >= T), side * aside_mps, 0.0)
+    y = np.concatenate([[0.0], np.cumsum((vy[1:] + vy[:-1]) / 2 * 0.1)])
+    ego = Actor("ego", T, along.x, y, STILL, speed, vy)
+    assert measured(ego) & {"comfort.nuplan"} == expected
