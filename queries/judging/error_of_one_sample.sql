@@ -18,15 +18,18 @@ FROM (
         UNION ALL
         SELECT *, unnest(objects) AS actor_id, false AS is_ego FROM stretch
     )
-    SELECT s.* EXCLUDE (actor_id, is_ego)
-    FROM side s
-    -- an object may be a place of the map, which nobody measures
-    SEMI JOIN actor o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id
-    LEFT JOIN _key_frame f ON f.drive_id = s.drive_id AND f.actor_id = s.actor_id
-    LEFT JOIN actor_state a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND a.t_ns BETWEEN s.t_start_ns AND s.t_end_ns
-        AND a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))
-    GROUP BY ALL
-    HAVING count(a.t_ns) < 2
+    SELECT DISTINCT s.* EXCLUDE (is_ego, n_samples)
+    FROM (
+        SELECT s.* EXCLUDE (actor_id), count(a.t_ns) AS n_samples
+        FROM side s
+        -- an object may be a place of the map, which nobody measures
+        SEMI JOIN actor o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id
+        LEFT JOIN _key_frame f ON f.drive_id = s.drive_id AND f.actor_id = s.actor_id
+        LEFT JOIN actor_state a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND a.t_ns BETWEEN s.t_start_ns AND s.t_end_ns
+            AND a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))
+        GROUP BY ALL
+    ) s
+    WHERE n_samples < 2
 ) x
 WHERE NOT _judged.holds AND _judged.rule_no = x.rule_no AND _judged.drive_id = x.drive_id AND _judged.ego_id = x.ego_id AND _judged.object_id = x.object_id
     AND _judged.profile = x.profile AND _judged.label = x.label AND _judged.t_ns BETWEEN x.t_start_ns AND x.t_end_ns

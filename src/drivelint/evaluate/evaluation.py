@@ -274,7 +274,7 @@ class Evaluation:
             if self._has_doubts:
                 self._run("doubt_of_short_time", "doubt_of_steps")
             if self._has_sensors:
-                self._run("error_of_one_sample", "error_of_measuring")
+                self._run("error_of_measuring", "error_of_one_sample")
             if True in kinds:
                 self._run("outcome_of_episodes", *(["outcome_of_holes"] if self._has_holes else []))
         if False in kinds and not self._may_stop(self._count("SELECT count(*) FROM (FROM _occasion LIMIT 1)")):
