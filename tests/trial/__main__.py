@@ -36,9 +36,9 @@ def main() -> int:
     if asked.command == "score":
         print("\n".join(score.table(asked.folder)))
         return 0
-    missed = [line for result in lots.results(asked.folder) for line in misses.unnoticed(result)]
-    print("\n".join(missed) or "no contact and no near contact without a finding")
-    return int(bool(missed))
+    lines = [line for result in lots.results(asked.folder) for line in misses.unnoticed(result)]
+    print("\n".join(lines) or "no contact and no near contact without a finding")
+    return int(any(line.startswith("MISSED") for line in lines))
 
 
 if __name__ == "__main__":

@@ -17,15 +17,21 @@ SOUND_S = 1.0
 def unnoticed(result: Result) -> list[str]:
     """Return a line for each near contact at speed, between two sound tracks, of which nothing is said within a second.
 
-    One without a finding and without an unknown verdict on the pair is a miss; the line says which it is.
+    One of which `ukhc.no-collision` says neither unknown nor near miss is a miss; the line says which it is.
     """
     tracks = recording(result.folder).tracks
     egos = [row["ego_id"] for row in result.rows("SELECT DISTINCT ego_id FROM {verdicts} ORDER BY 1")]
     found = result.rows("SELECT ego_id, object_id, rule_id, t_start_s - 1 AS t0, t_end_s + 1 AS t1 FROM {findings}")
-    doubted = result.rows(
-        "SELECT DISTINCT ego_id, object_id FROM {verdicts} WHERE verdict = 'unknown' AND rule_id = 'ukhc.no-collision'"
-    )
-    unknown = {(row["ego_id"], row["object_id"]) for row in doubted}
+    statements = {"unknown": "verdict = 'unknown'", "near miss": "near_miss"}
+    pairs = {
+        statement: {
+            (row["ego_id"], row["object_id"])
+            for row in result.rows(
+                f"SELECT DISTINCT ego_id, object_id FROM {{verdicts}} WHERE rule_id = 'ukhc.no-collision' AND {condition}"
+            )
+        }
+        for statement, condition in statements.items()
+    }
     lines = []
     for ego_id in egos:
         ego = tracks.get(ego_id)
@@ -44,7 +50,8 @@ def unnoticed(result: Result) -> list[str]:
                 }
             )
             if not rules:
-                says = "unknown" if {(ego_id, name), (ego_id, None)} & unknown else "MISSED"
+                pair = {(ego_id, name), (ego_id, None)}
+                says = next((statement for statement, known in pairs.items() if pair & known), "MISSED")
                 lines.append(
                     f"{says}: {result.log}: {t:.1f} s, ego {ego_id} and {other.actor_class} {name}: {distance:.2f} m, {relative:.1f} m/s"
                 )
