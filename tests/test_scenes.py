@@ -19,7 +19,7 @@ from drivelint.scene.scene import Scene, scenes_of
 
 FOLDER: Final = Path(__file__).with_name("scenes")
 TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if document.read(file).scenes)
-BY_CI: Final = {"junctions", "overtaking"}
+BY_CI: Final = {"crossroads", "junctions", "overtaking"}
 
 
 @pytest.mark.parametrize(

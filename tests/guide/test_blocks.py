@@ -28,7 +28,7 @@ from drivelint.errors import TraceError
 from drivelint.formats import registry
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
-from tests.crossroads import scenes as crossroads
+from tests.drawn import drawn
 from tests.guide.blocks import PAGES, Block, blocks
 from tests.scenes import derived, drive, moving, road, times
 from tests.shared_data import ROOT, shared
@@ -149,11 +149,11 @@ def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
 
 
 @pytest.mark.slow
-def test_the_condition_about_lights_says_what_they_show() -> None:
+def test_the_condition_about_lights_says_what_they_show(tmp_path: Path) -> None:
     (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition: lights")
     found = {}
     for name in ("green", "red", "unknown"):
-        made = crossroads("lht")["red" if name == "red" else "green"][0](name)
+        made = drawn("crossroads", "red" if name == "red" else "green", tmp_path / name)
         if name == "unknown":
             states = made.trace.tables["signal_state"]
             made.trace.tables["signal_state"] = states.set_column(3, "state", pa.nulls(len(states), pa.string()))
