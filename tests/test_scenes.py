@@ -18,7 +18,8 @@ from drivelint.scene.judge import differences, gating_rules, judged, rules_for
 from drivelint.scene.scene import Scene, scenes_of
 
 FOLDER: Final = Path(__file__).with_name("scenes")
-TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if document.read(file).scenes)
+TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if "\nscenes:\n" in file.read_text(encoding="utf-8"))
+"""Not parsed while tests are collected."""
 BY_CI: Final = {"crossroads", "junctions", "overtaking"}
 
 

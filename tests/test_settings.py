@@ -6,7 +6,6 @@ import json
 import sys
 from pathlib import Path
 
-import jsonschema
 import pytest
 
 from drivelint import cli
@@ -111,6 +110,8 @@ def test_the_schema_for_editors_is_that_of_the_options(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """drivelint docs settings-schema > schemas/settings.schema.json"""
+    import jsonschema
+
     assert run(monkeypatch, "docs", "settings-schema") == 0
     printed = capfd.readouterr().out
     assert (ROOT / "schemas" / "settings.schema.json").read_text(encoding="utf-8") == printed

@@ -11,8 +11,6 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from moto.server import ThreadedMotoServer
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -22,6 +20,8 @@ _HOP = frozenset({"transfer-encoding", "connection", "content-length"})
 @contextmanager
 def s3() -> Iterator[str]:
     """Run an S3 server with the empty bucket `fleet`; yield its URL."""
+    from moto.server import ThreadedMotoServer
+
     server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
     server.start()
     host, port = server.get_host_and_port()

@@ -9,7 +9,6 @@ import duckdb
 import numpy as np
 import pyarrow as pa
 import pytest
-from scipy.stats import poisson
 
 from drivelint.errors import UsageError
 from drivelint.fleet import compare as compare_module
@@ -353,6 +352,8 @@ def test_a_difference_of_nothing_is_called_in_at_most_5_percent_of_fleets(change
 @pytest.mark.ci
 def test_the_exact_test_is_poissons_given_the_sum(changes: list[list[RateChange]]) -> None:
     """Independently: the chances of all ways to share the findings, by two Poisson distributions of the same rate."""
+    from scipy.stats import poisson
+
     for change in changes[0]:
         assert change.base is not None
         assert change.new is not None

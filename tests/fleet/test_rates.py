@@ -9,7 +9,6 @@ import duckdb
 import numpy as np
 import pyarrow as pa
 import pytest
-from scipy.stats import binomtest, poisson
 
 from drivelint.errors import UsageError
 from drivelint.fleet import intervals
@@ -147,6 +146,8 @@ def test_possible_findings_are_told() -> None:
 @pytest.mark.parametrize("n", [0, 1, 3, 40, 412])
 def test_intervals_are_the_exact_ones(n: int) -> None:
     """Against scipy's own distributions: at each end of the interval what was seen has a chance of 2.5 %."""
+    from scipy.stats import binomtest, poisson
+
     rate, low, high = intervals.poisson(n, 2.0)
     assert rate == n / 2
     assert poisson.cdf(n, 2 * high) == pytest.approx(0.025)

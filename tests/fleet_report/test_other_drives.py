@@ -8,7 +8,6 @@ from typing import Any
 
 import duckdb
 import pytest
-from scipy.stats import fisher_exact
 
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
@@ -111,6 +110,8 @@ def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_
 
 
 def test_rates_are_tested_per_occasion_too(disjoint: AuditDifference) -> None:
+    from scipy.stats import fisher_exact
+
     (change,) = disjoint.called
     tests = {each.per: each for each in change.tests}
     assert change.rule_id == "overtake"

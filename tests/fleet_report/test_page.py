@@ -11,7 +11,6 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 from lxml import html
-from scipy.stats import chi2
 
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
@@ -68,6 +67,8 @@ def test_the_headline_counts_what_the_tables_have(written: Any, filled: lake.Lak
 @pytest.mark.ci
 def test_a_rate_is_that_of_the_wholly_judged_drives(written: Any, filled: lake.Lake) -> None:
     """Against a sum of my own over the tables, and the interval from the chi-square distribution."""
+    from scipy.stats import chi2
+
     told = {row["rule"].split()[-1]: row for row in rows(section(written, "rates"))}
     drives, verdicts = table(filled.folder, "drives"), table(filled.folder, "verdicts")
     km = dict(zip(drives["key"], drives["km"], strict=True))

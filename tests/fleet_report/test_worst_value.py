@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from scipy.stats import binomtest, chi2
 
 from tests.fleet.audits import ego_drive
 from tests.fleet_report.told import Told, touched, words, words_of
@@ -27,10 +26,14 @@ def line(of: Told) -> str:
 
 def low_and_high(n: int, hundred_km: float) -> tuple[float, float]:
     """Return Garwood's interval."""
+    from scipy.stats import chi2
+
     return chi2.ppf(0.025, 2 * n) / 2 / hundred_km if n else 0.0, chi2.ppf(0.975, 2 * n + 2) / 2 / hundred_km
 
 
 def test_the_worst_site_is_named_with_rates_and_intervals_of_all_sites() -> None:
+    from scipy.stats import binomtest
+
     sites = [("a", 30, "hull"), ("b", 2, "leeds"), ("c", 3, "york")]
     page = told(*((name, n, {"site": site, "release": "v1"}) for name, n, site in sites))
     found = page.content.worst_value
