@@ -13,6 +13,8 @@ from drivelint.scene import document
 from drivelint.scene.scene import MAP_FILE, scenes_of
 
 SCENES: Final = Path(__file__).with_name("scenes")
+TOPICS: Final = sorted(file.stem for file in SCENES.glob("*.yml") if "\nscenes:\n" in file.read_text(encoding="utf-8"))
+"""The files that have scenes; they are not parsed while tests are collected."""
 
 
 def drawn(topic: str, name: str, folder: Path) -> Drive:

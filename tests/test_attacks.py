@@ -17,14 +17,12 @@ import pytest
 from drivelint.scene import document
 from drivelint.scene.judge import Verdicts, judged
 from drivelint.scene.scene import Scene, scenes_of
+from tests.drawn import SCENES, TOPICS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     Attack = Callable[[dict[str, Any], dict[str, Any]], None]
-
-FOLDER: Final = Path(__file__).with_name("scenes")
-TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if document.read(file).scenes)
 
 Columns = dict[str, Any]
 
@@ -168,7 +166,7 @@ def columns_of(table: pa.Table) -> Columns:
 
 @cache
 def scenes(topic: str, most: int | None) -> tuple[Scene, ...]:
-    file = document.read(FOLDER / f"{topic}.yml")
+    file = document.read(SCENES / f"{topic}.yml")
     return tuple(scenes_of(file.scenes[:most], file.roads))
 
 

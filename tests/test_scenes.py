@@ -16,10 +16,8 @@ from drivelint import catalogue
 from drivelint.scene import document
 from drivelint.scene.judge import differences, gating_rules, judged, rules_for
 from drivelint.scene.scene import Scene, scenes_of
+from tests.drawn import SCENES, TOPICS
 
-FOLDER: Final = Path(__file__).with_name("scenes")
-TOPICS: Final = sorted(file.stem for file in FOLDER.glob("*.yml") if "\nscenes:\n" in file.read_text(encoding="utf-8"))
-"""Not parsed while tests are collected."""
 BY_CI: Final = {"crossroads", "junctions", "overtaking"}
 
 
@@ -27,7 +25,7 @@ BY_CI: Final = {"crossroads", "junctions", "overtaking"}
     "topic", [pytest.param(topic, marks=pytest.mark.ci if topic in BY_CI else pytest.mark.slow) for topic in TOPICS]
 )
 def test_every_scene_has_the_verdicts_that_it_expects(topic: str, tmp_path: Path) -> None:
-    file = document.read(FOLDER / f"{topic}.yml")
+    file = document.read(SCENES / f"{topic}.yml")
     assert file.all_fails
     wrong = differing(scenes_of(file.scenes, file.roads), tmp_path, all_fails=True)
     assert not wrong
@@ -35,7 +33,7 @@ def test_every_scene_has_the_verdicts_that_it_expects(topic: str, tmp_path: Path
 
 def test_the_first_scene_of_each_topic_has_the_verdicts_that_it_expects(tmp_path: Path) -> None:
     """Judged together, by the rules that they name."""
-    files = [document.read(FOLDER / f"{topic}.yml") for topic in TOPICS]
+    files = [document.read(SCENES / f"{topic}.yml") for topic in TOPICS]
     scenes = [scenes_of(file.scenes[:1], file.roads)[0] for file in files]
     assert not differing(scenes, tmp_path, all_fails=False)
 
@@ -49,13 +47,13 @@ def differing(scenes: Sequence[Scene], folder: Path, *, all_fails: bool) -> dict
 
 @cache
 def names() -> list[str]:
-    return [scene.name for topic in TOPICS for scene in document.read(FOLDER / f"{topic}.yml").scenes]
+    return [scene.name for topic in TOPICS for scene in document.read(SCENES / f"{topic}.yml").scenes]
 
 
 def test_every_scene_has_a_name_of_its_own_and_asks_for_rules_that_there_are() -> None:
     assert len(set(names())) == len(names())
     rules = catalogue.load_rules()
     for topic in TOPICS:
-        for scene in document.read(FOLDER / f"{topic}.yml").scenes:
+        for scene in document.read(SCENES / f"{topic}.yml").scenes:
             assert scene.expect.keys() <= rules.keys(), scene.name
             assert scene.expect, scene.name
