@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
@@ -96,7 +95,7 @@ class Actor:
         held = np.clip(t, times[0], times[-1])
         if len(times) < 2:
             raise UsageError(f"actor {self.name}: a track has two points at least")
-        px, py = PchipInterpolator(times, x)(held), PchipInterpolator(times, y)(held)
+        px, py = _smooth(times, x, held), _smooth(times, y, held)
         vx, vy = np.gradient(px, DT_S), np.gradient(py, DT_S)
         moving = np.hypot(vx, vy) > _SLOW_MPS
         along = np.unwrap(np.arctan2(vy, vx)[moving]) if moving.any() else np.zeros(1)
@@ -191,7 +190,14 @@ def eased(knots: Sequence[Sequence[float]], t: Floats) -> Floats:
         return np.full(t.shape, values[0])
     times = np.concatenate([[times[0] - 1.0], times, [times[-1] + 1.0]])
     values = np.concatenate([values[:1], values, values[-1:]])
-    result: Floats = PchipInterpolator(times, values)(np.clip(t, times[0], times[-1]))
+    return _smooth(times, values, np.clip(t, times[0], times[-1]))
+
+
+def _smooth(times: Floats, values: Floats, t: Floats) -> Floats:
+    """Return the values at t, smooth between those at the times, without overshooting them."""
+    from scipy.interpolate import PchipInterpolator  # as dear as all that a check imports
+
+    result: Floats = PchipInterpolator(times, values)(t)
     return result
 
 

@@ -13,7 +13,6 @@ import pyarrow.parquet as pq
 import pytest
 import shapely
 from pyarrow import feather
-from scipy.spatial.transform import Rotation
 
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
+    from scipy.spatial.transform import Rotation
 
     from drivelint.drive.trace import Trace
 
@@ -49,8 +49,15 @@ def keys(names: list[str], t_ns: NDArray[np.int64]) -> list[tuple[str, int]]:
     return list(zip(names, t_ns.tolist(), strict=True))
 
 
+def rotation(quaternions: Any) -> Rotation:
+    """Return the rotation of x, y, z, w, or those of rows of them."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_quat(quaternions)
+
+
 def rotations(table: pa.Table) -> Rotation:
-    return Rotation.from_quat(columns(table, "qx", "qy", "qz", "qw"))
+    return rotation(columns(table, "qx", "qy", "qz", "qw"))
 
 
 def second_reading(folder: Path) -> tuple[pa.Table, NDArray[np.float64], NDArray[np.float64]]:
@@ -155,7 +162,7 @@ def test_123d_has_the_same_boxes_and_ego() -> None:
     for (name, stamp), place in ours.items():
         if name == "ego":
             x, y, z, w, *axis = imu[stamp]
-            centre = Rotation.from_quat([*axis, w]).apply(REAR_AXLE_TO_CENTRE) + np.array([x, y, z])
+            centre = rotation([*axis, w]).apply(REAR_AXLE_TO_CENTRE) + np.array([x, y, z])
             assert np.abs(place - centre).max() < METRES
 
 
