@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import duckdb
 
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.memo import Memo
 from drivelint.phrases import hint
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
@@ -76,13 +75,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
     `allowed` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
     """
-    return _QUERIES.of(f"{file}\0{line}\0{sql}", lambda: _query(_Text(sql, file, line)))
-
-
-_QUERIES: Final = Memo[Query]("queries", Query)
-
-
-def _query(text: _Text) -> Query:
+    text = _Text(sql, file, line)
     statement, node = _parsed(text)
     found = _Found(text)
     for part, ctes in walk(node):
