@@ -30,7 +30,7 @@ class Query(NamedTuple):
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
     `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for
-    those that only word a reason, in lower case.
+    those that only word a reason, in lower case. `by_name`: the other branches of a UNION BY NAME may have columns besides.
     """
 
     tables: frozenset[str]
@@ -40,6 +40,7 @@ class Query(NamedTuple):
     reasons: tuple[GivenReason, ...] = ()
     needs: frozenset[str] = frozenset()
     column_names: frozenset[str] = frozenset()
+    by_name: bool = False
 
 
 class GivenReason(NamedTuple):
@@ -87,7 +88,16 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     except RecursionError as error:
         raise RuleError(f"{text.at(0)}: {_DEEP}") from error
     names = frozenset(found.column_names)
-    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs, names)
+    return Query(
+        frozenset(found.tables),
+        parameters,
+        _columns(node),
+        places,
+        tuple(found.reasons),
+        needs,
+        names,
+        _is_by_name(node),
+    )
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
@@ -229,6 +239,15 @@ def _is_foreign(part: Node) -> bool:
 
 def _plain(kind: object) -> str:
     return str(kind).removesuffix("_NODE").removesuffix("_REF").replace("_", " ")
+
+
+def _is_by_name(node: Node) -> bool:
+    """Whether a SELECT is a UNION BY NAME, or its first branch is one."""
+    while node["type"] == "SET_OPERATION_NODE":
+        if node["setop_type"] == "UNION_BY_NAME":
+            return True
+        node = branches(node)[0]
+    return False
 
 
 def _columns(node: Node) -> tuple[str, ...] | None:

@@ -17,7 +17,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     version: str
     sections: dict[str, str]
     columns: dict[str, tuple[str, ...]]
-    """Section -> its columns; @reference is missing here when it selects a star."""
+    """Section -> its columns; @reference is missing here when it selects a star, or unites by name."""
     reason_codes: frozenset[str]
     """The codes that its SQL names as reasons."""
     quantities: frozenset[str]

@@ -76,7 +76,11 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
         path=file,
         version=hashlib.sha256(content).hexdigest()[:16],
         sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
-        columns={name: query.columns for name, query in queries.items() if query.columns is not None},
+        columns={
+            name: query.columns
+            for name, query in queries.items()
+            if query.columns is not None and not (name == "reference" and query.by_name)
+        },
         reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
         quantities=_quantities(header, queries),
         occasion_needs=next((queries[name].needs for name in ("reference", "applies") if name in queries), frozenset()),
