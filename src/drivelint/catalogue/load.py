@@ -65,7 +65,17 @@ def rule_files(root: Path) -> list[Path]:
 
 def rule_id_of(file: Path) -> str:
     """Return the id of the rule in a file: `<pack>.<rule>`."""
-    return f"{file.resolve().parent.name}.{file.stem}"
+    return f"{_pack_folder(file).name}.{file.stem}"
+
+
+def _pack_folder(file: Path) -> Path:
+    """Return the folder of a rule: of a link, that of the file to which it leads."""
+    return file.resolve().parent if file.is_symlink() else _resolved(file.parent)
+
+
+@cache
+def _resolved(path: Path) -> Path:
+    return path.resolve()
 
 
 def read_rule(file: Path, *, with_words: bool = True) -> Rule:
@@ -74,7 +84,7 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     `with_words`: the words in its SQL too, see `check_words`. Of the shipped rules the tests do so: at each start, it would take a third of
     the time to read them.
     """
-    pack = file.resolve().parent
+    pack = _pack_folder(file)
     if not file.is_file():
         raise RuleError(f"{file}: a rule stands in a file, and this is none")
     return _known_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
