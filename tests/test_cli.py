@@ -19,6 +19,7 @@ import typer
 
 from drivelint import __version__, cli
 from drivelint.catalogue import load_rules
+from drivelint.cli.app import _part_of
 from drivelint.drive.trace import DriveInput
 from drivelint.result.request import RunRequest
 from tests.evaluate.packs import invariant
@@ -487,3 +488,13 @@ def test_every_command_that_reads_a_log_takes_the_same_input() -> None:
     for name in ("check", "inspect", "convert"):
         assert fields <= {param.name for param in commands[name].params}, name
     assert fields <= {field.name for field in dataclasses.fields(RunRequest)}
+
+
+def test_a_command_is_built_alone() -> None:
+    """With the options that it has among the others; who names none has all of them."""
+    whole = typer.main.get_command(cli.app).commands  # type: ignore[attr-defined]
+    for name, command in whole.items():
+        part = typer.main.get_command(_part_of(name)).commands  # type: ignore[attr-defined]
+        assert list(part) == [name]
+        assert [param.name for param in part[name].params] == [param.name for param in command.params]
+    assert _part_of("nonsense") is _part_of("") is cli.app

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from drivelint import memo
-from drivelint.catalogue import check
+from drivelint.catalogue import load, load_rules, rule_file
 from drivelint.catalogue.check import Query, check_query
+from drivelint.catalogue.rule import Rule
 from drivelint.errors import RuleError
 from drivelint.memo import Memo
 
@@ -27,7 +28,7 @@ def never() -> Query:
 
 
 def test_a_fact_is_found_once(home: Path) -> None:
-    query = check._query(check._Text(SQL, "a.sql", 1))
+    query = check_query(SQL, "a.sql", 1)
     first = Memo[Query]("queries", Query)
     assert first.of(SQL, lambda: query) == query
     first.save()
@@ -35,6 +36,20 @@ def test_a_fact_is_found_once(home: Path) -> None:
     assert Memo[Query]("queries", Query).of(SQL, never) == query
     with pytest.raises(AssertionError):
         Memo[Query]("queries", Query).of(f"{SQL} ", never)
+
+
+def test_rules_are_read_and_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fresh() -> None:
+        load._known_rule.cache_clear()
+        monkeypatch.setattr(load, "_RULES", Memo[Rule]("rules", Rule))
+
+    fresh()
+    rules = load_rules()
+    load._RULES.save()
+    fresh()
+    monkeypatch.setattr(rule_file, "checked_rule", never)
+    assert load_rules() == rules
+    load._known_rule.cache_clear()
 
 
 def test_other_code_finds_its_own(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.cli import values
+from drivelint import option_values
 from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY, Memory
@@ -388,10 +388,10 @@ def test_margins_go_on_where_memory_ran_out() -> None:
     ],
 )
 def test_sizes(text: str | None, n_bytes: int | None) -> None:
-    assert values.parse_memory(text) == n_bytes
+    assert option_values.parse_memory(text) == n_bytes
 
 
 @pytest.mark.parametrize("text", ["", "512", "-1GB", "much", "99MB", "0GB", "1 GB 2"])
 def test_what_is_no_size_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="--memory"):
-        values.parse_memory(text)
+        option_values.parse_memory(text)

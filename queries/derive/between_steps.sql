@@ -20,6 +20,7 @@ near_pair AS (
     CROSS JOIN LATERAL (SELECT greatest(coalesce(t.t_next_ns - t.t_ns, 0), coalesce(t.t_ns - t.t_before_ns, 0)) / 1e9 AS dt_s) d
     WHERE p.clearance_m <= dt_s * (coalesce(e.speed_mps, unknown_speed_mps()) + coalesce(p.speed_mps, unknown_speed_mps())) / 2 + swerve_mps2() * dt_s ** 2
 ),
+-- occasion: near_pair
 step_interval AS (
     SELECT drive_id, ego_id, object_id, t_ns, t_next_ns FROM near_pair WHERE t_next_ns - t_ns <= max_gap_ns
     UNION

@@ -1,7 +1,11 @@
 -- Changes of the ego to a lane beside it that is driven the same way, from the first corner over the line until the ego is wholly in the
 -- new lane, with the vehicles that are in the new lane at the start. A change that is not seen to cross the line counts only if half a
 -- metre of the ego is over the line when the log or a hole ends the change.
-WITH chain_span AS (
+WITH any_crossing AS (FROM lane_crossing),
+unfinished_excursion AS (FROM excursion WHERE t_back_ns IS NULL AND max_out_m >= 0.5),
+step_on_restricted_ground AS (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction),
+-- occasion: any_crossing, unfinished_excursion, step_on_restricted_ground
+chain_span AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns, max({'t_ns': t_ns, 'id': lanelet_id}).id AS last_id
     FROM ego_state
     WHERE with_direction
@@ -10,7 +14,7 @@ WITH chain_span AS (
 crossing_step AS (
     SELECT
         l.*, lead(l.t_ns) OVER (PARTITION BY l.drive_id, l.ego_id ORDER BY l.t_ns) AS t_next_ns, b.t_ns AS t_chain_ns, b.last_id
-    FROM lane_crossing l
+    FROM any_crossing l
     JOIN chain_span b ON b.drive_id = l.drive_id AND b.ego_id = l.ego_id AND b.chain_id = l.from_chain_id
 ),
 change_begin AS (
@@ -48,14 +52,14 @@ unfinished_change AS (
         x.drive_id, x.ego_id, x.chain_id AS from_chain_id, NULL::INTEGER AS to_chain_id, x.side, x.t0_ns AS t_start_ns, x.begin_seen,
         NULL::BIGINT AS t_cross_ns, x.t_end_ns AS t_own_lane_ns, x.t_end_ns AS t_new_lane_ns, NULL::BIGINT AS t_done_ns, e.lanelet_id AS last_id, NULL::VARCHAR AS to_lanelet_id,
         NULL::DOUBLE AS from_s_m, NULL::DOUBLE AS to_s_m
-    FROM excursion x
+    FROM unfinished_excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns AND e.chain_id = x.chain_id
     JOIN data_log g ON g.drive_id = x.drive_id
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id
     JOIN lanelet b ON b.environment_id = g.environment_id AND b.drivable
         AND b.lanelet_id = CASE x.side WHEN 1 THEN n.left_id ELSE n.right_id END
     ANTI JOIN change_begin s ON s.drive_id = x.drive_id AND s.ego_id = x.ego_id AND s.x.t0_ns = x.t0_ns
-    WHERE x.t_back_ns IS NULL AND x.max_out_m >= 0.5 AND NOT CASE x.side WHEN 1 THEN n.left_against ELSE n.right_against END
+    WHERE NOT CASE x.side WHEN 1 THEN n.left_against ELSE n.right_against END
 ),
 change AS MATERIALIZED (
     SELECT
@@ -192,12 +196,13 @@ restricted_step AS (
         sum((a.lanelet_id IS NULL)::INTEGER) OVER (PARTITION BY st.drive_id, st.ego_id ORDER BY st.k) AS run_no
     FROM step st
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
-    LEFT JOIN (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction) a USING (drive_id, ego_id, t_ns)
+    LEFT JOIN step_on_restricted_ground a USING (drive_id, ego_id, t_ns)
     LEFT JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
 ),
 restricted_stretch AS (
     SELECT drive_id, ego_id, seg, max(k) AS k_last, min({'k': k, 'lanelet_id': aside_id}).lanelet_id AS from_lanelet_id
     FROM restricted_step
+    SEMI JOIN step_on_restricted_ground g ON g.drive_id = restricted_step.drive_id AND g.ego_id = restricted_step.ego_id
     WHERE aside_id IS NOT NULL
     GROUP BY drive_id, ego_id, seg, run_no
     HAVING max(t_ns) - min(t_ns) >= 2_000_000_000 AND min(speed_mps) > standing_mps()

@@ -8,6 +8,7 @@ WITH missing_step AS (
         SELECT drive_id, ego_id, t_ns FROM pair WHERE x_m IS NULL OR y_m IS NULL
     )
 ),
+-- occasion: missing_step
 viewpoint AS (
     SELECT e.*, sight_m(g.sensor_range_m) AS range_m
     FROM missing_step

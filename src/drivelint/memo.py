@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 T = TypeVar("T")
-SQL_CODE: Final = ("*.py", "sql/*.py", "catalogue/*")
-"""The files of the package that read SQL."""
+SQL_CODE: Final = ("*.py", "sql/*.py", "catalogue/*", "drive/conditions.*", "drive/declared_events.*", "reasons/*")
+"""The files of the package that read SQL and rules."""
 MOST_FACTS: Final = 4096
 """With more, only those that were asked for are kept."""
 MOST_VERSIONS: Final = 5
@@ -97,7 +97,7 @@ class Memo(Generic[T]):
         with suppress(OSError):
             file.parent.mkdir(parents=True, exist_ok=True)
             with NamedTemporaryFile(dir=file.parent, prefix=f".{self._name}-", delete=False) as part:
-                part.write(msgspec.msgpack.encode(facts))
+                part.write(msgspec.msgpack.encode(facts, enc_hook=str))
             Path(part.name).replace(file)
             files = sorted(file.parent.glob(f"{self._name}-*.msgpack"), key=lambda each: each.stat().st_mtime_ns)
             for old in files[: -1 - MOST_VERSIONS]:
@@ -118,5 +118,9 @@ class Memo(Generic[T]):
             self._facts = {}
             if self._file is not None:
                 with suppress(OSError, msgspec.MsgspecError):  # a damaged file is none
-                    self._facts = msgspec.msgpack.decode(self._file.read_bytes(), type=dict[str, self._kind])  # type: ignore[name-defined]
+                    self._facts = msgspec.msgpack.decode(
+                        self._file.read_bytes(),
+                        type=dict[str, self._kind],  # type: ignore[name-defined]
+                        dec_hook=lambda kind, text: kind(text),  # a path, the one type that it does not know
+                    )
         return self._facts

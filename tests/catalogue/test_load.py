@@ -303,3 +303,13 @@ def test_a_pack_says_what_it_is_about(tmp_path: Path) -> None:
     (other / "speed.sql").write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
     with pytest.raises(RuleError, match=r"pack\.toml: .*`titel`.*: write title = "):
         read_rule(other / "speed.sql")
+
+
+def test_the_columns_of_a_union_by_name_are_not_those_of_its_first_branch(tmp_path: Path) -> None:
+    """The engine numbers reference points in the order of all their columns: it asks the database for them."""
+    of = "SELECT drive_id, ego_id, t_ns FROM ego_state"
+    condition = {"condition": "SELECT drive_id, ego_id, t_ns, true AS holds FROM ego_state"}
+    header = HEADER | EXECUTION | HOLDS | {"reads": '["ego_state"]'}
+    for other, known in ((f"UNION ALL BY NAME {of}", False), (f"UNION ALL {of}", True)):
+        rule = write(tmp_path, header, {"reference": f"{of} {other}"} | condition)
+        assert ("reference" in rule.columns) == known

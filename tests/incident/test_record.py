@@ -10,7 +10,7 @@ from drivelint.drive import declared_events
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
 from drivelint.incident import record
 from drivelint.incident.record import held_elements
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 from drivelint.sql.store import arrow_schemas
 
 ELEMENTS = toml_beside(record.__file__, "elements.toml")

@@ -19,7 +19,8 @@ from drivelint.errors import DriveLintError, InternalError
 from drivelint.formats.opendrive import network
 from drivelint.formats.osi import map_kinds
 from drivelint.reasons.signals import SIGNALS
-from drivelint.resources import folder, toml_beside
+from drivelint.facts import toml_beside
+from drivelint.resources import folder
 from drivelint.road import signcodes
 from drivelint.sql import store, words
 from drivelint.sql.words import Vocabulary, refuse_wrong_words, vocabularies, word_column

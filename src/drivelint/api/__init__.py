@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from drivelint import demo, run
+from drivelint import demo, option_values, run
 from drivelint.api import options
 from drivelint.api.arguments import typed
 from drivelint.api.check_result import CheckResult
@@ -18,7 +18,6 @@ from drivelint.api.keywords import errors_name_keywords
 from drivelint.api.progress import kept_notes
 from drivelint.api.tables import Table
 from drivelint.api.trace_tables import TraceTables
-from drivelint.cli import packs, values
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import UsageError
@@ -109,8 +108,8 @@ def check(
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
             raise UsageError("--keep-db writes a file: say where with --out DIR")
-        robustness = values.robustness_for(confidence, robustness)
-        day = values.parse_today(today.isoformat() if isinstance(today, date) else today)
+        robustness = option_values.robustness_for(confidence, robustness)
+        day = option_values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(
             options.path(baseline),
             options.path(waivers),
@@ -119,7 +118,7 @@ def check(
             folder,
             confidence=None if confidence is None else float(confidence),
         )
-        pack = packs.asked_pack(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
+        pack = option_values.asked_pack(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
         settings = run.CheckOptions(
             traces=paths,
             **options.map_input(
@@ -149,7 +148,7 @@ def check(
             pictures=pictures,
             evidence=True,
             robustness=robustness,
-            memory=values.parse_memory(memory),
+            memory=option_values.parse_memory(memory),
             rule_timeout=rule_timeout,
         )
         scratch = TemporaryDirectory(prefix="drivelint-") if margins and folder is None else None

@@ -8,7 +8,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_args
 
-from drivelint.cli import values
+from drivelint import option_values
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
@@ -73,7 +73,7 @@ def drive_input(
         "topic": topic,
         "sensor_range_m": sensor_range,
         "visibility": one_of("visibility", visibility, Visibility),
-        "ego_size": values.parse_ego_size(_with_commas(ego_size)),
+        "ego_size": option_values.parse_ego_size(_with_commas(ego_size)),
         "env": assignments(env),
     }
 
@@ -85,8 +85,8 @@ def map_input(
     return {
         "map": path(map_),
         "map_dir": path(map_dir),
-        "map_offset": values.parse_offset(_with_commas(map_offset)),
-        "map_origin": values.parse_origin(_with_commas(map_origin)),
+        "map_offset": option_values.parse_offset(_with_commas(map_offset)),
+        "map_origin": option_values.parse_origin(_with_commas(map_origin)),
         "handedness": one_of("handedness", handedness, Handedness),
     }
 

@@ -16,7 +16,8 @@ import duckdb
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.scene import case_database
 from drivelint.catalogue import read_rule
-from drivelint.catalogue.load import PACK_NAME, RULE_NAME, rule_files, rule_id_of
+from drivelint.catalogue.load import rule_files, rule_id_of
+from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME
 from drivelint.errors import ExitCode, RuleError, UsageError
 from drivelint.evaluate import query_plans
 from drivelint.resources import folder

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from drivelint.catalogue.header import Conditions, Header, Param, json_schema
-from drivelint.catalogue.load import Rule, load_rule, load_rules, read_rule
+from drivelint.catalogue.load import load_rule, load_rules, read_rule
+from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.select import parse_params, required_rules, select_rules
 
 __all__ = [

@@ -7,7 +7,7 @@ from functools import cache
 from itertools import chain
 from typing import Final
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 from drivelint.sql import store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})

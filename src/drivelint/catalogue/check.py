@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import duckdb
 
 from drivelint.catalogue import allowed
 from drivelint.catalogue.allowed import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.memo import Memo
 from drivelint.phrases import hint
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
@@ -31,7 +30,7 @@ class Query(NamedTuple):
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
     `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for
-    those that only word a reason, in lower case.
+    those that only word a reason, in lower case. `by_name`: the other branches of a UNION BY NAME may have columns besides.
     """
 
     tables: frozenset[str]
@@ -41,6 +40,7 @@ class Query(NamedTuple):
     reasons: tuple[GivenReason, ...] = ()
     needs: frozenset[str] = frozenset()
     column_names: frozenset[str] = frozenset()
+    by_name: bool = False
 
 
 class GivenReason(NamedTuple):
@@ -76,13 +76,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
     `allowed` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
     """
-    return _QUERIES.of(f"{file}\0{line}\0{sql}", lambda: _query(_Text(sql, file, line)))
-
-
-_QUERIES: Final = Memo[Query]("queries", Query)
-
-
-def _query(text: _Text) -> Query:
+    text = _Text(sql, file, line)
     statement, node = _parsed(text)
     found = _Found(text)
     for part, ctes in walk(node):
@@ -94,7 +88,16 @@ def _query(text: _Text) -> Query:
     except RecursionError as error:
         raise RuleError(f"{text.at(0)}: {_DEEP}") from error
     names = frozenset(found.column_names)
-    return Query(frozenset(found.tables), parameters, _columns(node), places, tuple(found.reasons), needs, names)
+    return Query(
+        frozenset(found.tables),
+        parameters,
+        _columns(node),
+        places,
+        tuple(found.reasons),
+        needs,
+        names,
+        _is_by_name(node),
+    )
 
 
 def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
@@ -236,6 +239,15 @@ def _is_foreign(part: Node) -> bool:
 
 def _plain(kind: object) -> str:
     return str(kind).removesuffix("_NODE").removesuffix("_REF").replace("_", " ")
+
+
+def _is_by_name(node: Node) -> bool:
+    """Whether a SELECT is a UNION BY NAME, or its first branch is one."""
+    while node["type"] == "SET_OPERATION_NODE":
+        if node["setop_type"] == "UNION_BY_NAME":
+            return True
+        node = branches(node)[0]
+    return False
 
 
 def _columns(node: Node) -> tuple[str, ...] | None:

@@ -12,7 +12,6 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
-from drivelint.memo import SQL_CODE, Memo
 from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
@@ -132,16 +131,6 @@ def parse_header(text: str, where: str) -> Header:
     Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or
     fields that contradict each other.
     """
-    return _HEADERS.of(text, lambda: _checked_header(text, where))
-
-
-_HEADERS: Final = Memo[Header](
-    "headers", Header, (*SQL_CODE, "drive/conditions.*", "drive/declared_events.*", "reasons/*")
-)
-"""By the text: to read the TOML of all rules takes longer than to judge by one."""
-
-
-def _checked_header(text: str, where: str) -> Header:
     try:
         raw = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:

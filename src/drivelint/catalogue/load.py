@@ -1,95 +1,24 @@
-"""Finding and reading rule files: `<pack>/<rule>.sql` is the rule `<pack>.<rule>`."""
+"""Finding rule files: `<pack>/<rule>.sql` is the rule `<pack>.<rule>`. What was read and checked once is kept."""
 
 from __future__ import annotations
 
-import hashlib
-import re
 from functools import cache, lru_cache
-from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
-from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
-from drivelint.catalogue.header import OTHERS, Header, line_of, parse_header
-from drivelint.catalogue.rule_words import check_words
+from drivelint.catalogue.rule import Rule
 from drivelint.errors import RuleError
-from drivelint.phrases import hint
-from drivelint.reasons.reason_text import shared_texts
+from drivelint.memo import Memo
 from drivelint.resources import folder
-from drivelint.sql import store
-from drivelint.sql.derivations import with_sources
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
-RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
-SECTIONS = ("applies", "reference", "condition", "anchor")
-_MARK = re.compile(r"^--\s*@(\S+)\s*$")
-_HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-"""Characters that end a line unseen, steer a terminal or turn the order of what is read."""
-_KEYS = ("drive_id", "ego_id", "t_ns")
-_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
-_CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
-
-
-class Section(NamedTuple):
-    """One section of a rule: its SELECT, the line of its `@` mark, and the line on which the SELECT begins."""
-
-    sql: str
-    line: int
-    sql_line: int
+    from pathlib import Path
 
 
 class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
-
-
-class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """One rule: its header, its SQL, and what is known about it without running it."""
-
-    id: str
-    pack: str
-    pack_title: str
-    path: Path
-    version: str
-    sections: dict[str, str]
-    columns: dict[str, tuple[str, ...]]
-    """Section -> its columns; @reference is missing here when it selects a star."""
-    reason_codes: frozenset[str]
-    """The codes that its SQL names as reasons."""
-    quantities: frozenset[str]
-    """What of the actors it uses (position, size, ...), as the columns that it reads declare."""
-    is_named: bool = True
-    """Asked for by its own id, not only as one of many: then it is unknown for want of a signal that its log has none of."""
-    occasion_needs: frozenset[str]
-    """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
-
-    @property
-    def per_profile(self) -> bool:
-        """Whether it is judged against each profile."""
-        return "profile" in self.columns["condition"]
-
-    @property
-    def per_object(self) -> bool:
-        """Whether its condition is about an object."""
-        return "object_id" in self.columns["condition"]
-
-    @property
-    def looks_at_others(self) -> bool:
-        """Whether it reads of others than the ego, or names them; of a section with a star that is not known, and taken to be so."""
-        whole = self.columns.keys() >= self.sections.keys()
-        return OTHERS in self.needed or not whole or any("object_id" in columns for columns in self.columns.values())
-
-    @property
-    def needed(self) -> tuple[str, ...]:
-        """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
-        return (*self.requires, *((OTHERS,) if "pair" in with_sources(self.reads) else ()))
-
-    def has_column(self, column: str) -> bool:
-        """Whether the condition returns this column."""
-        return column in self.columns["condition"]
 
 
 def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
@@ -136,7 +65,17 @@ def rule_files(root: Path) -> list[Path]:
 
 def rule_id_of(file: Path) -> str:
     """Return the id of the rule in a file: `<pack>.<rule>`."""
-    return f"{file.resolve().parent.name}.{file.stem}"
+    return f"{_pack_folder(file).name}.{file.stem}"
+
+
+def _pack_folder(file: Path) -> Path:
+    """Return the folder of a rule: of a link, that of the file to which it leads."""
+    return file.resolve().parent if file.is_symlink() else _resolved(file.parent)
+
+
+@cache
+def _resolved(path: Path) -> Path:
+    return path.resolve()
 
 
 def read_rule(file: Path, *, with_words: bool = True) -> Rule:
@@ -145,104 +84,24 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     `with_words`: the words in its SQL too, see `check_words`. Of the shipped rules the tests do so: at each start, it would take a third of
     the time to read them.
     """
-    pack = file.resolve().parent
+    pack = _pack_folder(file)
     if not file.is_file():
         raise RuleError(f"{file}: a rule stands in a file, and this is none")
-    return _checked_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
+    return _known_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
+
+
+_RULES: Final = Memo[Rule]("rules", Rule)
+"""By the file and its content: to read and check all rules takes longer than to judge by one."""
 
 
 @lru_cache(maxsize=1024)  # a process that checks many times reads its rules each time, and they seldom change
-def _checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
-    for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
-        if not pattern.fullmatch(part):
-            raise RuleError(
-                f"{file}: the {what} name {part!r} makes no rule id: "
-                "lower-case letters, digits, '-', '_' (and '.' in the file name) only"
-            )
-    try:
-        text = content.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
-    if hidden := _HIDDEN.search(text):
-        line = text.count("\n", 0, hidden.start()) + 1
-        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: take it out")
-    toml, sections = split_sections(text, str(file))
-    header = parse_header(toml, str(file))
-    if header.reference is not None:
-        sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
-    queries = {name: check_query(section.sql, str(file), section.sql_line) for name, section in sections.items()}
-    _check_sections(header, sections, queries, file)
-    _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
-    _check_params(header, queries, file, toml)
-    _check_reasons(header, queries, file, toml)
-    if with_words:
-        _check_words(header, sections, file, toml)
-    return Rule(
-        **msgspec.structs.asdict(header),
-        id=f"{pack}.{file.stem}",
-        pack=pack,
-        pack_title=pack_title,
-        path=file,
-        version=hashlib.sha256(content).hexdigest()[:16],
-        sections={name: section.sql.rstrip().rstrip(";") for name, section in sections.items()},
-        columns={name: query.columns for name, query in queries.items() if query.columns is not None},
-        reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
-        quantities=_quantities(header, queries),
-        occasion_needs=next((queries[name].needs for name in ("reference", "applies") if name in queries), frozenset()),
-    )
+def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
+    def checked() -> Rule:
+        from drivelint.catalogue.rule_file import checked_rule  # and with it what reads SQL
 
+        return checked_rule(file, pack, pack_title, content, with_words=with_words)
 
-def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
-    """Return what of the actors a rule uses: what the columns that it names are made of, and that there is somebody at all."""
-    declared = store.column_quantities()
-    # a table of events that the header names hands over all its columns: those count that the other sections name
-    named = {
-        name
-        for section, query in queries.items()
-        if not (header.reference and section == "reference")
-        for name in query.column_names
-    }
-    used = {"existence", "identity"} | ({"position"} if header.reference else set())
-    for table in header.reads:
-        used.update(*(quantities for column, quantities in declared.get(table, {}).items() if column in named))
-    return frozenset(used.difference(header.unaffected_by))
-
-
-def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
-    """Return the header's TOML (line n of it is line n of the file) and the sections by name.
-
-    Errors: `RuleError` for SQL before the first section, an unknown, repeated or empty section.
-    """
-    lines = text.splitlines()
-    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
-    header_end = marks[0][0] if marks else len(lines)
-    header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
-    sections: dict[str, Section] = {}
-    ends = [n for n, _ in marks[1:]] + [len(lines)]
-    for (start, name), end in zip(marks, ends, strict=False):
-        if name not in SECTIONS:
-            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, sign='@')}")
-        if name in sections:
-            raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
-        below = lines[start + 1 : end]
-        body = "\n".join(below).strip()
-        if not body:
-            raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
-        blank = next(n for n, line in enumerate(below) if line.strip())
-        sections[name] = Section(body, start + 1, start + 2 + blank)
-    if "condition" not in sections:
-        raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
-    return "\n".join(header), sections
-
-
-def _uncomment(line: str, n: int, where: str) -> str:
-    if not line.strip():
-        return ""
-    if not line.startswith("--"):
-        raise RuleError(
-            f"{where}:{n}: only '-- ' comment lines (the header) may stand before the first '-- @section' line"
-        )
-    return line[2:].removeprefix(" ")
+    return _RULES.of("\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), checked)
 
 
 @cache
@@ -255,136 +114,3 @@ def _title(folder_: Path) -> str:
         return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
-
-
-def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
-    """Return the section @reference for which the header's `reference = "table"` stands: all of that event table."""
-    if "reference" in sections:
-        raise RuleError(
-            f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
-        )
-    columns = store.column_comments().get(table, {})
-    if not set(_KEYS) <= columns.keys():
-        raise RuleError(
-            f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
-        )
-    return Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)
-
-
-def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
-    """Check which sections stand here, and the columns of each."""
-    wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
-    for name, needed in wanted.items():
-        if needed != (name in sections):
-            line = sections[name].line if name in sections else 1
-            what = " ".join(word for word in (header.subtype, header.kind) if word)
-            raise RuleError(f"{file}:{line}: {what}: {'needs a' if needed else 'has no'} section @{name}")
-    if "applies" in sections and header.kind != "invariant":
-        raise RuleError(
-            f"{file}:{sections['applies'].line}: @applies is for invariants; "
-            "return a column 'applies' from the condition instead"
-        )
-    measured = ("holds",) if header.sense == "holds" else ("observed", "required")
-    contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-        "condition": ((*_KEYS, *measured), _CONDITION),
-        "applies": (_KEYS, (*_KEYS, "object_id", "episode", "applies", "reason")),
-        "anchor": (("ref_id", "t_ns"), ("ref_id", "drive_id", "ego_id", "t_ns")),
-    }
-    for name, query in queries.items():
-        where = f"{file}:{sections[name].line}: @{name}"
-        if name != "reference":
-            _check_columns(query.columns, *contracts[name], where)
-        elif query.columns is not None and ("ref_id" in query.columns or not set(_KEYS) <= set(query.columns)):
-            raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-    _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
-
-
-def _check_columns(
-    columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str
-) -> None:
-    if columns is None:
-        raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
-    if len(set(columns)) != len(columns):
-        raise RuleError(f"{where} returns a column twice: {', '.join(columns)}")
-    if missing := [c for c in needed if c not in columns]:
-        raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
-    if stray := [c for c in columns if c not in allowed]:
-        raise RuleError(f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
-
-
-def _check_condition(header: Header, query: Query, where: str) -> None:
-    """Check the condition against the header: its sense, its reference, its objects."""
-    columns = query.columns or ()
-    wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
-    if found := sorted(wrong & set(columns)):
-        raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
-    if ("ref_id" in columns) != bool(ENGINE_TABLES & query.tables):
-        raise RuleError(
-            f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does"
-        )
-    if header.combine != "each" and "object_id" not in columns:
-        raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
-
-
-def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> None:
-    """Check that the header's `reads`, which stands at file:line `reads`, is what the SQL reads."""
-    given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
-    for name, query in queries.items():
-        if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
-            raise RuleError(
-                f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}"
-            )
-    said = frozenset(header.reads)
-    for query in queries.values():
-        if undeclared := sorted(query.tables - ENGINE_TABLES - said):
-            raise RuleError(
-                f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads"
-            )
-    if idle := sorted(said.difference(*(query.tables for query in queries.values()))):
-        raise RuleError(f"{reads}: reads does not match the SQL: remove {', '.join(idle)}")
-
-
-def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
-    for query in queries.values():
-        if strange := sorted(query.parameters - header.params.keys()):
-            name = strange[0]
-            raise RuleError(
-                f"{query.places[f'${name}']}: ${name} is not a parameter of this rule; "
-                f"add [params.{name}] to the header, with default, unit, why and source"
-            )
-    used = frozenset[str]().union(*(query.parameters for query in queries.values()))
-    used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
-    if unused := sorted(header.params.keys() - used):
-        raise RuleError(
-            f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
-        )
-
-
-def _check_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
-    def place(part: str, offset: int) -> str:
-        if part not in sections:
-            return f"{file}:{line_of(toml, part)}"
-        before = sections[part].sql.encode()[:offset]
-        return f"{file}:{sections[part].sql_line + before.count(10)}"
-
-    check_words({name: section.sql for name, section in sections.items()}, header.params, place)
-
-
-def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
-    """Check that every code that the SQL gives has words, and that these have their arguments."""
-    known = {**shared_texts(), **header.reasons}
-    given = [reason for query in queries.values() for reason in query.reasons]
-    for code, arguments, place in given:
-        if code not in known:
-            raise RuleError(
-                f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}"
-            )
-        if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
-            raise RuleError(
-                f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})"
-            )
-    if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
-        line = line_of(toml, f"reasons.{unused[0]}")
-        raise RuleError(
-            f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it"
-        )

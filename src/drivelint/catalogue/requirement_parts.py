@@ -23,7 +23,7 @@ from drivelint.errors import RuleError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.catalogue.load import Rule
+    from drivelint.catalogue.rule import Rule
 
 KEYS: Final = ("drive_id", "ego_id", "t_ns", "object_id", "profile")
 _REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})

@@ -23,14 +23,13 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
-from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from drivelint.catalogue.load import Rule
+    from drivelint.catalogue.rule import Rule
 
 
 def select_rules(
@@ -168,6 +167,8 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
             names = ", ".join(params) or "none"
             raise UsageError(f"--param {setting!r}: {rule_id} has no parameter {param!r}; it has: {names}")
         value = _typed(text.strip(), params[param].default, setting)
+        from drivelint.catalogue.rule_words import parameter_problem  # and with it what reads SQL
+
         if problem := parameter_problem(known[rule_id].sections, param, value):
             raise UsageError(f"--param {setting!r}: {problem}")
         values.setdefault(rule_id, {})[param] = value

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from drivelint.cli import options, packs, values
+from drivelint import option_values
+from drivelint.cli import options, packs
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
@@ -114,14 +115,14 @@ def audit(
             params=tuple(param or ()),
             rules_dirs=tuple(rules_dir or ()),
             robustness=robustness,
-            memory=values.parse_memory(memory),
+            memory=option_values.parse_memory(memory),
         ),
         fail_on=fail_on,
         strict=strict,
         workers=workers,
-        worker_memory=None if worker_memory is None else values.parse_memory(worker_memory),
+        worker_memory=None if worker_memory is None else option_values.parse_memory(worker_memory),
         drive_timeout_s=drive_timeout,
-        shard=values.parse_shard(shard),
+        shard=option_values.parse_shard(shard),
         claim=claim,
         lease_s=lease,
         retry_errors=retry_errors,
@@ -129,7 +130,7 @@ def audit(
         cluster=cluster,
         delta=delta,
     )
-    pack = packs.asked_pack(evidence, sign, out, whole=shard is None and not claim)
+    pack = option_values.asked_pack(evidence, sign, out, whole=shard is None and not claim)
     with bar(quiet) as progress:
         try:
             counted = run_interruptible(lambda: audited(request, progress))

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import completion, options, packs, streams, values
+from drivelint import option_values
+from drivelint.cli import completion, options, packs, streams
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
@@ -152,8 +153,8 @@ def check(
     from drivelint.cli.receipts import CheckReceipts
 
     settings_file = _settings_file(quiet=quiet)
-    robustness = values.robustness_for(confidence, robustness)
-    day = values.parse_today(today)
+    robustness = option_values.robustness_for(confidence, robustness)
+    day = option_values.parse_today(today)
     receipts = CheckReceipts(asked, day, settings_file)
     with tells_of_earlier(out):
         earlier = receipts.earlier()
@@ -168,7 +169,7 @@ def check(
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
-    pack = packs.asked_pack(evidence, sign, out, overwrite=overwrite)
+    pack = option_values.asked_pack(evidence, sign, out, overwrite=overwrite)
     refuse_own_baseline(baseline, out)
     settings = run.CheckOptions(
         traces=tuple(traces),
@@ -187,7 +188,7 @@ def check(
         annotate=annotate,
         pictures=pictures,
         robustness=robustness,
-        memory=values.parse_memory(memory),
+        memory=option_values.parse_memory(memory),
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint import option_values
+from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
@@ -29,7 +30,7 @@ def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, d
         raise UsageError(f"--to {to}: of an audit there is {' and '.join(page.FORMATS)}: other formats are of a check")
     if drive_pages is not None and to != "html":
         raise UsageError("--drive-pages is for --to html: the other formats are one file")
-    most = MOST_DRIVES if drive_pages is None else values.parse_number_or_all("--drive-pages", drive_pages)
+    most = MOST_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)
     base = None if baseline is None else destination(baseline)
     name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base, most))
     _warn(audit)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
-from drivelint.cli import completion, values
+from drivelint import option_values
+from drivelint.cli import completion
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -121,7 +122,9 @@ DRIVE_OPTIONS = {
         str | None, option("--mapping", "FILE|NAME", "How a table's columns are read: a TOML file or a shipped name.")
     ),
     "map_offset": _DriveOption(
-        str | None, option("--map-offset", "DX,DY", "Metres added to the map's coordinates."), read=values.parse_offset
+        str | None,
+        option("--map-offset", "DX,DY", "Metres added to the map's coordinates."),
+        read=option_values.parse_offset,
     ),
     "map_dir": _DriveOption(
         Path | None, option("--map-dir", "DIR", "Folder of maps: each log gets its own, by maps.csv, name or place.")
@@ -129,7 +132,7 @@ DRIVE_OPTIONS = {
     "map_origin": _DriveOption(
         str | None,
         option("--map-origin", "LAT,LON", "Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
-        read=values.parse_origin,
+        read=option_values.parse_origin,
     ),
     "handedness": _DriveOption(
         Literal["auto", "lht", "rht"], option("--handedness", None, "Side of the road that is driven on."), "auto"
@@ -159,7 +162,7 @@ DRIVE_OPTIONS = {
             "L,W[,AHEAD]",
             "The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
         ),
-        read=values.parse_ego_size,
+        read=option_values.parse_ego_size,
     ),
     "env": _DriveOption(
         Texts,

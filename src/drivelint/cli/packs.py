@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint import option_values
+from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
-from drivelint.errors import ExitCode, UsageError
+from drivelint.errors import ExitCode
 from drivelint.phrases import inert, inert_line, plural
 
 if TYPE_CHECKING:
@@ -71,35 +70,20 @@ def pack(
     """
     from drivelint.pack import MOST_FINDINGS, PackRequest
 
-    most = MOST_FINDINGS if findings is None else values.parse_number_or_all("--findings", findings)
+    most = MOST_FINDINGS if findings is None else option_values.parse_number_or_all("--findings", findings)
     request = PackRequest(
-        folder, out, sign, with_inputs, tuple(traces or ()), map_, _date(date), timestamp, overwrite, most
+        folder,
+        out,
+        sign,
+        with_inputs,
+        tuple(traces or ()),
+        map_,
+        option_values.parse_pack_date(date),
+        timestamp,
+        overwrite,
+        most,
     )
     write_and_tell(request)
-
-
-def asked_pack(
-    evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
-) -> PackRequest | None:
-    """Return the pack that is asked for of a result that `check` or `audit` is going to write; None: none is.
-
-    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for what is known before anything is judged.
-    """
-    if evidence is None:
-        if sign is not None:
-            raise UsageError("--sign is of an evidence pack: say where that goes with --evidence PACK")
-        return None
-    if result is None:
-        raise UsageError("--evidence packs what --out writes: give --out, too")
-    if not whole:
-        raise UsageError(
-            "--evidence packs a whole audit: give drivelint merge and then drivelint pack, when all parts have ended"
-        )
-    from drivelint.pack import PackRequest, ready
-
-    request = PackRequest(Path(result), evidence, sign, date=_date(None), overwrite=overwrite)
-    ready(request)
-    return request
 
 
 def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
@@ -160,15 +144,3 @@ def verify(
     if not found.problems:
         typer.echo(inert(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))
-
-
-def _date(given: str | None) -> str | None:
-    """Return the day of the pack: given, or that of SOURCE_DATE_EPOCH; None: neither says one."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    try:
-        if given is not None:
-            return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
-        return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
-    except (ValueError, OverflowError, OSError) as error:
-        what = f"--date {given}" if given is not None else f"SOURCE_DATE_EPOCH={epoch}"
-        raise UsageError(f"{what}: no day: write --date as 2026-11-26, SOURCE_DATE_EPOCH in seconds") from error

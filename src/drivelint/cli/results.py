@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from drivelint.cli import completion, fleets, options, values
+from drivelint import option_values
+from drivelint.cli import completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
@@ -221,7 +222,7 @@ def explain(
         trace,
         map_,
         MeasurementErrors(position, time, of_map, samples, seed),
-        values.parse_memory(memory),
+        option_values.parse_memory(memory),
     )
     _warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))

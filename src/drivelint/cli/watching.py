@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from drivelint.cli import options, values
+from drivelint import option_values
+from drivelint.cli import options
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
@@ -147,7 +148,7 @@ def watch(
         fail_on=fail_on,
         strict=strict,
         robustness=robustness,
-        memory=values.parse_memory(memory),
+        memory=option_values.parse_memory(memory),
         window_s=window,
         every_s=every,
         idle_s=idle or None,

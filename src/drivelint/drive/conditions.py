@@ -10,8 +10,8 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.facts import toml_beside
 from drivelint.phrases import hint
-from drivelint.resources import toml_beside
 from drivelint.sql.words import vocabularies, words
 
 if TYPE_CHECKING:

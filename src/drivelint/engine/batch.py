@@ -37,10 +37,10 @@ ONE_CORE_STATES: Final = 100_000
 PAIRS_PER_PART: Final = 1_500_000
 """A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
 READ_AHEAD: Final = 4
-FIRST_BATCH_DRIVES: Final = 8
+FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
 """So small is a run's first batch, so that something is judged soon."""
-BATCH_GROWTH: Final = 3
+BATCH_GROWTH: Final = 6
 """A batch has no more than so many times what was judged before it."""
 
 

@@ -249,15 +249,14 @@ class Evaluation:
 
     def _occasion(self, binding: Binding) -> None:
         rule = binding.rule
-        if self._may_stop(self._execute(reference_points.raw_references_sql(rule, self._is_partial(binding)), binding)):
-            return
-        described = self.con.execute("SELECT * FROM _raw_reference LIMIT 0").description or []
-        columns = [str(column[0]) for column in described]
+        columns = rule.columns.get("reference") or self._columns(rule.sections["reference"], binding)
         own_object = "object_id" in columns
-        self._execute(reference_points.references_sql(columns), binding)
+        if self._may_stop(
+            self._execute(reference_points.references_sql(rule, columns, self._is_partial(binding)), binding)
+        ):
+            return
         self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
-        self.con.execute(statement("judging/reference_step", rule_no=str(binding.no)))
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
         self._n_pending += self._execute(
@@ -305,6 +304,12 @@ class Evaluation:
         parsed = self.con.extract_statements(sql)[0]
         row = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchone()
         return int(row[0]) if row else 0
+
+    def _columns(self, sql: str, binding: Binding) -> list[str]:
+        """Return the columns that a SELECT of a rule returns."""
+        parsed = self.con.extract_statements(f"SELECT * FROM (\n{sql}\n) LIMIT 0")[0]
+        described = self.con.execute(parsed, binding.values(parsed.named_parameters)).description or []
+        return [str(column[0]) for column in described]
 
     def _count(self, sql: str) -> int:
         row = self.con.execute(sql).fetchone()

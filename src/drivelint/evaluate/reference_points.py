@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 
-def raw_references_sql(rule: Rule, partial: bool) -> str:
-    """Return the SQL for `_raw_reference`: the author's reference points of the subjects that are to be judged."""
-    return statement("judging/raw_reference", reference=rule.sections["reference"], todo=subject_join(partial, "r"))
-
-
-def references_sql(columns: Sequence[str]) -> str:
-    """Return the SQL for `reference`, numbered in the order of all columns."""
+def references_sql(rule: Rule, columns: Sequence[str], partial: bool) -> str:
+    """Return the SQL for `reference`: the author's reference points of the subjects to judge, numbered in the order of all columns."""
     others = [c.replace('"', '""') for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
     rest = [f'"{c}" NULLS LAST' for c in others]
     who = ["object_id NULLS LAST"] if "object_id" in columns else []
-    return statement("judging/reference", order=", ".join(["drive_id", "ego_id", "t_ns NULLS LAST", *who, *rest]))
+    return statement(
+        "judging/reference",
+        reference=rule.sections["reference"],
+        todo=subject_join(partial, "r"),
+        order=", ".join(["drive_id", "ego_id", "t_ns NULLS LAST", *who, *rest]),
+    )
 
 
 def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 _NS = 1_000_000_000
 _PROFILES = "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule_no = $_no) p USING (drive_id, ego_id)"
+_REFERENCE_STEP = (
+    "reference_step AS NOT MATERIALIZED (SELECT * EXCLUDE (rule_no) FROM _reference_step WHERE rule_no = $_no), "
+)
+"""The steps of one rule's reference points, which its condition sees; materialized, as what is read twice is, it would not be filtered."""
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
@@ -61,7 +65,7 @@ def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
     """Return `queries/judging/<name>.sql` for a rule: with its condition, its profiles, and `fragments`."""
     return statement(
         f"judging/{name}",
-        condition=condition_ctes(rule),
+        condition=f"{_REFERENCE_STEP if rule.kind != 'invariant' else ''}{condition_ctes(rule)}",
         profile="p.profile" if rule.per_profile else "''",
         profiles=_PROFILES if rule.per_profile else "",
         **fragments,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 import pyarrow.compute as pc
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from drivelint.facts import toml_beside
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
-from drivelint.resources import toml_beside
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:

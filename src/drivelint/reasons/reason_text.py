@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import msgspec
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,8 +6,8 @@ from typing import Final
 
 from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
+from drivelint.facts import toml_beside
 from drivelint.phrases import hint
-from drivelint.resources import toml_beside
 
 TEXTS: Final = toml_beside(__file__, "signals.toml")
 """`advice`: signal -> what to give; `remedies`: reason code -> what to do; `where`: format -> key -> where its logs have it."""

@@ -16,8 +16,8 @@ from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
+from drivelint.facts import toml_beside
 from drivelint.phrases import shown
-from drivelint.resources import toml_beside
 from drivelint.result.counts import grouped
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of

@@ -9,7 +9,7 @@ import re
 from functools import cache
 from typing import Final
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 
 _FACTS: Final = toml_beside(__file__, "signnames.toml")
 _NAMES: Final = [(re.compile(pattern), kind) for kind, pattern in _FACTS["names"].items()]

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import DriveLintError
 from drivelint.memo import Memo
 from drivelint.resources import folder
-from drivelint.sql import syntax
 from drivelint.sql.store import column_comments, lifetimes
 
 if TYPE_CHECKING:
@@ -92,6 +91,8 @@ def _reads(sql: str, where: str) -> _Reads:
 
     Errors: `DriveLintError` where the CTEs that are its occasion may have no rows and the SELECT still some.
     """
+    from drivelint.sql import syntax  # only where a derivation is new
+
     tree = syntax.parse_select(sql, where)
     occasion = ""
     if mark := _OCCASION.search(sql):
@@ -122,12 +123,13 @@ def derived_tables() -> frozenset[str]:
 
 def with_sources(tables: Iterable[str]) -> frozenset[str]:
     """Return these tables and the library tables from which they are derived."""
-    return _names_with_sources(frozenset(tables))
+    return frozenset[str]().union(*map(_with_its_sources, tables))
 
 
-@cache  # of each rule it is asked several times for every batch
-def _names_with_sources(tables: frozenset[str]) -> frozenset[str]:
-    return tables | {each.table for each in _with_sources(tables)}
+@cache
+def _with_its_sources(table: str) -> frozenset[str]:
+    reads = _derivation(table).reads if table in _files() else ()
+    return frozenset({table}).union(*map(_with_its_sources, reads))
 
 
 def needed(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:

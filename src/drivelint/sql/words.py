@@ -7,12 +7,12 @@ STRUCT `[fit: light_fit]`.
 from __future__ import annotations
 
 import re
-import tomllib
 from difflib import get_close_matches
 from functools import cache
 from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 from drivelint.errors import DriveLintError, InternalError
+from drivelint.facts import toml_facts
 from drivelint.phrases import hint
 from drivelint.resources import folder
 
@@ -85,7 +85,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
 @cache
 def vocabularies() -> dict[str, Vocabulary]:
     """Return name -> vocabulary, in the order of the file."""
-    facts = tomllib.loads((folder("schemas") / "words.toml").read_text(encoding="utf-8"))
+    facts = toml_facts(folder("schemas") / "words.toml")
     return {name: Vocabulary(name, **about | {"words": tuple(about["words"])}) for name, about in facts.items()}
 
 

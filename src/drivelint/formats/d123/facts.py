@@ -9,7 +9,7 @@ import numpy as np
 
 from drivelint.arrays import Codes  # noqa: TC001 (part of a type that is looked up)
 from drivelint.drive.trace import ACTOR_CLASSES, SIGNAL_STATES
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 from drivelint.road.countries import side_of_nation
 
 _FACTS: Final = toml_beside(__file__, "facts.toml")

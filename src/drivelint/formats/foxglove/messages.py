@@ -12,8 +12,8 @@ from typing import Final
 from google.protobuf import descriptor_pb2, duration_pb2, timestamp_pb2
 from mcap.records import Schema
 
+from drivelint.facts import toml_beside
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
-from drivelint.resources import toml_beside
 
 _KNOWN: Final = {"Timestamp": timestamp_pb2.DESCRIPTOR, "Duration": duration_pb2.DESCRIPTOR}
 LINE_STRIP, LINE_LOOP, LINE_LIST = range(3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 from google.protobuf import descriptor_pb2, message_factory
 
+from drivelint.facts import toml_beside
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
-from drivelint.resources import toml_beside
 
 PACKAGE: Final = "osi3"
 GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from drivelint.facts import toml_beside
 from drivelint.formats.scenarionet.pickle_shortcuts import Points
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.unpickle import load
-from drivelint.resources import toml_beside
 from drivelint.road.countries import side_of_nation
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drivelint.resources import toml_beside
+from drivelint.facts import toml_beside
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

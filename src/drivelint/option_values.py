@@ -1,17 +1,18 @@
-"""Parses option values that are more than a word or a number."""
+"""Reads what options say that is more than a word or a number, for the command line and for Python."""
 
 from __future__ import annotations
 
+import os
 import re
-from datetime import date, datetime
+from datetime import UTC, date, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from drivelint.drive.trace import EgoSize
+    from drivelint.pack import PackRequest
 
 
 def parse_today(text: str | None) -> date:
@@ -118,3 +119,39 @@ def parse_origin(text: str | None) -> tuple[float, float] | None:
         case lat, lon if abs(lat) <= 90 and abs(lon) <= 180:
             return lat, lon
     raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
+
+
+def asked_pack(
+    evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
+) -> PackRequest | None:
+    """Return the pack that is asked for of a result that `check` or `audit` is going to write; None: none is.
+
+    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for what is known before anything is judged.
+    """
+    if evidence is None:
+        if sign is not None:
+            raise UsageError("--sign is of an evidence pack: say where that goes with --evidence PACK")
+        return None
+    if result is None:
+        raise UsageError("--evidence packs what --out writes: give --out, too")
+    if not whole:
+        raise UsageError(
+            "--evidence packs a whole audit: give drivelint merge and then drivelint pack, when all parts have ended"
+        )
+    from drivelint.pack import PackRequest, ready
+
+    request = PackRequest(Path(result), evidence, sign, date=parse_pack_date(None), overwrite=overwrite)
+    ready(request)
+    return request
+
+
+def parse_pack_date(given: str | None) -> str | None:
+    """Return the day of the pack: given, or that of SOURCE_DATE_EPOCH; None: neither says one. Errors: `UsageError`."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    try:
+        if given is not None:
+            return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
+        return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+    except (ValueError, OverflowError, OSError) as error:
+        what = f"--date {given}" if given is not None else f"SOURCE_DATE_EPOCH={epoch}"
+        raise UsageError(f"{what}: no day: write --date as 2026-11-26, SOURCE_DATE_EPOCH in seconds") from error
