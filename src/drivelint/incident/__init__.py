@@ -93,7 +93,7 @@ def open_case(request: IncidentRequest, asked: RunRequest | None = None) -> Case
     """
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
-    asked = asked or run_request.load(request.folder)
+    asked = (asked or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
     judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(
