@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import etree
 
+import drivelint
 from drivelint.errors import UsageError
 from drivelint.fleet_report import gated
 from drivelint.fleet_report.opened import opened
@@ -115,3 +116,22 @@ def test_pages_have_options_that_junit_has_not(again: Path) -> None:
     found = ran("report", again, "--to", "junit", "--by", "site")
     assert found.code == 2
     assert "has the gate of the last drivelint audit" in found.err
+
+
+def test_python_has_the_tables_the_gate_and_the_rates_of_an_audit(audited: Audited, again: Path) -> None:
+    found = drivelint.AuditResult(again)
+    n = len(audited.new_fleet.planted)
+    assert (found.exit_code, len(found.findings), len(found.events)) == (1, n, n)
+    tags = found.sql("SELECT tags['site'] AS site, count(*) AS n FROM findings JOIN logs USING (drive_id) GROUP BY ALL")
+    assert sum(row["n"] for row in tags) == n
+    assert {row["site"] for row in tags} <= {"leeds", "york", "hull"}
+    rates = {row["tag_value"]: row for row in found.rates("release")}
+    assert set(rates) == {"v0", "v1"}
+    assert sum(row["findings"] for row in rates.values()) == n
+    each = rates["v0"]
+    assert each["per_100km"]["low"] < each["per_100km"]["rate"] == pytest.approx(100 * each["findings"] / each["km"])
+    assert found.report(to="junit").count("<failure") == n
+    with pytest.raises(drivelint.DriveLintError, match="junit, sarif"):
+        found.report(to="html")
+    with pytest.raises(drivelint.DriveLintError, match="no audit is here"):
+        drivelint.AuditResult(again / "tables")

@@ -22,6 +22,7 @@ from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, other_drives, render, write_incident
 from drivelint.incident.command import commands
+from drivelint.incident.finding import named_finding
 from drivelint.incident.motion import Motion
 from drivelint.incident.sheet import _rests_on, content
 from drivelint.incident.sizes import size_source
@@ -262,6 +263,18 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
     assert (f"{stays} of 100 copies" in page) is (stays is not None)
     assert ("Possible contact" in page) is (stays == 53)
     assert ("A and B may have collided head-on" in page) is (stays == 53)
+
+
+@pytest.mark.ci
+def test_the_worst_contact_needs_no_name(folder: Path) -> None:
+    result = load_result(folder)
+    found = named_finding(result, "contact")
+    assert found.is_contact
+    assert found.drive["drive_id"].startswith("collision")
+    assert named_finding(result, f"contact@{found.drive['drive_id']}").row == found.row
+    assert other_drives(IncidentRequest("contact", folder)) == []
+    with pytest.raises(UsageError, match="no finding is a contact in safe"):
+        named_finding(result, "contact@safe")
 
 
 @pytest.mark.ci

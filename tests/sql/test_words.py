@@ -28,7 +28,8 @@ SOURCES = Path(drivelint.__file__).parent
 TEXTS = {
     # texts that a log, a map, a rule or a user gave
     *("camera", "file_name", "sha256", "format", "geo_reference", "value", "message", "name", "country", "type", "subtype", "unit"),
-    *("map_name", "map_sha256", "status_reason", "rule_version", "pack", "pack_title", "title", "clause", "hypothesis", "observes"),
+    *("map_name", "map_sha256", "status_reason", "rule_version", "pack", "pack_title", "title", "breach", "clause", "hypothesis"),
+    "observes",
     # codes with arguments, told in sentences
     *("reason", "unplaced_reason", "ov_reason", "reason_code", "cause_code", "cause_args", "assumes"),
     # of results only: no rule reads them

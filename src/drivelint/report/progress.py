@@ -13,7 +13,6 @@ from drivelint.phrases import inert_line, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from contextlib import AbstractContextManager
 
     import duckdb
     import rich.progress
@@ -111,13 +110,15 @@ class ToldLimits(RuleLimits):
         self._begun.clear()
         self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")
 
-    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> AbstractContextManager[Held]:
+    @contextmanager
+    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[Held]:
         """See `RuleLimits.hold`."""
         self._begun.add(rule_id)
         n = len(self._begun)
         what = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"
         self._progress.doing(what, self._n_drives * n / (self._n_rules + 1))
-        return super().hold(con, rule_id, alone=alone)
+        with super().hold(con, rule_id, alone=alone) as held:
+            yield held
 
 
 def _duration(seconds: float) -> str:

@@ -13,7 +13,7 @@ from drivelint.reasons.signals import UNRECORDED
 from drivelint.result.certainty import POSSIBLE, certainty
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 VERDICTS: Final = ("pass", "fail", "unknown", "not_applicable", "error")
 SEVERITIES: Final = ("critical", "major", "minor")
@@ -72,7 +72,7 @@ def unrecorded(verdicts: pa.Table) -> pa.Table:
     return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED))
 
 
-def one_per_event(findings: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Return one finding of each event, in the order of the rows, which is what counts of findings count.
 
     Findings of one rule at the same time are one event if they are about one ego and object under several profiles, or if each of two
@@ -80,7 +80,7 @@ def one_per_event(findings: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     `queries/fleet/event.sql` does the same for audits.
     """
     ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
-    kept: dict[tuple[str, str, frozenset[str | None]], list[dict[str, Any]]] = defaultdict(list)
+    kept: dict[tuple[str, str, frozenset[str | None]], list[Mapping[str, Any]]] = defaultdict(list)
     places = []
     for place, row in ordered:
         mine = kept[row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})]
@@ -90,7 +90,7 @@ def one_per_event(findings: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     return [row for _, row in sorted(places, key=itemgetter(0))]
 
 
-def _is_same_event(other: dict[str, Any], row: dict[str, Any]) -> bool:
+def _is_same_event(other: Mapping[str, Any], row: Mapping[str, Any]) -> bool:
     """Whether two findings of one rule and the same parties are of one event."""
     at_once = other["t_start_ns"] <= row["t_end_ns"] and row["t_start_ns"] <= other["t_end_ns"]
     of_other_profile = other["profile"] != row["profile"]
