@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import duckdb
 import pyarrow as pa
@@ -15,8 +15,11 @@ from drivelint.result.counts import one_per_event
 from drivelint.sql.statements import statement
 from tests.report.synthetic import SECOND, finding
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
-def ids(rows: list[dict[str, Any]]) -> list[str]:
+
+def ids(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     return [row["finding_id"] for row in rows]
 
 

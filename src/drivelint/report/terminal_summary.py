@@ -39,6 +39,13 @@ MOST_REASONS: Final = 3
 
 STYLE: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT: Final = {"critical": "crit", "major": "maj", "minor": "min"}
+PROFILES: Final = {
+    "relaxed": "planned with much room",
+    "nominal": "planned as usual",
+    "aggressive": "planned with little room",
+    "observed": "as it was driven",
+}
+"""Profile that drivelint ships -> how an overtake was judged by it."""
 _STYLE_OF: Final = {
     "PASS": "bold green",
     "FAIL": "bold red",
@@ -248,7 +255,14 @@ def _lines(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_unknown(result), _inputs(result)]
+    return [Text(first), *_profiles(result), *_unknown(result), _inputs(result)]
+
+
+def _profiles(result: Result) -> list[Text]:
+    """Return what the profiles of the findings mean, which stand in brackets behind their numbers."""
+    names = sorted(set(result.findings["profile"].to_pylist()) & PROFILES.keys())
+    said = "; ".join(f"{name}: {PROFILES[name]}" for name in names)
+    return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
 
 
 def _unknown(result: Result) -> list[Text]:
