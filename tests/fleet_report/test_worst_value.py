@@ -83,5 +83,5 @@ def test_without_values_to_compare_nothing_is_said(drives: list[Any]) -> None:
 
 
 def test_a_tag_that_is_no_plain_word_is_quoted_in_the_option() -> None:
-    page = told(("a", 3, {"the site": "hull"}), ("b", 1, {"the site": "york"}))
+    page = told(("a", 30, {"the site": "hull"}), ("b", 1, {"the site": "york"}))
     assert "report --by 'the site'" in line(page)
