@@ -38,6 +38,7 @@ CREATE TABLE rule (
     pack VARCHAR NOT NULL,            -- ukhc, rss, comfort, ...
     pack_title VARCHAR NOT NULL,      -- what the pack is about; empty: it does not say
     title VARCHAR NOT NULL,           -- what it asks for, in a few words
+    breach VARCHAR,                   -- what happened where it is not kept, in a few words; NULL: it is told as "Not kept" and the title
     clause VARCHAR NOT NULL,          -- the clause it comes from
     hypothesis VARCHAR NOT NULL,      -- the same as a question
     kind VARCHAR NOT NULL,            -- [rule_kind]

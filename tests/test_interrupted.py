@@ -282,9 +282,9 @@ class Watcher(Silent):
         if "copies" in name:
             self.told += [name, f"of {total}"]
 
-    def doing(self, what: str) -> None:
+    def doing(self, what: str, part: float = 0.0) -> None:
         """Note what is done."""
-        self.told.append(what)
+        self.told += [what, f"{part:g}"] if part else [what]
 
     def advance(self, n: int = 1) -> None:
         """Note the units done."""
@@ -297,7 +297,8 @@ def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.Monke
     watcher = Watcher()
     check(replace(options(Path(), TRACES), rules_dirs=(), rules=("ukhc.r162.safe-distance-ahead",)), watcher)
     assert watcher.told == [
-        "reading 1/3", "reading 2/3", "judging 1 drive", 1, "reading 3/3", "reading 3/3", "judging 2 drives", 2,
+        "reading 1/3", "reading 2/3", "judging 1 drive: deriving tables", "judging 1 drive: rule 1 of 1", "0.5", 1,
+        "reading 3/3", "reading 3/3", "judging 2 drives: deriving tables", "judging 2 drives: rule 1 of 1", "1", 2,
         "4 critical findings; judging copies", "of 2", 1, 1,
     ]  # fmt: skip
 

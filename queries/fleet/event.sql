@@ -1,8 +1,12 @@
--- Part of the statements of this folder and of others: the findings, with `is_possible`. A touch of two egos is a finding of each: of findings of
--- one rule in which each of two egos is the object of the other at the same time, the surest stands for both.
+-- Part of the statements of this folder and of others: one finding of each event, with `is_possible`, as `one_per_event` of a check's result.
+-- A touch of two egos is a finding of each: of findings of one rule in which each of two egos is the object of the other at the same time, the
+-- surest stands for both. So it does of findings of one rule, ego and object under several profiles at the same time.
 SELECT f.*
 FROM (SELECT *, coalesce(n_stays < {least_share} * n_copies, false) AS is_possible FROM {of}findings) f
 ANTI JOIN (SELECT *, coalesce(n_stays < {least_share} * n_copies, false) AS is_possible FROM {of}findings) o
-    ON o.key = f.key AND o.rule_id = f.rule_id AND o.profile IS NOT DISTINCT FROM f.profile AND o.ego_id = f.object_id
-    AND o.object_id = f.ego_id AND o.t_start_ns <= f.t_end_ns AND f.t_start_ns <= o.t_end_ns
-    AND (o.is_possible, o.ego_id) < (f.is_possible, f.ego_id)
+    ON o.key = f.key AND o.rule_id = f.rule_id AND o.t_start_ns <= f.t_end_ns AND f.t_start_ns <= o.t_end_ns
+    AND CASE
+        WHEN o.profile IS DISTINCT FROM f.profile THEN o.ego_id = f.ego_id AND o.object_id IS NOT DISTINCT FROM f.object_id
+        ELSE o.ego_id = f.object_id AND o.object_id = f.ego_id
+    END
+    AND (o.is_possible, o.ego_id, coalesce(o.profile, '')) < (f.is_possible, f.ego_id, coalesce(f.profile, ''))

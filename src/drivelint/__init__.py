@@ -10,6 +10,7 @@ from drivelint.errors import DriveLintError as DriveLintError
 
 __version__ = "0.1.0"
 __all__ = [
+    "AuditResult",
     "CheckResult",
     "Comparison",
     "DriveLintError",

@@ -1,3 +1,4 @@
+from drivelint.api import AuditResult as AuditResult
 from drivelint.api import CheckResult as CheckResult
 from drivelint.api import Comparison as Comparison
 from drivelint.api import Explained as Explained

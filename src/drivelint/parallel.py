@@ -286,7 +286,7 @@ class _Teller(Progress):
         if self._counts:
             self.send(_Told("advance", (n,)))
 
-    def doing(self, what: str) -> None:
+    def doing(self, what: str, part: float = 0.0) -> None:  # noqa: ARG002 - those of several workers are not one
         """See `Progress`."""
         self.send(_Told("doing", (what,)))
 

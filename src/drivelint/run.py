@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -26,10 +26,10 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
-from drivelint.phrases import plural
 from drivelint.pictures import Camerawork, chosen_rows, planned_shots
+from drivelint.report.progress import ToldLimits
 from drivelint.result import collect, evidence
-from drivelint.result.counts import SEVERITIES
+from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.joining import join
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
+    from drivelint.drive.trace import DriveInput
     from drivelint.engine.session import BatchObserver
     from drivelint.evaluate.limits import DeafRules
     from drivelint.report.progress import Progress
@@ -56,6 +57,8 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    own: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
+    """Log -> what a manifest says of it and its map, in place of these options."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
@@ -163,8 +166,6 @@ def judge_logs(
     """Judge logs in one database, in their order; add to `refused` what could not be judged."""
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
-    options, library = settings.ingest_options(), MapLibrary(settings)
-
     with store.workspace(settings.memory, threads=settings.threads) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
@@ -191,6 +192,7 @@ def judge_logs(
                     release=memory.release,
                 )
             )
+        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf=deaf)
         session = JudgingSession(
             con,
             rules,
@@ -203,17 +205,17 @@ def judge_logs(
             interruption=interruption,
             errors=None if settings.robustness is False else MeasurementErrors(),
             copies_of_all=settings.robustness is True,
-            limits=RuleLimits(settings.rule_timeout, task="drives", deaf=deaf),
+            limits=limits,
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
         )
         ids: dict[Path, str] = {}
-        read = _announced(read_drives(paths, options, library), len(paths), progress)
+        read = _announced(_read(paths, settings), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    _judge(session, batch, refused, progress, notes)
+                    _judge(session, batch, refused, progress=progress, notes=notes, limits=limits)
             _judge_copies(session, progress)
         finally:
             session.close()
@@ -235,7 +237,9 @@ def judge_logs(
             min_judged=settings.min_judged,
             interrupted=bool(missed),
             asked=RunRequest.from_options(
-                settings, {name: str(path) for path, name in reversed(ids.items()) if name in session.judged}
+                settings,
+                {name: str(path) for path, name in reversed(ids.items()) if name in session.judged},
+                {name: settings.own[path] for path, name in reversed(ids.items()) if path in settings.own},
             ),
         )
         if cameras is not None and cameras.topics:
@@ -278,7 +282,7 @@ def conclude(
 def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     """Return the logs that are named; none, and the refusal of that name, if one names nothing and the result is kept in a folder."""
     try:
-        return sorted_logs(expand_traces(settings.traces, but=settings.map)), []
+        paths = sorted_logs(expand_traces(settings.traces, but=settings.map))
     except TraceError:
         for name in settings.traces if settings.out is not None else ():
             try:
@@ -286,6 +290,15 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
             except TraceError as error:
                 return [], [RefusedLog(Path(name), error)]
         raise
+    if no_logs := sorted(str(path) for path in settings.own.keys() - set(paths)):
+        raise UsageError(f"{no_logs[0]}: is not one log: a manifest names each log in a row of its own")
+    return paths, []
+
+
+def _read(paths: Sequence[Path], settings: CheckOptions) -> Iterator[Drive | RefusedLog]:
+    """Yield every log, read as the options say that hold for it; those with the same options together."""
+    for options, mine in grouped(paths, lambda path: settings.own.get(path, settings)).items():
+        yield from read_drives(mine, options.ingest_options(), MapLibrary(options))
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
@@ -355,8 +368,10 @@ def _judge(
     session: JudgingSession,
     batch: Iterable[Drive | RefusedLog],
     refused: list[RefusedLog],
+    *,
     progress: Progress,
     notes: LogNotes,
+    limits: ToldLimits,
 ) -> None:
     """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused`."""
     n_before = len(refused)
@@ -372,7 +387,7 @@ def _judge(
                 notes.add(LogNote(item.trace.path, text, once=True))
             for text in _without_map(item):
                 notes.add(LogNote(item.trace.path, text))
-    progress.doing(f"judging {plural(len(drives), 'drive')}")
+    limits.begin(len(drives))
     n_unread = len(refused) - n_before
     try:
         judge_apart(session, drives, refused)

@@ -216,6 +216,28 @@ def test_geometries_are_those_of_the_files(checked: drivelint.CheckResult, tmp_p
         checked.verdicts.geo()
 
 
+def test_a_timeline_has_what_the_log_and_the_rule_say(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+    (found,) = [
+        row for row in checked.findings if row["rule_id"].endswith("ds-disjoint") and row["drive_id"].startswith("near")
+    ]
+    table = checked.timeline(found["finding_id"])
+    rows = {row["t_ns"]: row for row in table}
+    assert list(rows) == sorted(rows)
+    worst = rows[found["t_worst_ns"]]
+    assert [worst[name] for name in ("observed", "required", "margin")] == [
+        found[name] for name in ("observed", "required", "margin")
+    ]
+    assert worst["ego_speed_mps"] == pytest.approx(5.22, abs=0.01)
+    # both drive towards each other at the same speed
+    told = sorted((row["t_s"], row["gap_m"]) for row in rows.values() if row["gap_m"] is not None and row["t_s"] < 9)
+    (t0, gap0), (t1, gap1) = told[0], told[-1]
+    assert (gap0 - gap1) / (t1 - t0) == pytest.approx(2 * 5.22, rel=0.05)
+    drawn = table.plot()
+    assert drawn is not None
+    assert "<iframe" in drawn._repr_html_()
+    assert "m.strips" not in drawn.save(tmp_path / "t.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.slow
 def test_an_explanation_is_that_of_the_command_line(
     checked: drivelint.CheckResult, drives: Path, tmp_path: Path

@@ -22,8 +22,11 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
 from drivelint.engine.memory import Memory
 from drivelint.errors import ExitCode, UsageError
+from drivelint.fleet_report import gated
 from drivelint.fleet_report.opened import opened
+from drivelint.report import junit
 from drivelint.report.progress import Silent
+from drivelint.result.model import exit_status
 from tests.audit import fleet
 from tests.audit.here import SETTINGS, InThisProcess, judged
 from tests.audit.kills import audit_with_kills
@@ -71,6 +74,9 @@ def test_the_rows_are_those_of_check(
         names = ["drive_id"] if table == "drives" else ["drive_id", "rule_id", "occurrence"]
         order = [(name, "ascending") for name in names]
         assert own.sort_by(order).to_pylist() == rows.sort_by(order).to_pylist()
+    same = gated.audit_result(str(out))
+    assert exit_status(same) == exit_status(result)
+    assert junit.render(same) == junit.render(result)
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -9,14 +10,17 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit.sources import drives
+from drivelint.audit.sources import drives, with_manifests
 from drivelint.cli.audits import audit as audit_command
 from drivelint.drive import conditions
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.guide import __file__ as guide
+from drivelint.result import request
+from drivelint.result.load import load_result
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
+from tests.fleet_report.command import ran
 
 
 def written(home: Path, *lines: str) -> str:
@@ -112,3 +116,60 @@ def test_a_table_of_states_is_a_drive(tmp_path: Path) -> None:
     """Also one that names the recording it was made from, which is not there."""
     source = written(tmp_path, "time,actor,x,made_of", "0.0,1,2.0,run/7.mcap")
     assert [each.log for each in drives([source], DriveInput())] == [source]
+
+
+@pytest.fixture(scope="module")
+def two(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+    return fleet.write(tmp_path_factory.mktemp("two") / "fleet", 2)
+
+
+def manifest(two: fleet.Fleet, *rows: str, name: str = "own.csv") -> str:
+    file = two.manifest.parent / name
+    file.write_text("\n".join(["log,map,ego,environment,site", *rows]), encoding="utf-8")
+    return str(file)
+
+
+@pytest.mark.ci
+def test_check_reads_each_log_of_a_manifest_by_its_own_options(two: fleet.Fleet, tmp_path: Path) -> None:
+    logs = [f"logs/drive-0000{n}.parquet" for n in range(2)]
+    named = manifest(two, f"{logs[0]},ring.xodr,1,weather=wet,leeds", f"{logs[1]},ring.xodr,,,york")
+    words = ("check", named, "--rules", fleet.RULE, "--no-robustness", "--no-annotate", "--env", "light=day")
+    found = ran(*words, "--out", tmp_path / "out", "--format", "json", "--quiet", "--no-cache")
+    assert found.code in {0, 1}, found
+    result = load_result(tmp_path / "out")
+    ids = result.drives["drive_id"].to_pylist()
+    egos = {(row["drive_id"], row["ego_id"]) for row in result.verdicts.to_pylist()}
+    assert egos == {(ids[0], "1"), (ids[1], "0")}
+    said = [{each["condition"]: each["value"] for each in row} for row in result.drives["conditions"].to_pylist()]
+    assert said == [{"light": "day", "weather": "wet"}, {"light": "day"}]
+    asked = request.load(tmp_path / "out")
+    mine = asked.of_drive(ids[0])
+    assert (mine.ego, mine.env) == ("1", ("light=day", "weather=wet"))
+    assert mine.map is not None
+    assert mine.map.samefile(two.road)
+    assert asked.of_drive("another") == asked
+    same = ran("explain", f"{fleet.RULE}@{ids[0]}", "--in", tmp_path / "out", "--samples", "0", "--format", "json")
+    assert same.code == 0, same
+    assert json.loads(same.out)["verdict"]["ego_id"] == "1"
+    refused = ran("pack", tmp_path / "out", "--out", tmp_path / "pack")
+    assert (refused.code, "options of their own" in refused.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        (("logs/drive-00000.parquet,,,weather=foggy,",), "row 1 .*weather.*nothing was judged yet"),
+        (("logs/drive-00000.parquet,,,,", "logs/drive-00000.parquet,,1,,"), "twice, with other options"),
+        (("logs,,1,,",), "not one log"),
+    ],
+)
+def test_check_refuses_a_manifest_before_it_judges(rows: tuple[str, ...], why: str, two: fleet.Fleet) -> None:
+    found = ran("check", manifest(two, *rows, name="bad.csv"), "--map", two.road, "--quiet", "--no-cache")
+    assert found.code == 2
+    assert re.search(why, found.err), found.err
+
+
+def test_a_table_of_states_with_a_column_log_is_a_log(two: fleet.Fleet, tmp_path: Path) -> None:
+    states = pq.read_table(two.manifest.parent / "logs" / "drive-00000.parquet")
+    pq.write_table(states.append_column("log", pa.array(["a b c"] * states.num_rows)), tmp_path / "own.parquet")
+    assert with_manifests([str(tmp_path / "own.parquet")], DriveInput()) == ((str(tmp_path / "own.parquet"),), {})

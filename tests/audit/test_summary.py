@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit import AuditRequest, AuditSummary, audit, summary
+from drivelint.audit import AuditRequest, AuditSummary, JudgeSettings, audit, summary
 from drivelint.audit.ask import ask
 from drivelint.audit.compact import create_views, database
 from drivelint.audit.store import LocalFolder
@@ -301,3 +301,13 @@ def test_the_query_that_is_proposed_gives_the_numbers_that_are_printed(audited: 
         assert found is not None
         (row,) = json.loads(ask(str(out), found[1], "json"))
         assert (row["rule_id"], row["count_star()"]) == (fleet.RULE, n)
+
+
+@pytest.mark.ci
+def test_an_audit_that_decided_nothing_is_no_pass(tmp_path: Path) -> None:
+    few = fleet.write(tmp_path / "fleet", 2)
+    settings = JudgeSettings(rules=("ukhc.r113.headlights",), memory=200_000_000)
+    request = AuditRequest(sources=(str(few.manifest),), out=str(tmp_path / "out"), map=few.road, settings=settings)
+    counted = audit(request, Silent(), InThisProcess())
+    assert counted.undecided is not None
+    assert counted.exit_code("critical", strict=False) == ExitCode.NOT_JUDGED

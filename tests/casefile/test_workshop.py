@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -123,6 +124,41 @@ def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str,
     assert code is ExitCode.USAGE
     assert said.startswith(f"REFUSED {rule.path}:")
     assert message in said
+
+
+def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp_path: Path) -> None:
+    sql = "SELECT drive_id, ego_id, t_ns,\n  spead_mps AS observed,\n  $limit AS required\nFROM ego_state"
+    rule = with_cases(measured(tmp_path, sql), CASES)
+    line = rule.path.read_text(encoding="utf-8").split("\n").index("  spead_mps AS observed,") + 1
+    code, said = said_of(tmp_path)
+    assert code is ExitCode.USAGE
+    assert said.startswith(f"REFUSED {rule.path}:{line}: ")
+    assert "speed_mps" in said
+
+
+@pytest.mark.ci
+def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workshop, "_LOOK_S", 0.01)
+    rule = with_cases(measured(tmp_path), CASES)
+    workshop.new_rule("mine.other", tmp_path, "invariant")
+    over = Event()
+    edits = iter(
+        [
+            lambda: with_cases(rule, CASES.replace("margin: 0", "margin: 1")),
+            lambda: rule.path.write_text("no rule", encoding="utf-8"),
+            over.set,
+        ]
+    )
+    said = Said()
+
+    def say(line: str) -> None:
+        said(line)
+        if len(said) > 2:  # both rules, and that it waits
+            next(edits)()
+
+    assert workshop.watch(workshop.case_test, tmp_path, (), say, over) is ExitCode.USAGE
+    assert [line.split(":")[0] for line in said[2:4]] == ["waiting for changes; Ctrl-C ends", "FAIL pack.rule"]
+    assert [line.split(" ")[0] for line in said[4:]] == ["REFUSED"]
 
 
 @pytest.mark.sample(3, ci=3)

@@ -175,8 +175,28 @@ def test_what_is_refused(
     file.write_text(text(whole, body, tables), encoding="utf-8")
     with pytest.raises(RuleError, match=message) as caught:
         read_rule(file)
-    assert str(caught.value).startswith(str(file))
-    assert "\n" not in str(caught.value)
+    assert all(line.startswith(f"{file}:") for line in str(caught.value).split("\n"))
+
+
+def test_all_that_is_wrong_in_a_file_is_told_at_once(tmp_path: Path) -> None:
+    sql = "SELECT drive_id, ego_id, t_ns,\n  random() AS observed,\n  now() AS required FROM ego_stat"
+    with pytest.raises(RuleError) as caught:
+        write(tmp_path, GOOD | {"law": '["uk"]', "tags": '["contcat"]'}, {"condition": sql})
+    said = [line.partition("rule.sql:")[2] for line in str(caught.value).split("\n")]
+    first = len(HEADER | GOOD) + 5
+    assert [int(line.partition(":")[0]) for line in said[2:]] == [first + 1, first + 2, first + 2], said
+    assert ["'contcat' is no rule tag" in said[0], "use 'gb'" in said[1], "did you mean 'ego_state'" in said[4]] == [
+        True
+    ] * 3
+    with pytest.raises(RuleError) as caught:
+        write(
+            tmp_path,
+            GOOD,
+            {"condition": f"{SPEED} WHERE speed_mps > $low"},
+            tables=PARAM.replace("limit", "most"),
+            name="b",
+        )
+    assert [word in str(caught.value) for word in ("$low is not a parameter", "'most' is never used")] == [True] * 2
 
 
 @pytest.mark.parametrize(

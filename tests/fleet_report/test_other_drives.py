@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -69,14 +70,40 @@ def test_audits_without_a_common_drive_are_told_as_such(disjoint: AuditDifferenc
         assert "the drive was not checked" not in text
 
 
-def test_they_gate_on_nothing_and_are_no_pass_unless_asked(disjoint: AuditDifference) -> None:
+def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifference) -> None:
     def code(asked: str | None) -> ExitCode:
         return difference_text.exit_code(disjoint, difference_text.least_severity(disjoint, asked))
 
-    assert code(None) == ExitCode.NOT_JUDGED
+    assert code(None) == ExitCode.FAILED
     assert code("critical") == ExitCode.FAILED
     assert code("never") == ExitCode.OK
-    assert json.loads(difference_text.to_json(disjoint, None))["exit"]["code"] == 4
+    told = json.loads(difference_text.to_json(disjoint, None))["exit"]
+    said = "overtake per occasion 7.79 times, overtake per 100 km 8.50 times"
+    assert told["code"] == 1
+    assert told["why"].startswith(f"rates at or above severity critical are higher than chance explains: {said}; ")
+    assert difference_text.since(disjoint).endswith(f"differ by more than chance explains: {said}")
+
+
+def test_a_rate_that_fell_or_that_does_not_gate_is_no_failure(disjoint: AuditDifference) -> None:
+    minor = replace(disjoint, gating_rules={"overtake": "minor"})
+    assert difference_text.exit_code(minor, None) == ExitCode.OK
+    assert "exit 0: no rate at or above severity critical is higher" in difference_text.to_text(minor, None)
+    with duckdb.connect() as con:
+        fleet(con, "base_", "r2")
+        fleet(con, "", "r1")
+        sides = [Audit(name, LocalFolder(Path(name)), {}, Standing("d")) for name in ("new", "base")]
+        fell = difference(con, sides[0], sides[1], 50)
+    assert fell.called
+    assert difference_text.exit_code(fell, None) == ExitCode.OK
+
+
+def test_audits_without_rates_or_without_an_end_are_no_pass(disjoint: AuditDifference) -> None:
+    nothing = replace(disjoint, rates=[])
+    assert difference_text.exit_code(nothing, None) == ExitCode.NOT_JUDGED
+    assert "no rule has a rate in both" in difference_text.to_text(nothing, None)
+    unfinished = replace(disjoint.new, standing=Standing(None, 1, 1))
+    running = replace(disjoint, new=unfinished, gating_rules={})
+    assert difference_text.exit_code(running, None) == ExitCode.NOT_JUDGED
 
 
 def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:

@@ -252,7 +252,7 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--to", "junit"), "of an audit there is html and markdown"),
+        (("--to", "xqar"), "of an audit there are html, markdown, junit, sarif"),
         (("--by", "sit"), "did you mean 'site'?"),
         (("--incident", "x"), "are of a check"),
         (("--baseline", "nowhere"), "no audit is here"),

@@ -8,9 +8,9 @@ import pyarrow as pa
 
 from drivelint.drive import declared_events
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
+from drivelint.facts import toml_beside
 from drivelint.incident import record
 from drivelint.incident.record import held_elements
-from drivelint.facts import toml_beside
 from drivelint.sql.store import arrow_schemas
 
 ELEMENTS = toml_beside(record.__file__, "elements.toml")

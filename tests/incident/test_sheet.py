@@ -22,6 +22,7 @@ from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, other_drives, render, write_incident
 from drivelint.incident.command import commands
+from drivelint.incident.finding import named_finding
 from drivelint.incident.motion import Motion
 from drivelint.incident.sheet import _rests_on, content
 from drivelint.incident.sizes import size_source
@@ -168,6 +169,12 @@ def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -
         f"A, a car, at {ego.speed:.1f} m/s; B, a car, at {other.speed:.1f} m/s; head-on, closing at"
         in collision["story"]
     )
+    first, closing = first_contact(recorded), ego.speed + other.speed
+    told = re.fullmatch(
+        r"A and B collided head-on at ([\d.]+) s, A in the oncoming lane, closing at ([\d.]+) m/s", collision["title"]
+    )
+    assert told is not None, collision["title"]
+    assert [float(n) for n in told.groups()] == pytest.approx([first, closing], abs=0.3)
     left = re.search(r"A left its lane at ([\d.]+) s with ([\d.]+) m between the boxes", collision["story"])
     assert left is not None
     t, free = (float(n) for n in left.groups())
@@ -249,11 +256,25 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
     surest = render(replace(case, finding=replace(case.finding, row=row))).decode()
     assert ("the contact is <b>sure</b> by" in surest) is (stays == 53)  # as the speeds say
     assert "Possible contact" not in surest
+    assert "A and B collided head-on" in surest
     case = replace(case, result=alone)
     page = render(replace(case, finding=replace(case.finding, row=row))).decode()
     assert said in page
     assert (f"{stays} of 100 copies" in page) is (stays is not None)
     assert ("Possible contact" in page) is (stays == 53)
+    assert ("A and B may have collided head-on" in page) is (stays == 53)
+
+
+@pytest.mark.ci
+def test_the_worst_contact_needs_no_name(folder: Path) -> None:
+    result = load_result(folder)
+    found = named_finding(result, "contact")
+    assert found.is_contact
+    assert found.drive["drive_id"].startswith("collision")
+    assert named_finding(result, f"contact@{found.drive['drive_id']}").row == found.row
+    assert other_drives(IncidentRequest("contact", folder)) == []
+    with pytest.raises(UsageError, match="no finding is a contact in safe"):
+        named_finding(result, "contact@safe")
 
 
 @pytest.mark.ci

@@ -218,11 +218,11 @@ def test_what_is_missing_for_some_egos_only_says_for_how_many() -> None:
 def test_the_title_of_a_broken_rule_does_not_stand_alone() -> None:
     rows = [crash(), finding(rule_id="ukhc.spare", profile=None, observed=None, required=None, margin=None)]
     lines = screen(run(rows[1:]))
-    assert any("not kept: Time to spare" in line for line in lines)
+    assert any("Not kept: Time to spare" in line for line in lines)
     text = page(run(rows))
     worst = re.sub(r"<[^>]+>", " ", text.partition('id="worst"')[2].partition("</section>")[0])
     worst = " ".join(worst.split())
-    assert "also not kept Time to spare" in worst
+    assert "also Not kept: Time to spare" in worst
     assert "Not kept: No collision" in worst
 
 

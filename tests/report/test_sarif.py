@@ -86,7 +86,9 @@ def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
     assert (found["ruleId"], found["kind"], found["level"]) == (SDA, "fail", "error")
     assert found["partialFingerprints"] == {"findingId/v1": f"d1-{SDA}-nominal-0"}
     assert found["message"]["text"].endswith("ego 1, object 3, profile nominal, 8.00 s")
-    assert found["message"]["text"].startswith("room to overtake: because fail observed 58.00 m, required 64.00 m")
+    assert found["message"]["text"].startswith(
+        "Not kept: room to overtake: because fail observed 58.00 m, required 64.00 m"
+    )
     (place,) = found["locations"]
     assert place["physicalLocation"]["artifactLocation"] == {"uri": "d1.csv", "index": 0}
     assert [(part["kind"], part["name"]) for part in place["logicalLocations"]] == [

@@ -112,7 +112,7 @@ def test_the_worst_drive_and_rule_stand_first() -> None:
         "FAIL  3 critical, 1 minor findings in 3 of 5 drives; CONTACT in 1 drive"
     ]
     assert any("CONTACT -0.10 m, needs 0.00 m; object 3" in line for line in lines)
-    assert any("58.00 m, needs 64.00 m [nominal]; room to overtake; object 3" in line for line in lines)
+    assert any("58.00 m, needs 64.00 m [nominal]; Not kept: room to overtake; object 3" in line for line in lines)
     broken = [line.split() for line in lines if line.startswith(("critical", "major", "minor"))]
     assert broken == [
         ["critical", "ukhc.no-collision", "1", "1", "-0.10", "m"],

@@ -86,7 +86,10 @@ def test_the_country_of_the_signals_of_an_opendrive_map(countries: list[str], na
         ([[("gb-wls", "env")]], "of gb applied: nation gb-wls by --env"),
         (
             [[], [("de", "map")]],
-            "of gb assumed, as the nation is not known in 1 drive; not applied: nation de by the map in 1 drive",
+            (
+                "of gb assumed, as the nation is not known in 1 drive; not applied: nation de by the map in 1 drive; "
+                "of de not asked for: --rules stvo"
+            ),
         ),
     ],
 )

@@ -16,10 +16,10 @@ from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.engine.profiles import load_profiles
 from drivelint.errors import DriveLintError, InternalError
+from drivelint.facts import toml_beside
 from drivelint.formats.opendrive import network
 from drivelint.formats.osi import map_kinds
 from drivelint.reasons.signals import SIGNALS
-from drivelint.facts import toml_beside
 from drivelint.resources import folder
 from drivelint.road import signcodes
 from drivelint.sql import store, words
@@ -29,7 +29,8 @@ SOURCES = Path(drivelint.__file__).parent
 TEXTS = {
     # texts that a log, a map, a rule or a user gave
     *("camera", "file_name", "sha256", "format", "geo_reference", "value", "message", "name", "country", "type", "subtype", "unit"),
-    *("map_name", "map_sha256", "status_reason", "rule_version", "pack", "pack_title", "title", "clause", "hypothesis", "observes"),
+    *("map_name", "map_sha256", "status_reason", "rule_version", "pack", "pack_title", "title", "breach", "clause", "hypothesis"),
+    "observes",
     # codes with arguments, told in sentences
     *("reason", "unplaced_reason", "ov_reason", "reason_code", "cause_code", "cause_args", "assumes"),
     # of results only: no rule reads them

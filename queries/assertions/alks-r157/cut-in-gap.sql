@@ -1,4 +1,5 @@
 -- title = "Distance restored after a cut-in"
+-- breach = "Distance not restored after a cut-in"
 -- clause = "UN R157 5.2.3.3: where a vehicle that cuts in leaves less than the distance of the table, restore it at the next opportunity"
 -- hypothesis = "After a vehicle cut in, was the following distance restored in time, or had that vehicle gone?"
 -- kind = "postcondition"

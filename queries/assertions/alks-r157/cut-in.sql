@@ -1,4 +1,5 @@
 -- title = "No collision with a vehicle that cuts in"
+-- breach = "Collision with a vehicle that cut in"
 -- clause = "UN R157 5.2.5.2: avoid a collision with a slower vehicle that cuts in, if it was seen to move over for 0.72 s and leaves more than the time to collision given by the formula"
 -- hypothesis = "After a vehicle cut in with enough time left, did the ego avoid touching it?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Hard braking declared as an emergency manoeuvre"
+-- breach = "Hard braking not declared as an emergency manoeuvre"
 -- clause = "UN R157 5.3.1.1: a system that asks for more than 5 m/s2 of braking carries out an emergency manoeuvre, which is to be recorded"
 -- hypothesis = "While the ego braked harder than 5 m/s2, did it declare an emergency manoeuvre?"
 -- kind = "invariant"

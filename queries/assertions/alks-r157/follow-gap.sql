@@ -1,4 +1,5 @@
 -- title = "Following distance of UN R157 kept"
+-- breach = "Closer than the following distance of UN R157"
 -- clause = "UN R157 5.2.3.3 (cars and vans; more for heavy vehicles): while moving, up to 60 km/h, keep at least the distance of the table, never less than 2 m; if others take it, restore it at the next opportunity"
 -- hypothesis = "At every step at which the ego moved behind a vehicle, was the gap at least the distance of the table?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Hazard lights in a minimal risk manoeuvre"
+-- breach = "No hazard lights in a minimal risk manoeuvre"
 -- clause = "UN R157 5.5.1: the hazard warning lights come on with the start of a minimal risk manoeuvre (5.5.4: and stay on at its end)"
 -- hypothesis = "During a minimal risk manoeuvre, were the hazard warning lights on?"
 -- kind = "invariant"

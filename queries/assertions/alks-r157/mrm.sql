@@ -1,4 +1,5 @@
 -- title = "Gentle braking in a minimal risk manoeuvre"
+-- breach = "Hard braking in a minimal risk manoeuvre"
 -- clause = "UN R157 5.5.1 (5.5.2 in the 01 series): a minimal risk manoeuvre aims at no more than 4 m/s2 of braking, but for very short moments and in a severe failure"
 -- hypothesis = "During a minimal risk manoeuvre, did the ego brake harder than 4 m/s2 for no longer than a moment?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Lane change completed in less than 5 s"
+-- breach = "Lane change not completed in 5 s"
 -- clause = "UN R79 5.6.4.6.5: the lane change manoeuvre of a car is completed in less than 5 s"
 -- hypothesis = "Was the ego wholly in the new lane in less than 5 s after it first reached over the line?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Indicator on for 3 to 5 s before a lane change"
+-- breach = "Indicator not on for 3 to 5 s before a lane change"
 -- clause = "UN R79 5.6.4.6.4: an automatic lane change begins 3 to 5 s after its indicator came on (later supplements: 7 s where the driver confirms it)"
 -- hypothesis = "When the ego began to cross into the next lane, had its indicator on that side been on for 3 to 5 s?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Acceleration within ISO 15622"
+-- breach = "Acceleration beyond ISO 15622"
 -- clause = "ISO 15622 (adaptive cruise control): speed up gently; the faster the vehicle, the more gently"
 -- hypothesis = "At every step, was the ego's acceleration at most 4 m/s2 up to 5 m/s, falling to 2 m/s2 at 20 m/s?"
 -- kind = "invariant"

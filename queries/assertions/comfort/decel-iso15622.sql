@@ -1,4 +1,5 @@
 -- title = "Deceleration within ISO 15622"
+-- breach = "Deceleration beyond ISO 15622"
 -- clause = "ISO 15622 (adaptive cruise control): over two seconds brake no harder than people in traffic do; the faster the vehicle, the less hard"
 -- hypothesis = "At every step, was the ego's mean deceleration over the last 2 s at most 5 m/s2 up to 5 m/s, falling to 3.5 m/s2 at 20 m/s?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Jerk within ISO 15622"
+-- breach = "Jerk beyond ISO 15622"
 -- clause = "ISO 15622 (adaptive cruise control): let braking grow gently; the faster the vehicle, the more gently"
 -- hypothesis = "At every step, did the ego's deceleration grow, over the last second, by at most 5 m/s3 up to 5 m/s, falling to 2.5 m/s3 at 20 m/s?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Lateral acceleration within UN R79"
+-- breach = "Lateral acceleration beyond UN R79"
 -- clause = "UN R79 5.6.2.1.3 (lane keeping): no more lateral acceleration than the system may be specified for: 3 m/s2 for cars and vans, 2.5 m/s2 for buses and lorries"
 -- hypothesis = "At every step, was the ego's lateral acceleration at most 3 m/s2, or at most 2.5 m/s2 if it is a lorry or bus?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Acceleration and jerk within nuPlan's bounds"
+-- breach = "Acceleration or jerk beyond nuPlan's bounds"
 -- clause = "nuPlan, metric ego_is_comfortable: stay within the accelerations and jerks of expert drivers (here four of its seven bounds: those of the yaw, and of the jerk as a vector, 8.37 m/s3, are not judged)"
 -- hypothesis = "At every step, were the ego's accelerations and its longitudinal jerk within the bounds?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "No hard braking needed to avoid a collision (DRAC)"
+-- breach = "Hard braking needed to avoid a collision (DRAC)"
 -- clause = "Cooper and Ferguson 1976: the braking that it takes not to hit the vehicle ahead"
 -- hypothesis = "At every step behind a vehicle in its lane, could the ego have avoided a collision with no more than ordinary braking?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Sufficient modified time to collision (MTTC)"
+-- breach = "Too little modified time to collision (MTTC)"
 -- clause = "Ozbay, Yang, Bartin, Mudigonda 2008: the time until ego and leading vehicle would collide at their present accelerations"
 -- hypothesis = "At every step behind a vehicle in its lane, or in the way of an oncoming vehicle, was the ego at least 1.5 s from hitting it if both kept their accelerations?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Sufficient post-encroachment time (PET)"
+-- breach = "Too little post-encroachment time (PET)"
 -- clause = "Allen, Shin, Cooper 1978: the time between one road user leaving the ground of a conflict and the other coming onto it"
 -- hypothesis = "Where the ways of the ego and of another road user crossed at 45 degrees or more, and did not become one way, was there at least 1.5 s between the two?"
 -- kind = "execution"

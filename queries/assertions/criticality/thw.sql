@@ -1,4 +1,5 @@
 -- title = "Sufficient time headway (THW)"
+-- breach = "Too little time headway (THW)"
 -- clause = "Germany, BKatV no. 12.5 (distances): the time until the ego is where the vehicle ahead is now"
 -- hypothesis = "At every step behind a vehicle in its lane, did the ego follow at no less than 0.9 s?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Sufficient time to brake (TTB)"
+-- breach = "Too little time to brake (TTB)"
 -- clause = "Hillenbrand, Spieker, Kroschel 2006: the time left until only full braking avoids the collision"
 -- hypothesis = "At every step behind a vehicle in its lane, could the ego have waited another second before braking fully?"
 -- kind = "invariant"

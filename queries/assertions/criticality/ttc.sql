@@ -1,4 +1,5 @@
 -- title = "Sufficient time to collision (TTC)"
+-- breach = "Too little time to collision (TTC)"
 -- clause = "Hayward 1972: the time until ego and leading vehicle would collide at their present speeds"
 -- hypothesis = "At every step behind a vehicle in its lane, or in the way of an oncoming vehicle, was the ego at least 1.5 s from hitting it at the present speeds?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Not faster than the chosen speed"
+-- breach = "Faster than the chosen speed"
 -- clause = "UKHC R125, R146, R152: the limit is no target; choose a speed that suits the conditions"
 -- hypothesis = "At every step, was the ego no faster than the speed that it had declared as its choice?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "A reason for every chosen speed"
+-- breach = "A chosen speed without a reason"
 -- clause = "UKHC R125, R152: suit the speed to the road, the weather, and who may be there"
 -- hypothesis = "Did every declared choice of speed name its reason?"
 -- kind = "execution"

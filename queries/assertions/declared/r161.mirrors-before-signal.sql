@@ -1,4 +1,5 @@
 -- title = "Mirrors before signalling"
+-- breach = "Signalled without checking the mirrors"
 -- clause = "UKHC R161: use the mirrors in good time before you signal or change direction"
 -- hypothesis = "Before its indicator came on, did the ego declare a mirror check?"
 -- kind = "execution"

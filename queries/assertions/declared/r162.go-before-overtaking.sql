@@ -1,4 +1,5 @@
 -- title = "Decision to go before overtaking"
+-- breach = "Overtook without the decision to go"
 -- clause = "UKHC R162, R267: overtake only when you have made sure that it is safe"
 -- hypothesis = "When the ego left its lane to overtake, was its last declared decision a decision to go?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Mirror check, then blind spot check, before pulling out"
+-- breach = "Pulled out without checking mirror, then blind spot"
 -- clause = "UKHC R163, R133: before pulling out use the mirrors, then check the blind spot on that side"
 -- hypothesis = "Before the ego left its lane, did it declare a mirror check and then a blind spot check?"
 -- kind = "execution"

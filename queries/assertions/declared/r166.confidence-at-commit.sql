@@ -1,4 +1,5 @@
 -- title = "No overtaking in doubt"
+-- breach = "Overtook in doubt"
 -- clause = "UKHC R166: do not overtake if you are in doubt"
 -- hypothesis = "When the ego left its lane to overtake, was its declared confidence high enough?"
 -- kind = "execution"

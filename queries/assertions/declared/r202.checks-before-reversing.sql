@@ -1,4 +1,5 @@
 -- title = "Mirror and blind spot checks before reversing"
+-- breach = "Reversed without checking mirrors and blind spot"
 -- clause = "UKHC R202: before and while reversing look carefully, into the mirrors and the blind spots"
 -- hypothesis = "Before the ego began to reverse, did it declare a mirror check and a blind spot check?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Road users declared as hazards before they are passed"
+-- breach = "Passed road users that were not declared as hazards"
 -- clause = "UKHC R146, R154, R205: anticipate what people on foot, cyclists and animals close by may do"
 -- hypothesis = "When the ego came to pass a pedestrian, cyclist or animal close by, had it declared that object as a hazard?"
 -- kind = "execution"

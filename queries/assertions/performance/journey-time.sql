@@ -1,4 +1,5 @@
 -- title = "Journey not much slower than free flow"
+-- breach = "Journey much slower than free flow"
 -- clause = "Harper et al. 2021, performance (liveness): gets there in a time that fits the road"
 -- hypothesis = "Did the drive take at most twice the time that it would have taken at the speed limit?"
 -- kind = "execution"

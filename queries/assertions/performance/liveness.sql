@@ -1,4 +1,5 @@
 -- title = "No needless standstill"
+-- breach = "Stood without need"
 -- clause = "Harper et al. 2021, performance (liveness): a vehicle that can go on does; nothing is gained by one that stops for no reason"
 -- hypothesis = "Where nothing was in its way, nobody was near, and no junction, stop line or crossing was close, did the ego go on within 10 s?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Opportunities to overtake taken"
+-- breach = "Opportunity to overtake not taken"
 -- clause = "Harper et al. 2021, performance zones (zone D: overcautious if not taken): use the room to overtake that there is"
 -- hypothesis = "While held up behind a slower vehicle, did the ego use every chance to overtake that would have left more than 2.5 s to spare?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Stop close before the line"
+-- breach = "Stopped far before the line"
 -- clause = "Harper et al. 2021, performance (precise stopping): who stops for a line stops at it, not over it and not far before it"
 -- hypothesis = "When the ego stopped for a stop line, did it stand with its front at most half a metre before the line?"
 -- kind = "execution"

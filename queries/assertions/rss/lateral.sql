@@ -1,4 +1,5 @@
 -- title = "RSS: safe distance to the vehicle beside"
+-- breach = "RSS: too close to the vehicle beside"
 -- clause = "RSS definition 6 (Shalev-Shwartz et al. 2017; IEEE 2846): beside another vehicle keep room for both to stop drifting towards each other"
 -- hypothesis = "At every step beside another vehicle, was the gap to it at least the safe lateral distance of RSS?"
 -- kind = "invariant"

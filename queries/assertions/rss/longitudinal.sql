@@ -1,4 +1,5 @@
 -- title = "RSS: safe distance to the vehicle ahead"
+-- breach = "RSS: too close to the vehicle ahead"
 -- clause = "RSS definition 1 (Shalev-Shwartz et al. 2017; IEEE 2846): keep the distance at which you can stop if the vehicle ahead brakes as hard as it can"
 -- hypothesis = "At every step, was the gap to the vehicle ahead at least the safe longitudinal distance of RSS?"
 -- kind = "invariant"

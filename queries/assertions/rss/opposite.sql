@@ -1,4 +1,5 @@
 -- title = "RSS: safe distance to an oncoming vehicle"
+-- breach = "RSS: too close to an oncoming vehicle"
 -- clause = "RSS definition 2 (Shalev-Shwartz et al. 2017): two vehicles that come towards each other in one lane keep room for both to stop"
 -- hypothesis = "At every step with the ego in the opposing lane, or an oncoming vehicle in the ego's, could both have stopped in time?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "RSS: proper response"
+-- breach = "RSS: no proper response"
 -- clause = "RSS definition 4 (Shalev-Shwartz et al. 2017): once a situation is dangerous, brake after the response time until it is safe again"
 -- hypothesis = "After the gap to the vehicle ahead had become unsafe, did the ego brake with at least 4 m/s2 within a second and until it was safe again?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Safe distance to the vehicle ahead"
+-- breach = "Too close to the vehicle ahead"
 -- clause = "StVO 4(1) (R_G1 of Maierhofer et al. 2020): keep so far behind the vehicle ahead that you can stop even if it brakes suddenly"
 -- hypothesis = "At every step behind a vehicle, could the ego have stopped behind it if that vehicle had braked as hard as it can?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Within the speed limit"
+-- breach = "Over the speed limit"
 -- clause = "StVO 3(3), 18(5) (R_G3 of Maierhofer et al. 2020): do not exceed the limit of the road nor that of your kind of vehicle"
 -- hypothesis = "At every step, was the ego no faster than the road and its kind of vehicle allow?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Keeping the traffic flowing"
+-- breach = "Held up the traffic"
 -- clause = "StVO 3(2) (R_G4 of Maierhofer et al. 2020): without good reason do not drive so slowly that you hinder the traffic"
 -- hypothesis = "At every step with no slow vehicle ahead or in the lane beside, and nobody else in the way, was the ego slower than the speed limit by less than the allowed difference?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Safe distance to the vehicle behind when changing lane"
+-- breach = "Changed lane too close to the vehicle behind"
 -- clause = "StVO 7(5), 5(4) (R_G6 of Maierhofer et al. 2020): change lane only if nobody behind is put in danger"
 -- hypothesis = "When the ego began to change lane, was the vehicle behind in the new lane at its safe distance from the ego?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Not stopping on a motorway"
+-- breach = "Stopped on a motorway"
 -- clause = "StVO 18(8) (R_I1 of Maierhofer et al. 2020): stopping on motorways is forbidden; standing in a queue, for somebody in the way or with a breakdown (15) is not stopping"
 -- hypothesis = "When the ego came to a standstill on a motorway, was there a slow or standing vehicle close ahead, or somebody in the way?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No passing on the right, except past a slow queue"
+-- breach = "Passed on the right"
 -- clause = "StVO 5(1), 7(2), 7(2a), 7a (R_I2 of Maierhofer et al. 2020): overtake on the left; on the right only past a queue, at little more than its speed, or on an entry lane"
 -- hypothesis = "When the ego got ahead of a vehicle in a lane to its left (right in left-hand traffic), was that a slow queue, passed with little more speed?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No turning round and no reversing"
+-- breach = "Turned round or reversed"
 -- clause = "StVO 18(7) (R_I3 of Maierhofer et al. 2020): on motorways turning round and reversing are forbidden"
 -- hypothesis = "At every step, did the ego head and move in the direction of its lane?"
 -- kind = "invariant"

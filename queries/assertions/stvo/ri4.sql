@@ -1,4 +1,5 @@
 -- title = "Emergency corridor kept open"
+-- breach = "Emergency corridor blocked"
 -- clause = "StVO 11(2) (R_I4 of Maierhofer et al. 2020): in slow traffic on two or more lanes leave a way free between the leftmost lane and the others"
 -- hypothesis = "At every step in slow traffic, did the ego keep to the outer border of its lane?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Room for vehicles that enter from the slip road"
+-- breach = "Left no room for a vehicle that entered from the slip road"
 -- clause = "StVO 1(2), 18(3) (R_I5 of Maierhofer et al. 2020): do not change to the lane that others are about to enter from the slip road"
 -- hypothesis = "When the ego changed lane to the right, was nobody close by on the slip road?"
 -- kind = "execution"

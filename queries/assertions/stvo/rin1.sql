@@ -1,4 +1,5 @@
 -- title = "A complete halt at the stop sign"
+-- breach = "Did not come to a halt at the stop sign"
 -- clause = "StVO 41(1), Anlage 2 no. 3, sign 206 (R_IN1 of Maierhofer et al. 2022): at a stop sign halt at the line; the law names no time"
 -- hypothesis = "Before the ego crossed a stop line with a stop sign, did it stand close before the line, long enough to be seen?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Lorries and buses: fifty metres behind the vehicle ahead"
+-- breach = "Lorry or bus less than fifty metres behind the vehicle ahead"
 -- clause = "StVO 4(3): lorries over 3.5 t and buses keep at least 50 m behind the vehicle ahead on motorways when faster than 50 km/h"
 -- hypothesis = "At every step faster than 50 km/h, did the lorry or bus keep 50 m behind the vehicle ahead?"
 -- kind = "invariant"

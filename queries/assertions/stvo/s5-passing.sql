@@ -1,4 +1,5 @@
 -- title = "Space for cyclists and people on foot"
+-- breach = "Passed cyclists or people on foot too closely"
 -- clause = "StVO 5(4): overtake people on foot, on bicycles and on small electric vehicles with at least 1.5 m in built-up areas and 2 m elsewhere"
 -- hypothesis = "At every step beside a slower cyclist or pedestrian on the road who goes the same way, did the ego keep the distance?"
 -- kind = "invariant"

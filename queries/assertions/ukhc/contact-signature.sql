@@ -1,4 +1,5 @@
 -- title = "No impact-like change of speed"
+-- breach = "Speed changed as in an impact"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a contact that the boxes miss shows in the speeds"
 -- hypothesis = "While another actor was within reach, did the ego and that actor lose or gain speed no faster than tyres can?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Signal on at the last exit sign"
+-- breach = "No signal at the last exit sign"
 -- clause = "UKHC R103 and R273: signal in good time before leaving by an exit (physical precondition of Harper et al. 2021)"
 -- hypothesis = "When the ego passed the last exit sign before it left, was the indicator to the exit's side on?"
 -- kind = "precondition"

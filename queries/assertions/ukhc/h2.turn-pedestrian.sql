@@ -1,4 +1,5 @@
 -- title = "Give way to pedestrians when turning"
+-- breach = "Did not give way to pedestrians when turning"
 -- clause = "UKHC H2 and R170: at a junction give way to people on foot who cross the road that you turn into or out of"
 -- hypothesis = "When the ego turned into a road, or out of one, before a pedestrian, was there time for both?"
 -- kind = "execution"

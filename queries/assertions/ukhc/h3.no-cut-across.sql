@@ -1,4 +1,5 @@
 -- title = "Do not cut across cyclists and horses"
+-- breach = "Cut across a cyclist or a horse"
 -- clause = "UKHC H3 and R182: do not cut across cyclists or horses going ahead when you turn"
 -- hypothesis = "When the ego turned before a cyclist or horse ahead of it, beside it or coming towards it, did it leave enough time and make nobody brake?"
 -- kind = "execution"

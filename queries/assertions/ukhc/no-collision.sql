@@ -1,4 +1,5 @@
 -- title = "No collision"
+-- breach = "Collision"
 -- clause = "UKHC R144: do not drive dangerously or without care for others; a collision is the plainest breach"
 -- hypothesis = "At every step, and between two steps, was the ego's box clear of every other actor's box?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Overtake with time to spare"
+-- breach = "Overtook with little time to spare"
 -- clause = "UKHC R162 (performance zones of Harper et al. 2021): overtake only with enough road, and use the road that there is"
 -- hypothesis = "In the overtake as it was driven, would the spare distance ahead have lasted for at least half a second?"
 -- kind = "execution"

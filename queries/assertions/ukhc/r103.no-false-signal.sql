@@ -1,5 +1,6 @@
 -- # Draft: on the way into a roundabout, a signal to the side opposite to the first bend is correct; maps do not say where roundabouts are.
 -- title = "No signal to the wrong side at a junction"
+-- breach = "Signalled to the wrong side at a junction"
 -- clause = "UKHC R103: signals must not mislead: do not signal to one side and turn to the other"
 -- hypothesis = "When the ego's front came into the junction in which it turned, was the indicator of the other side off?"
 -- kind = "execution"

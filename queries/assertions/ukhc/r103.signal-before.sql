@@ -1,4 +1,5 @@
 -- title = "Signal before moving out"
+-- breach = "No signal before moving out"
 -- clause = "UKHC R103: give clear signals in plenty of time before changing course or direction"
 -- hypothesis = "Was the indicator of that side on throughout the seconds before the ego crossed the boundary of its lane?"
 -- kind = "precondition"

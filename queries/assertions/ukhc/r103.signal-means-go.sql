@@ -1,4 +1,5 @@
 -- title = "A signal is followed by the manoeuvre"
+-- breach = "Signalled a manoeuvre that did not follow"
 -- clause = "UKHC R103: signals tell others what you are going to do; do not mislead them"
 -- hypothesis = "After the indicator came on, did the ego move out or turn to that side in time?"
 -- kind = "postcondition"

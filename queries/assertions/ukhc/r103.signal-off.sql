@@ -1,4 +1,5 @@
 -- title = "Signal off after the manoeuvre"
+-- breach = "Signal still on after the manoeuvre"
 -- clause = "UKHC R103: cancel your signals after use; a signal left on misleads"
 -- hypothesis = "After the last lane change or turn that it was on for, did the indicator go off in time?"
 -- kind = "postcondition"

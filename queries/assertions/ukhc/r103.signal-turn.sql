@@ -1,5 +1,6 @@
 -- # Draft: on a priority road that bends, and on the way into a roundabout, no signal need be given; maps tell neither.
 -- title = "Signal when turning at a junction"
+-- breach = "No signal when turning at a junction"
 -- clause = "UKHC R103, R179 and R182: give a signal to the side to which you are going to turn"
 -- hypothesis = "When the ego's front came into the junction in which it turned, was the indicator of that side on?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No horn while stationary"
+-- breach = "Horn while stationary"
 -- clause = "UKHC R112: you must not use your horn while stationary, except when another road user poses a danger"
 -- hypothesis = "When the ego's horn sounded, was it moving?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Headlights at night"
+-- breach = "No headlights at night"
 -- clause = "UKHC R113: you must use headlights at night, except on a road with lit street lighting, which is generally one of 30 mph"
 -- hypothesis = "At every step at night at which the ego moved, were its headlights on, or may the street have been lit?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Headlights at night on lit streets too"
+-- breach = "No headlights at night on lit streets"
 -- clause = "UKHC R115: at night in built-up areas, where street lighting may excuse from headlights, you should use dipped ones"
 -- hypothesis = "At every step at night at which the ego moved on a street that may be lit, were its headlights on?"
 -- kind = "invariant"

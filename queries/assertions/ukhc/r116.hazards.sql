@@ -1,4 +1,5 @@
 -- title = "No hazard lights while driving"
+-- breach = "Hazard lights while driving"
 -- clause = "UKHC R116: you must not use hazard warning lights while driving, except to warn of a hazard ahead on a motorway or unrestricted dual carriageway"
 -- hypothesis = "At every step, were the hazard lights off, or was the ego standing?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Within the speed limit"
+-- breach = "Over the speed limit"
 -- clause = "UKHC R124: you must not exceed the maximum speed limits for the road and for your vehicle"
 -- hypothesis = "At every step, did the ego keep to the limit of the road and to that of its class of vehicle?"
 -- kind = "invariant"

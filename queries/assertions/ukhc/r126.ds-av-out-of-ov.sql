@@ -1,4 +1,5 @@
 -- title = "Ego outside the oncoming vehicle's danger space"
+-- breach = "Ego inside the oncoming vehicle's danger space"
 -- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, was the ego outside the space that the oncoming vehicle needs to stop?"
 -- kind = "invariant"

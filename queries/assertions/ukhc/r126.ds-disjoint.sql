@@ -1,4 +1,5 @@
 -- title = "Danger spaces of ego and oncoming vehicle apart"
+-- breach = "Danger spaces of ego and oncoming vehicle overlapped"
 -- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, could both the ego and the oncoming vehicle have stopped without meeting?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Oncoming vehicle outside the ego's danger space"
+-- breach = "Oncoming vehicle inside the ego's danger space"
 -- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, was the oncoming vehicle outside the space that the ego needs to stop?"
 -- kind = "invariant"

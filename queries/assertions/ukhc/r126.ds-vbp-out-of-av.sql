@@ -1,4 +1,5 @@
 -- title = "Vehicle being passed outside the ego's danger space"
+-- breach = "Vehicle being passed inside the ego's danger space"
 -- clause = "UKHC R126 and R162 (runtime assertion of Harper et al. 2021): leave enough space to stop, in an overtake too"
 -- hypothesis = "At every step of the overtake, was the vehicle being passed outside the space that the ego needs to stop?"
 -- kind = "invariant"

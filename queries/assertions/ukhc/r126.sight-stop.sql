@@ -1,4 +1,5 @@
 -- title = "Able to stop within the road seen to be clear"
+-- breach = "Too fast to stop within the road seen to be clear"
 -- clause = "UKHC R126, R227 and R230: drive at a speed that lets you stop well within the distance you can see to be clear; further in the wet and on ice"
 -- hypothesis = "At every step, did the road that the ego could see reach at least as far as its stopping distance?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Room to stop behind the vehicle ahead"
+-- breach = "No room to stop behind the vehicle ahead"
 -- clause = "UKHC R126, R227 and R230: leave enough space to the vehicle in front to pull up if it suddenly slows down or stops, never less than the overall stopping distance; twice that in the wet, up to ten times on ice"
 -- hypothesis = "At every step behind a vehicle, was the gap to it at least the ego's stopping distance?"
 -- kind = "invariant"

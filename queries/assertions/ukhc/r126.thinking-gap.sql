@@ -1,4 +1,5 @@
 -- title = "Never closer than the thinking distance"
+-- breach = "Closer than the thinking distance"
 -- clause = "UKHC R126: leave enough space to the vehicle in front; within the thinking distance no braking helps, whatever the weather"
 -- hypothesis = "At every step behind a vehicle, was the gap to it at least the ego's thinking distance?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Two seconds behind the vehicle ahead on fast roads"
+-- breach = "Less than two seconds behind the vehicle ahead on a fast road"
 -- clause = "UKHC R126, R227 and R230: on faster roads and in tunnels allow at least two seconds to the vehicle in front, twice that in the wet, up to ten times on ice"
 -- hypothesis = "At every step behind a vehicle on a fast road, was it at least two seconds ahead?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Back before the line becomes solid"
+-- breach = "Not back before the line became solid"
 -- clause = "UKHC R128: where the middle line nearer to you is broken you may cross it to overtake if you can finish before a solid line on your side begins"
 -- hypothesis = "When the ego had crossed a line that it may cross, was it back before the line became solid on its side?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Not over a solid line in the middle of the road"
+-- breach = "Over a solid line in the middle of the road"
 -- clause = "UKHC R129: where the middle line nearer to you is solid you must not cross or straddle it, except to pass something stationary, a cyclist, horse or works vehicle at 10 mph or less, or to reach or leave premises or a side road"
 -- hypothesis = "At every step, was the ego's outline inside its side of a middle line that was solid for it?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Within its lane"
+-- breach = "Out of its lane"
 -- clause = "UKHC R131: keep between the broken lines that divide the road into lanes"
 -- hypothesis = "At every step outside a lane change or overtake, had the ego been astride a lane line for no longer than a few seconds?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Changing lanes forces nobody to brake"
+-- breach = "Changed lane and forced somebody to brake"
 -- clause = "UKHC R133: change lanes only if it does not force another road user to change course or speed"
 -- hypothesis = "In the seconds after a lane change began, did the vehicle behind in the new lane not have to brake hard?"
 -- kind = "postcondition"

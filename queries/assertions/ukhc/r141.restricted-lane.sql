@@ -1,4 +1,5 @@
 -- title = "Not in lanes kept for others"
+-- breach = "In a lane kept for others"
 -- clause = "UKHC R140, R141 and R142: during its hours you must not drive in a cycle lane with a solid line or a lane kept for other kinds of vehicle, and should not in a bus lane, unless signs allow your kind"
 -- hypothesis = "At every step, was the ego's centre outside lanes kept for buses, taxis, cycles or shared cars?"
 -- kind = "invariant"

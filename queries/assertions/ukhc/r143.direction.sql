@@ -1,4 +1,5 @@
 -- title = "With the direction of the lane"
+-- breach = "Against the direction of the lane"
 -- clause = "UKHC R143, R160 and R263: you must travel in the direction of a one-way road; on a motorway you must not reverse or drive against the traffic; on other roads you should keep to your side"
 -- hypothesis = "At every step outside an overtake, and with its lane not closed by a standing object or a pedestrian, did the ego drive forwards in the direction of its lane?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Not on the footway"
+-- breach = "On the footway"
 -- clause = "UKHC R145: you must not drive on or over a pavement, footpath or bridleway, except to reach property or in an emergency"
 -- hypothesis = "At every step, was the ego's outline off every footway, or may it have been on its way to property?"
 -- kind = "invariant"

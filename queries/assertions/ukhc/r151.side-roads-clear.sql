@@ -1,4 +1,5 @@
 -- title = "Keep side roads clear in a queue"
+-- breach = "Blocked a side road in a queue"
 -- clause = "UKHC R151: in slow-moving traffic allow access into and from side roads"
 -- hypothesis = "At a junction without traffic lights, did the ego get through without standing in it behind another vehicle?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Not pulling out while being overtaken"
+-- breach = "Pulled out while being overtaken"
 -- clause = "UKHC R162: before overtaking make sure that nobody behind is beginning to overtake you"
 -- hypothesis = "When the ego first left its lane to overtake, was the nearest vehicle behind in the passing lane still seconds away?"
 -- kind = "execution"

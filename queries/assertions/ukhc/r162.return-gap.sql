@@ -1,4 +1,5 @@
 -- title = "Room to return ahead of the vehicle being passed"
+-- breach = "No room to return ahead of the vehicle being passed"
 -- clause = "UKHC R162 and R163: overtake only if there is a suitable gap in front of the vehicle that you mean to overtake"
 -- hypothesis = "When the ego pulled out, was there room for it ahead of the vehicle being passed, with thinking distance before and behind?"
 -- kind = "execution"

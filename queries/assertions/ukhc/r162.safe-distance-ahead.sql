@@ -1,4 +1,5 @@
 -- title = "Safe distance ahead before overtaking"
+-- breach = "Too little clear road ahead to overtake"
 -- clause = "UKHC R162: before overtaking, make sure that the road is sufficiently clear ahead"
 -- hypothesis = "When the ego first left its lane, was the distance to the oncoming vehicle more than the whole manoeuvre needs?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Not cutting in after overtaking"
+-- breach = "Cut in after overtaking"
 -- clause = "UKHC R163: move back when you can, but do not cut in"
 -- hypothesis = "When the ego was wholly back in its lane, was its gap to the vehicle that it passed at least that vehicle's thinking distance?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Room for cyclists"
+-- breach = "Passed a cyclist too closely"
 -- clause = "UKHC R163: leave at least 1.5 m when passing cyclists at up to 30 mph, and more at higher speeds"
 -- hypothesis = "At every step at which the ego passed a cyclist on the road, was it far enough away?"
 -- kind = "invariant"

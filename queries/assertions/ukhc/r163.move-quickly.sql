@@ -1,4 +1,5 @@
 -- title = "Quickly past the vehicle being overtaken"
+-- breach = "Too slow past the vehicle being overtaken"
 -- clause = "UKHC R163: move quickly past the vehicle you are overtaking once you have started"
 -- hypothesis = "Was the ego back in its lane in at most one and a half times the time that the least aggressive profile takes?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Giving way to oncoming traffic when passing an obstruction"
+-- breach = "Did not give way to oncoming traffic when passing an obstruction"
 -- clause = "UKHC R163: give way to oncoming vehicles before you pass parked vehicles or other obstructions on your side of the road"
 -- hypothesis = "When the ego went into the opposing lane round a standing vehicle, did no oncoming vehicle come close, hit the ego, have to brake, or have to wait?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Slowly and wide past people walking in the road"
+-- breach = "Too fast or too close past people walking in the road"
 -- clause = "UKHC R163: leave at least 2 m and keep to a low speed when passing people walking in the road"
 -- hypothesis = "At every step at which the ego passed somebody walking along in the road, was it slow and far enough away?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "Not too close to the vehicle ahead when pulling out"
+-- breach = "Pulled out too close to the vehicle ahead"
 -- clause = "UKHC R163: do not get too close to the vehicle you intend to overtake"
 -- hypothesis = "When the ego first left its lane, was it further from the vehicle being passed than its stopping distance?"
 -- kind = "execution"

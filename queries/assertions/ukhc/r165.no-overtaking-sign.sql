@@ -1,4 +1,5 @@
 -- title = "No overtaking where a sign forbids it"
+-- breach = "Overtook where a sign forbids it"
 -- clause = "UKHC R165: you must not overtake after a no-overtaking sign, until the sign that cancels it"
 -- hypothesis = "When the ego pulled out to overtake a moving vehicle, and when it drew level with one that it passed, did no no-overtaking sign hold?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No overtaking shortly before a junction"
+-- breach = "Overtook shortly before a junction"
 -- clause = "UKHC R167: do not overtake where you might come into conflict with others, such as when approaching a junction"
 -- hypothesis = "When the ego pulled out into the opposing lane to overtake a moving vehicle, was the next junction far enough away?"
 -- kind = "execution"

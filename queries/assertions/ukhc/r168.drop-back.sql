@@ -1,4 +1,5 @@
 -- title = "Dropping back from a vehicle that moved in ahead"
+-- breach = "Did not drop back from a vehicle that moved in ahead"
 -- clause = "UKHC R168: drop back to keep a two-second gap if someone overtakes and pulls into the gap in front of you"
 -- hypothesis = "After another vehicle moved in ahead, was the two-second gap restored in time?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Steady while being overtaken"
+-- breach = "Unsteady while being overtaken"
 -- clause = "UKHC R168: if a driver is trying to overtake you, keep a steady course and speed, and slow down if need be to let them pass"
 -- hypothesis = "At every step at which a vehicle overtook it in the opposing lane, or came up to do so, did the ego neither accelerate, not even little by little, nor drift towards it?"
 -- kind = "invariant"

@@ -1,5 +1,6 @@
 -- # Draft: a deceleration on the major road may have another cause than the ego.
 -- title = "Safe gap when going from a stop sign"
+-- breach = "Went from a stop sign into too small a gap"
 -- clause = "UKHC R171: after stopping, wait for a safe gap in the traffic before moving off"
 -- hypothesis = "When the ego went from a stop sign before somebody on the other road, did it leave enough time and make nobody brake?"
 -- kind = "execution"

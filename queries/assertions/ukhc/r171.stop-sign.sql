@@ -1,4 +1,5 @@
 -- title = "Stop at a stop sign"
+-- breach = "Did not stop at a stop sign"
 -- clause = "UKHC R171: at a stop sign you must stop behind the line"
 -- hypothesis = "Did the ego come to a halt just before the stop line that it crossed?"
 -- kind = "precondition"

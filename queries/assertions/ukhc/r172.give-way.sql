@@ -1,5 +1,6 @@
 -- # Draft: a deceleration on the major road may have another cause than the ego.
 -- title = "Give way to the major road"
+-- breach = "Did not give way to the major road"
 -- clause = "UKHC R172: at a give-way line you must give way to traffic on the main road"
 -- hypothesis = "When the ego went from a give-way line before somebody on the other road, did it leave enough time and make nobody brake?"
 -- kind = "execution"

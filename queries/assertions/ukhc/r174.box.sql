@@ -1,5 +1,6 @@
 -- # Draft: maps do not say which junctions are boxes: every one in which three or more roads meet is taken for one.
 -- title = "Keep the box junction clear"
+-- breach = "Stood in the box junction"
 -- clause = "UKHC R174: you must not enter a box junction until your exit is clear, except to turn right when only oncoming traffic, or others waiting to turn right, hold you up"
 -- hypothesis = "Did the ego get through the junction without standing in it behind somebody?"
 -- kind = "postcondition"

@@ -1,5 +1,6 @@
 -- # Draft: whether pulling up might have caused a collision is more than a deceleration.
 -- title = "Stop at amber if there is room"
+-- breach = "Passed amber although there was room to stop"
 -- clause = "UKHC R175: at amber go on only if you have crossed the line or are so close to it that pulling up might cause a collision"
 -- hypothesis = "Where the ego crossed the stop line on amber, would stopping before it have needed harder braking than can be asked for?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Stop at a red light"
+-- breach = "Passed a red light"
 -- clause = "UKHC R175 and R176: you must stop behind the stop line unless the light is green, or amber and too late to stop"
 -- hypothesis = "Was the light neither red nor red with amber when the ego's front went over the stop line?"
 -- kind = "execution"

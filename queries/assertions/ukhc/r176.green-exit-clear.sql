@@ -1,4 +1,5 @@
 -- title = "Room to clear the junction on green"
+-- breach = "Entered the junction on green without room to clear it"
 -- clause = "UKHC R176: go forward on green only if there is room to clear the junction, or to take up a position to turn right"
 -- hypothesis = "After it had passed the light, did the ego get through the junction without standing in it behind somebody?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Do not cut the corner"
+-- breach = "Cut the corner"
 -- clause = "UKHC R180: do not cut the corner when turning right"
 -- hypothesis = "When the ego had turned across the oncoming traffic, was it wholly on its own side of the road that it entered?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Safe gap when turning across the oncoming traffic"
+-- breach = "Turned across the oncoming traffic in too small a gap"
 -- clause = "UKHC R180: before turning right wait for a safe gap between you and any oncoming vehicle"
 -- hypothesis = "When the ego turned across the oncoming traffic before somebody, did it leave enough time, also at the speed that the other had before it braked?"
 -- kind = "execution"

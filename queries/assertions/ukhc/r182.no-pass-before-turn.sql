@@ -1,4 +1,5 @@
 -- title = "No overtaking just before turning left"
+-- breach = "Overtook just before turning left"
 -- clause = "UKHC R182: do not overtake cyclists, motorcyclists or others immediately before turning left"
 -- hypothesis = "In the seconds before the ego turned to the near side, did it get ahead of nobody who was moving on that side?"
 -- kind = "precondition"

@@ -1,4 +1,5 @@
 -- title = "Close to the edge when turning to the near side"
+-- breach = "Far from the edge when turning to the near side"
 -- clause = "UKHC R183: when turning left keep as close to the left as is safe and practicable"
 -- hypothesis = "When the ego had turned to the near side, was there little room between it and the near edge of the lane that it entered?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No passing in the zig-zags before a crossing"
+-- breach = "Passed in the zig-zags before a crossing"
 -- clause = "UKHC R191 and R165: you must not overtake the moving motor vehicle nearest the crossing, or the one that has stopped there to give way to people on foot, in the area marked by zig-zag lines; a parked one may be passed"
 -- hypothesis = "When the ego went over a pedestrian crossing, had it passed no moving vehicle, and none that had stopped to give way, from the beginning of the zig-zags to the crossing?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No stopping on a crossing"
+-- breach = "Stopped on a crossing"
 -- clause = "UKHC R191 and R240: you must not stop or park on a pedestrian crossing; to stand for somebody in the way, or in a queue, is neither"
 -- hypothesis = "Did the ego get over the crossing without standing on it for long of its own accord?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Keep the crossing clear in a queue"
+-- breach = "Stood on the crossing in a queue"
 -- clause = "UKHC R192: in queuing traffic keep pedestrian crossings clear"
 -- hypothesis = "Did the ego get over the crossing without standing on it behind somebody?"
 -- kind = "postcondition"

@@ -1,4 +1,5 @@
 -- title = "Give way to people on a zebra crossing"
+-- breach = "Did not give way to people on a zebra crossing"
 -- clause = "UKHC R195: you must give way when a pedestrian has moved onto a zebra crossing; one with an island is two"
 -- hypothesis = "When the ego's front came onto the zebra crossing, was nobody on foot on that half of it?"
 -- kind = "execution"

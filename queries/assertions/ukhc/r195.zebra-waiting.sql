@@ -1,5 +1,6 @@
 -- # Draft: whether somebody who stands at the kerb wants to cross is a judgement.
 -- title = "Give way to people waiting at a zebra crossing"
+-- breach = "Did not give way to people waiting at a zebra crossing"
 -- clause = "UKHC R195: you should give way to pedestrians waiting to cross at a zebra crossing"
 -- hypothesis = "When the ego's front came onto the zebra crossing, had nobody been standing at its end?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Stop at a signalled crossing"
+-- breach = "Did not stop at a signalled crossing"
 -- clause = "UKHC R196 and R197: at a signalled crossing you must stop on red, and give way to people on it while amber flashes, to those from beyond an island too"
 -- hypothesis = "When the ego went onto the crossing, did the light allow it? And if amber flashed, or the light turned red after the ego had crossed the stop line, was nobody on the ego's half or about to come onto it?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Let people finish crossing on green"
+-- breach = "Did not let people finish crossing on green"
 -- clause = "UKHC R198: give way to anyone still crossing after the light for vehicles has turned green"
 -- hypothesis = "When the ego went onto the signalled crossing on green, was nobody on foot on its half, or about to come onto it?"
 -- kind = "execution"

@@ -1,5 +1,6 @@
 -- # Draft: which road is the lesser one is told by its stop or give-way sign alone; driveways are not in map tables.
 -- title = "Do not reverse out of a side road"
+-- breach = "Reversed out of a side road"
 -- clause = "UKHC R201: do not reverse from a side road into a main road"
 -- hypothesis = "When the ego reversed into a junction, did it come from a road without a stop or give-way sign there?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Slowly and wide past horses"
+-- breach = "Too fast or too close past a horse"
 -- clause = "UKHC R215 and R163: pass horses at under 10 mph and at least 2 m away"
 -- hypothesis = "At every step at which the ego passed a horse on the road, was it slow and far enough away?"
 -- kind = "invariant"

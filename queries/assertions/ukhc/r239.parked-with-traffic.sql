@@ -1,4 +1,5 @@
 -- title = "Park facing the way the traffic goes"
+-- breach = "Parked facing the traffic"
 -- clause = "UKHC R239: if you have to stop on the roadside, do not park facing against the traffic flow"
 -- hypothesis = "Where the ego stood for long on a lane, did it face the way that the lane is driven?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No stopping on a motorway"
+-- breach = "Stopped on a motorway"
 -- clause = "UKHC R240 and R271: you must not stop on the carriageway of a motorway, nor on a clearway, but in an emergency or when told to"
 -- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody in its way?"
 -- kind = "invariant"

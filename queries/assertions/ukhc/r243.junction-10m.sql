@@ -1,5 +1,6 @@
 -- # Draft: whether it is parking or waiting, and in an authorised place, is not in a trace.
 -- title = "No parking near a junction"
+-- breach = "Parked near a junction"
 -- clause = "UKHC R243: do not stop or park within 10 metres of a junction or opposite one, except in an authorised space or when stationary traffic forces you to"
 -- hypothesis = "Where the ego stood for long and not in a queue or at a stop line, was it clear of the next junction?"
 -- kind = "execution"

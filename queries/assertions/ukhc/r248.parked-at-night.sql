@@ -1,4 +1,5 @@
 -- title = "Park facing the way the traffic goes at night"
+-- breach = "Parked facing the traffic at night"
 -- clause = "UKHC R248: you must not park on a road at night against the traffic flow, except in a recognised parking space"
 -- hypothesis = "Where the ego stood for long on a lane at night, did it face the way that the lane is driven?"
 -- kind = "execution"

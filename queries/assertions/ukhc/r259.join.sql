@@ -1,4 +1,5 @@
 -- title = "Joining without forcing the traffic on the main carriageway"
+-- breach = "Forced the traffic on the main carriageway when joining"
 -- clause = "UKHC R259: give priority to traffic already on the motorway, match your speed to a safe gap"
 -- hypothesis = "When the ego moved from a slip road onto the main carriageway, was the vehicle behind there far enough away, and did it not have to brake hard?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "No reversing on a motorway"
+-- breach = "Reversed on a motorway"
 -- clause = "UKHC R263: you must not reverse along any part of a motorway, unless an officer directs you to"
 -- hypothesis = "At every step on a motorway, did the ego not move backwards?"
 -- kind = "invariant"

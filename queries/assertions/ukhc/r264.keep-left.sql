@@ -1,4 +1,5 @@
 -- title = "Back to the left after overtaking"
+-- breach = "Stayed out after overtaking"
 -- clause = "UKHC R264: keep in the left lane unless overtaking; move back to the left when you have passed and it is safe"
 -- hypothesis = "After passing a vehicle in the lane on its near side on a motorway, did the ego move back, or was that lane not free?"
 -- kind = "postcondition"

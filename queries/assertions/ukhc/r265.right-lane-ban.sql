@@ -1,4 +1,5 @@
 -- title = "No large or towing vehicle in the right-hand lane"
+-- breach = "Large or towing vehicle in the right-hand lane"
 -- clause = "UKHC R265: vehicles that tow, goods vehicles over 7.5 t, and lighter ones and buses with a speed limiter must not use the right-hand lane of a motorway of three or more lanes"
 -- hypothesis = "At every step with three or more lanes open in its direction, was such a vehicle outside the lane furthest from the edge?"
 -- kind = "invariant"

@@ -1,4 +1,5 @@
 -- title = "No overtaking on the left on motorways"
+-- breach = "Overtook on the left on a motorway"
 -- clause = "UKHC R268: do not overtake on the left or move to a lane on your left to overtake; in congestion you may pass slower traffic on your right"
 -- hypothesis = "When the ego's front got past another vehicle's on a motorway, was that vehicle not on the overtaking side, or was traffic slow?"
 -- kind = "execution"

@@ -1,4 +1,5 @@
 -- title = "Not on the hard shoulder"
+-- breach = "On the hard shoulder"
 -- clause = "UKHC R269: you must not drive on the hard shoulder of a motorway except in an emergency, where signs open it, or when told to"
 -- hypothesis = "At every step on a motorway without an emergency, was the ego's centre off the hard shoulder?"
 -- kind = "invariant"

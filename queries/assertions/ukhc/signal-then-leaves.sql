@@ -1,4 +1,5 @@
 -- title = "Exit taken after signalling to leave"
+-- breach = "Exit not taken after signalling to leave"
 -- clause = "UKHC R103: do not mislead others by your signals (physical postcondition of Harper et al. 2021)"
 -- hypothesis = "When the ego signalled towards an exit beside it, was it in the exit lane where the exit parts from the road?"
 -- kind = "postcondition"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from drivelint import demo, option_values, run
 from drivelint.api import options
 from drivelint.api.arguments import typed
+from drivelint.api.audit_result import AuditResult
 from drivelint.api.check_result import CheckResult
 from drivelint.api.compared import Comparison, diff
 from drivelint.api.explained import Explained
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 __all__ = [
+    "AuditResult",
     "CheckResult",
     "Comparison",
     "Explained",

@@ -14,6 +14,7 @@ from drivelint.api.keywords import errors_name_keywords, in_keywords
 from drivelint.api.notebook import one_line, summary_html
 from drivelint.api.options import ReportFormat, one_of, path
 from drivelint.api.tables import Table, TableSet
+from drivelint.api.timeline import Timeline, timeline
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
@@ -151,6 +152,14 @@ class CheckResult(TableSet):
         with TemporaryDirectory(prefix="drivelint-") as scratch:
             folder = self.folder or self.write(scratch)
             return Explained(explain(ExplainRequest(name, folder, wanted, path(trace), path(map))))
+
+    @typed
+    def timeline(self, finding: str) -> Timeline:
+        """Return what happened around a finding over time: gap, speeds, accelerations, and what its rule measured.
+
+        `finding`: its id or how it begins; or a rule, or rule@drive. `.plot()` shows it. Errors: `DriveLintError`.
+        """
+        return timeline(self._result, finding)
 
     def _queried(self) -> dict[str, Any]:
         queried = super()._queried()

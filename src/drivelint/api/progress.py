@@ -26,9 +26,9 @@ class NoteKeeper(Progress):
         """Report units done."""
         self._shown.advance(n)
 
-    def doing(self, what: str) -> None:
+    def doing(self, what: str, part: float = 0.0) -> None:
         """Say what is done."""
-        self._shown.doing(what)
+        self._shown.doing(what, part)
 
     def note(self, text: str) -> None:
         """Keep the note."""

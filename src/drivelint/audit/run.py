@@ -33,6 +33,7 @@ from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 from drivelint.errors import UsageError
 from drivelint.phrases import listed, plural
 from drivelint.result.files import parquet_bytes
+from drivelint.result.names import GATE_FILE
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -71,6 +72,8 @@ class AuditRequest(DriveInput):
     settings: JudgeSettings = field(default_factory=JudgeSettings)
     fail_on: str = "critical"
     strict: bool = False
+    min_judged: float | None = None
+    """The least share of rules that must be decided, see `result.model.decided_share`."""
     workers: int | None = None
     worker_memory: int | None = None
     drive_timeout_s: float | None = None
@@ -322,7 +325,8 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
     Return whether that audit had ended, and its files are as they were then. Errors: `UsageError` for an audit by other rules,
     parameters or versions, and for one whose files were changed since it ended.
     """
-    told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings), "fail_on": request.fail_on}
+    told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings)}
+    told |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
     was_whole = False
     if not results.create(AUDIT_FILE, content):
@@ -333,7 +337,9 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         was_whole = _is_whole(results, request.out)
         sealed.unseal(results)
-        results.delete([SUMMARY_FILE])  # it is not of what is there from now on
+        results.delete([SUMMARY_FILE, GATE_FILE])  # they are not of what is there from now on
+        if request.shard is None and not request.claim:
+            results.write(AUDIT_FILE, content)  # what gates may be another
     # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
     return was_whole

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +17,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.bucket import download, is_url, list_objects, look
 from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
+from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import TRACE_SUFFIXES, is_log_name, is_utf8
@@ -24,8 +25,6 @@ from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
-
-    from drivelint.drive.trace import DriveInput
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
 """Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=wet;light=night`), and options."""
@@ -59,6 +58,39 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
             if not is_utf8(str(path)):
                 raise UsageError(f"{path}: its name is not UTF-8, in which results name it: rename it")
             yield AuditDrive(str(path), options)
+
+
+def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
+    """Return the logs that `check` is to judge, those that manifests among `traces` name in their place, and the options of the latter.
+
+    A manifest is one Parquet or CSV file whose column `log` names a log: a table of states may have any columns. Errors: `UsageError` as
+    of `drives`, and for a log that two rows name with other options: a check has one result of each log.
+    """
+    plain = DriveInput(**{each.name: getattr(options, each.name) for each in fields(DriveInput)})
+    logs: list[str] = []
+    own: dict[Path, DriveInput] = {}
+    for trace in traces:
+        if not _names_logs(Path(trace)):
+            logs.append(trace)
+            continue
+        for drive in _of_manifest(Path(trace), trace, plain):
+            if own.setdefault(Path(drive.log), drive.options) != drive.options:
+                raise UsageError(
+                    f"{trace}: names {drive.log} twice, with other options: drivelint audit judges it by both"
+                )
+            logs.append(drive.log)
+    return tuple(logs), own
+
+
+def _names_logs(path: Path) -> bool:
+    if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
+        return False
+    try:
+        first = next(_rows(path), {})
+    except UsageError:
+        return False  # its reader says why it is no log either
+    name = first.get("log", "")
+    return bool(name) and (is_url(name) or _exists(path.parent / name))
 
 
 def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
@@ -194,11 +226,11 @@ def _rows(path: Path) -> Iterator[dict[str, str]]:
     """Yield the rows of a manifest as text, empty for what is not there."""
     try:
         if path.suffix.lower() == ".parquet":
-            with pq.ParquetFile(path) as file:
+            with path.open("rb") as opened, pq.ParquetFile(opened) as file:
                 for batch in file.iter_batches(_ROWS):
                     yield from _as_text(batch.to_pylist())
         else:
-            with pa_csv.open_csv(path) as reader:
+            with path.open("rb") as opened, pa_csv.open_csv(opened) as reader:
                 for batch in reader:
                     yield from _as_text(batch.to_pylist())
     except (OSError, ValueError) as error:

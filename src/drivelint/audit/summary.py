@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
 from drivelint.fleet.counted import COUNTED, create_counted_views
+from drivelint.reasons.signals import UNRECORDED
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
@@ -25,6 +26,7 @@ MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 MOST_COPIES: Final = 3
 MOST_LOGS: Final = 3
+_UNDECIDED: Final = "nothing failed, as nothing could be decided"
 
 
 @dataclass
@@ -73,6 +75,8 @@ class AuditSummary:
     lossy_logs: list[str] = field(default_factory=list)
     off_map_logs: list[str] = field(default_factory=list)
     """The first lossy logs, and of those that are off their map; logs of one content are one."""
+    undecided: str | None = None
+    """Why nothing at all could be decided; None: something was."""
     n_broken: int = 0
     n_unknown_for: int = 0
     """How many rules were broken, and how many reasons for unknown verdicts there are."""
@@ -126,6 +130,7 @@ class AuditSummary:
             or self.beyond_limits
             or self.off_map
             or self.missing_parts
+            or self.undecided
             or nothing
             or (strict and self.unknown)
         ):
@@ -162,6 +167,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
     )
+    (is_undecided,) = con.execute(statement("audit/undecided"), {"unrecorded": UNRECORDED}).fetchall()[0]
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
     return replace(
@@ -181,6 +187,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         broken=broken.slice(0, MOST_RULES).to_pylist(),
         unknown_for=unknown_for.slice(0, MOST_REASONS).to_pylist(),
         not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
+        undecided=_UNDECIDED if is_undecided else None,
         n_broken=broken.num_rows,
         n_unknown_for=unknown_for.num_rows,
         lossy_logs=logs_that_are(con, "lossy").logs,

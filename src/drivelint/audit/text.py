@@ -8,18 +8,18 @@ from drivelint.phrases import one_line, plural
 from drivelint.result.counts import SEVERITIES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from drivelint.audit.summary import AuditSummary
     from drivelint.errors import ExitCode
 
 
-def summary_text(counted: AuditSummary, out: str, code: ExitCode) -> str:
-    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, and what to do next."""
-    return "\n".join(map(one_line, _lines(counted, out, code)))
+def summary_text(counted: AuditSummary, out: str, code: ExitCode, gate: Iterable[str] = ()) -> str:
+    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, the gate, and what to do next."""
+    return "\n".join(map(one_line, _lines(counted, out, code, gate)))
 
 
-def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
+def _lines(counted: AuditSummary, out: str, code: ExitCode, gate: Iterable[str]) -> Iterator[str]:
     n_refused = counted.refused - counted.copies_not_judged
     n_drives = counted.n_drives - counted.copies - counted.copies_not_judged
     yield f"{plural(n_drives, 'drive')} of {counted.hours:,.2f} h; their egos drove {counted.km:,.2f} km"
@@ -53,6 +53,8 @@ def _lines(counted: AuditSummary, out: str, code: ExitCode) -> Iterator[str]:
     yield from _broken(counted, out)
     yield from _unknown(counted, out)
     yield from _not_judged(counted, out)
+    yield from [counted.undecided] if counted.undecided else []
+    yield from gate
     yield f"exit {int(code)}    rows {(counted.digest or '')[:12]} (the same for the same results, see summary.json)"
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import os
 import re
+from contextlib import suppress
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.scene import case_database
 from drivelint.catalogue import read_rule
+from drivelint.catalogue.check import complained_line, complaint
 from drivelint.catalogue.load import rule_files, rule_id_of
 from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME
 from drivelint.errors import ExitCode, RuleError, UsageError
@@ -25,10 +27,14 @@ from drivelint.resources import folder
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
+    from threading import Event
 
     from drivelint.catalogue import Rule
 
     Say = Callable[[str], None]
+
+_LOOK_S: Final = 0.5
+"""So often `watch` looks for changes."""
 
 
 def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
@@ -83,6 +89,35 @@ def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     return code
 
 
+def watch(
+    test: Callable[[Path | None, Sequence[str], Say], ExitCode],
+    root: Path | None,
+    only: Sequence[str],
+    say: Say,
+    over: Event,
+) -> ExitCode:
+    """Test the rules, and then, until `over` is set, each whose file or cases were changed; return what the last test came to."""
+    code, before = test(root, only, say), _stamps(root)
+    say("waiting for changes; Ctrl-C ends")
+    while not over.wait(_LOOK_S):
+        now = _stamps(root)
+        changed = {_rule_file(file) for file, _ in now.items() ^ before.items()}
+        before = now
+        for file in sorted(file for file in changed if file.is_file() and _is_chosen(file, only)):
+            code = test(file, (), say)
+    return code
+
+
+def _stamps(root: Path | None) -> dict[Path, int]:
+    """Return the files of rules and cases, and when each was changed; one that is being replaced has none."""
+    found = {}
+    for file in _files(root):
+        for each in (file, file.with_suffix(".cases.yml")):
+            with suppress(OSError):
+                found[each] = each.stat().st_mtime_ns
+    return found
+
+
 def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
     """Judge each rule's mutants by its cases and `say` which mutants no case noticed, and the counts.
 
@@ -112,13 +147,8 @@ def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]
 
     `root` may be the file of one rule, or of its cases. Errors: `UsageError` where nothing is selected.
     """
-    if root is not None and root.is_file():
-        found = [root.with_name(root.name.removesuffix(".cases.yml").removesuffix(".sql") + ".sql")]
-        if not found[0].is_file():
-            raise UsageError(f"{root}: no rule, nor the cases of one: give PACK/NAME.sql, or a folder of packs")
-    else:
-        found = rule_files(root or folder("queries") / "assertions")
-    chosen = [file for file in found if not only or any(fnmatchcase(rule_id_of(file), name) for name in only)]
+    found = _files(root)
+    chosen = [file for file in found if _is_chosen(file, only)]
     if not chosen:
         raise UsageError(f"--rules {', '.join(only)}: none of the {len(found)} rules here has such an id")
     for file in chosen:
@@ -131,12 +161,31 @@ def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]
             yield rule
 
 
+def _files(root: Path | None) -> Sequence[Path]:
+    """Return the rules of a folder, or the one whose file, or cases, this is. Errors: `UsageError` for another file."""
+    if root is None or not root.is_file():
+        return rule_files(root or folder("queries") / "assertions")
+    if not _rule_file(root).is_file():
+        raise UsageError(f"{root}: no rule, nor the cases of one: give PACK/NAME.sql, or a folder of packs")
+    return [_rule_file(root)]
+
+
+def _rule_file(file: Path) -> Path:
+    """Return the file of the rule that a file is, or has the cases of."""
+    return file.with_name(file.name.removesuffix(".cases.yml").removesuffix(".sql") + ".sql")
+
+
+def _is_chosen(file: Path, only: Sequence[str]) -> bool:
+    return not only or any(fnmatchcase(rule_id_of(file), name) for name in only)
+
+
 def _check_plans(rule: Rule) -> None:
     """Refuse a rule whose SQL does not fit the tables, or that compares every row with every other."""
     try:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:
-        raise RuleError(f"{rule.path}:1: {str(error).splitlines()[0]}") from error
+        line = complained_line(error, rule.path.read_text(encoding="utf-8"))
+        raise RuleError(f"{rule.path}:{line or 1}: {complaint(error)}") from error
     for plan in plans:
         _, found, below = plan.partition("BLOCKWISE_NL_JOIN")
         tables = " and ".join(name for name in rule.reads if re.search(rf"\.{name}\b", below)) or "two tables"

@@ -7,8 +7,9 @@ says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import duckdb
 
@@ -18,7 +19,10 @@ from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
-__all__ = ["ENGINE_TABLES", "Query", "check_query"]
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+__all__ = ["ENGINE_TABLES", "Query", "check_query", "complained_line", "complaint", "noted", "refuse"]
 
 Node = dict[str, Any]
 
@@ -69,6 +73,38 @@ class _Text(NamedTuple):
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
+@contextmanager
+def noted(problems: list[str]) -> Iterator[None]:
+    """Add the refusal inside the block to the problems, so that an author is told of all."""
+    try:
+        yield
+    except RuleError as error:
+        problems.append(str(error))
+
+
+def refuse(problems: Sequence[str]) -> None:
+    """Refuse a rule for all problems of its file, a line each. Errors: `RuleError`, where there are any."""
+    if problems:
+        raise RuleError("\n".join(dict.fromkeys(problems)))
+
+
+def complaint(error: duckdb.Error) -> str:
+    """Return what DuckDB complains about in one line, with the names that it takes for meant, without the part of the SQL."""
+    said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
+    return " ".join(said.split())
+
+
+def complained_line(error: duckdb.Error, text: str) -> int | None:
+    """Return the line of a file in which the part of the SQL stands that DuckDB shows; None: in no line, or in several.
+
+    The statement that failed may be composed of parts of the file, so that its own number of the line says nothing.
+    """
+    shown = re.search(r"^LINE \d+: (.*)$", str(error), re.MULTILINE)
+    part = shown[1].strip().removeprefix("...").removesuffix("...").strip() if shown else ""
+    found = [n for n, line in enumerate(text.splitlines(), 1) if part and part in line]
+    return found[0] if len(found) == 1 else None
+
+
 @lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
 def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
@@ -81,6 +117,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     found = _Found(text)
     for part, ctes in walk(node):
         found.meet(part, ctes)
+    refuse(found.refusals)
     parameters = frozenset(statement.named_parameters)
     places = found.tables | {f"${name}": text.at(_parameter(text.sql, name)) for name in parameters}
     try:
@@ -110,7 +147,7 @@ def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
             raise RuleError(f"{text.at(0)}: a section is exactly one SELECT, and this is none")
         tree = syntax_tree(text.sql)
     except duckdb.Error as error:
-        raise RuleError(f"{text.of(error)}: {str(error).splitlines()[0]}") from error
+        raise RuleError(f"{text.of(error)}: {complaint(error)}") from error
     except RecursionError as error:
         raise RuleError(f"{text.at(0)}: {_DEEP}") from error
     if tree.get("error") or len(tree["statements"]) != 1:
@@ -125,10 +162,11 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _Found:
-    """Refuses what is not allowed in a syntax tree, and keeps the tables read (name -> file:line), the columns and the reasons."""
+    """Keeps what is not allowed in a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
+        self.refusals: list[str] = []
         self.tables: dict[str, str] = {}
         self.reasons: list[GivenReason] = []
         self.column_names: set[str] = set()
@@ -195,6 +233,7 @@ class _Found:
             near = hint(whole, allowed.tables())
             known = near if near.startswith("did") else "they read the tables of schemas/*.sql only"
             self._refuse(part, f"there is no table {whole!r} for rules; {known}")
+            return
         self.tables.setdefault(name, self._text.at(part["query_location"]))
 
     def _cte(self, entry: Node) -> None:
@@ -204,7 +243,7 @@ class _Found:
             self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
 
     def _refuse(self, part: Node, message: str) -> None:
-        raise RuleError(f"{self._text.at(offset_of(part))}: {message}")
+        self.refusals.append(f"{self._text.at(offset_of(part))}: {message}")
 
 
 def _is_ordered(part: Node) -> bool:

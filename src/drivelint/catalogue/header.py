@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from itertools import chain
 from math import inf
 from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_type_hints
 
@@ -78,6 +77,9 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """What a rule says about itself, field by field as in the design."""
 
     title: str
+    """What is so where the rule is kept."""
+    breach: str | None = None
+    """What happened where it is not, as the title of its findings; None: they are told as "Not kept" and the title."""
     clause: str
     hypothesis: str
     kind: Kind
@@ -140,9 +142,8 @@ def parse_header(text: str, where: str) -> Header:
         header = msgspec.convert(raw, Header)
     except msgspec.ValidationError as error:
         raise _explained(error, text, where) from error
-    if problem := next(chain(_kind_problems(header), _word_problems(header), _number_problems(header)), None):
-        key, message = problem
-        raise RuleError(f"{where}:{line_of(text, key)}: {message}")
+    if problems := [*_kind_problems(header), *_word_problems(header), *_number_problems(header)]:
+        raise RuleError("\n".join(f"{where}:{line_of(text, key)}: {message}" for key, message in problems))
     return header
 
 

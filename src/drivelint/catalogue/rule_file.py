@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query
+from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query, noted, refuse
 from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.rule_words import check_words
@@ -18,6 +18,7 @@ from drivelint.reasons.reason_text import shared_texts
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
@@ -58,16 +59,25 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
         line = text.count("\n", 0, hidden.start()) + 1
         raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: take it out")
     toml, sections = split_sections(text, str(file))
-    header = parse_header(toml, str(file))
+    problems: list[str] = []
+    with noted(problems):
+        header = parse_header(toml, str(file))
+    queries: dict[str, Query] = {}
+    for name, section in sections.items():
+        with noted(problems):
+            queries[name] = check_query(section.sql, str(file), section.sql_line)
+    refuse(problems)
     if header.reference is not None:
-        sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
-    queries = {name: check_query(section.sql, str(file), section.sql_line) for name, section in sections.items()}
-    _check_sections(header, sections, queries, file)
-    _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
-    _check_params(header, queries, file, toml)
-    _check_reasons(header, queries, file, toml)
+        event = sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
+        queries["reference"] = check_query(event.sql, str(file), event.sql_line)
+    problems += _check_sections(header, sections, queries, file)
+    problems += _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
+    problems += _check_params(header, queries, file, toml)
+    problems += _check_reasons(header, queries, file, toml)
     if with_words:
-        _check_words(header, sections, file, toml)
+        with noted(problems):
+            _check_words(header, sections, file, toml)
+    refuse(problems)
     return Rule(
         **msgspec.structs.asdict(header),
         id=f"{pack}.{file.stem}",
@@ -154,16 +164,18 @@ def _event_table(table: str, sections: dict[str, Section], file: Path, line: int
     return Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)
 
 
-def _check_sections(header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path) -> None:
+def _check_sections(
+    header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path
+) -> Iterator[str]:
     """Check which sections stand here, and the columns of each."""
     wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
     for name, needed in wanted.items():
         if needed != (name in sections):
             line = sections[name].line if name in sections else 1
             what = " ".join(word for word in (header.subtype, header.kind) if word)
-            raise RuleError(f"{file}:{line}: {what}: {'needs a' if needed else 'has no'} section @{name}")
+            yield (f"{file}:{line}: {what}: {'needs a' if needed else 'has no'} section @{name}")
     if "applies" in sections and header.kind != "invariant":
-        raise RuleError(
+        yield (
             f"{file}:{sections['applies'].line}: @applies is for invariants; "
             "return a column 'applies' from the condition instead"
         )
@@ -176,69 +188,64 @@ def _check_sections(header: Header, sections: dict[str, Section], queries: dict[
     for name, query in queries.items():
         where = f"{file}:{sections[name].line}: @{name}"
         if name != "reference":
-            _check_columns(query.columns, *contracts[name], where)
+            yield from _check_columns(query.columns, *contracts[name], where)
         elif query.columns is not None and ("ref_id" in query.columns or not set(_KEYS) <= set(query.columns)):
-            raise RuleError(f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-    _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
+            yield (f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
+    yield from _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
 
 
 def _check_columns(
     columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str
-) -> None:
+) -> Iterator[str]:
     if columns is None:
-        raise RuleError(f"{where} must name every column it returns: no star, and AS for every expression")
+        yield (f"{where} must name every column it returns: no star, and AS for every expression")
+        return
     if len(set(columns)) != len(columns):
-        raise RuleError(f"{where} returns a column twice: {', '.join(columns)}")
+        yield (f"{where} returns a column twice: {', '.join(columns)}")
     if missing := [c for c in needed if c not in columns]:
-        raise RuleError(f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
+        yield (f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
     if stray := [c for c in columns if c not in allowed]:
-        raise RuleError(f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
+        yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
 
 
-def _check_condition(header: Header, query: Query, where: str) -> None:
+def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:
     """Check the condition against the header: its sense, its reference, its objects."""
     columns = query.columns or ()
     wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
     if found := sorted(wrong & set(columns)):
-        raise RuleError(f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
+        yield (f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
     if ("ref_id" in columns) != bool(ENGINE_TABLES & query.tables):
-        raise RuleError(
-            f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does"
-        )
+        yield (f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does")
     if header.combine != "each" and "object_id" not in columns:
-        raise RuleError(f"{where}: combine = {header.combine!r} needs the column object_id")
+        yield (f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
-def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> None:
+def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> Iterator[str]:
     """Check that the header's `reads`, which stands at file:line `reads`, is what the SQL reads."""
     given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
-            raise RuleError(
-                f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}"
-            )
+            yield (f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}")
     said = frozenset(header.reads)
     for query in queries.values():
         if undeclared := sorted(query.tables - ENGINE_TABLES - said):
-            raise RuleError(
-                f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads"
-            )
+            yield (f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads")
     if idle := sorted(said.difference(*(query.tables for query in queries.values()))):
-        raise RuleError(f"{reads}: reads does not match the SQL: remove {', '.join(idle)}")
+        yield (f"{reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
-def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
+def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
     for query in queries.values():
         if strange := sorted(query.parameters - header.params.keys()):
             name = strange[0]
-            raise RuleError(
+            yield (
                 f"{query.places[f'${name}']}: ${name} is not a parameter of this rule; "
                 f"add [params.{name}] to the header, with default, unit, why and source"
             )
     used = frozenset[str]().union(*(query.parameters for query in queries.values()))
     used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
     if unused := sorted(header.params.keys() - used):
-        raise RuleError(
+        yield (
             f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
         )
 
@@ -253,21 +260,16 @@ def _check_words(header: Header, sections: dict[str, Section], file: Path, toml:
     check_words({name: section.sql for name, section in sections.items()}, header.params, place)
 
 
-def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> None:
+def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
     """Check that every code that the SQL gives has words, and that these have their arguments."""
     known = {**shared_texts(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]
     for code, arguments, place in given:
         if code not in known:
-            raise RuleError(
-                f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}"
-            )
+            yield (f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}")
+            continue
         if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
-            raise RuleError(
-                f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})"
-            )
+            yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
     if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
         line = line_of(toml, f"reasons.{unused[0]}")
-        raise RuleError(
-            f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it"
-        )
+        yield (f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it")

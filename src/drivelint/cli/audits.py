@@ -12,8 +12,9 @@ from drivelint.cli import options, packs
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
-from drivelint.errors import DriveLintError
+from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import inert, inert_line, plural
+from drivelint.settings import find_settings
 
 Delta = Annotated[
     str | None,
@@ -46,6 +47,13 @@ def audit(
     ] = False,
     fail_on: options.FailOnOption = "critical",
     strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
+    min_judged: options.MinJudged = None,
+    baseline: Annotated[
+        Path | None,
+        option("--baseline", "DEST", "An earlier audit or result: its findings are known, only new ones gate."),
+    ] = None,
+    waivers: options.Waivers = None,
+    today: options.Today = None,
     workers: Annotated[
         int | None, option("--workers", "N", "Processes that judge. Default: one per core.", min=1)
     ] = None,
@@ -103,7 +111,18 @@ def audit(
     from drivelint.audit import AuditRequest, JudgeSettings
     from drivelint.audit import audit as audited
     from drivelint.audit.text import summary_text
+    from drivelint.fleet_report import gated
+    from drivelint.gate import GateInputs
 
+    in_parts = shard is not None or claim
+    if in_parts and not (baseline is None and waivers is None and min_judged is None):
+        raise UsageError(
+            "--baseline, --waivers and --min-judged are of a whole audit: when all parts have ended, give it without parts"
+        )
+    gate = None
+    if not in_parts:
+        day, file = option_values.parse_today(today), find_settings()
+        gate = GateInputs.from_files(baseline, waivers, file, day, Path(out), load=gated.load)
     request = AuditRequest(
         sources=tuple(sources),
         **drive,
@@ -119,6 +138,7 @@ def audit(
         ),
         fail_on=fail_on,
         strict=strict,
+        min_judged=min_judged,
         workers=workers,
         worker_memory=None if worker_memory is None else option_values.parse_memory(worker_memory),
         drive_timeout_s=drive_timeout,
@@ -137,8 +157,11 @@ def audit(
         except KeyboardInterrupt:
             typer.echo(f"drivelint: {_kept(out)}", err=True)
             raise
-    code = counted.exit_code(fail_on, strict=strict)
-    typer.echo(inert(summary_text(counted, out, code)))
+    code, told = counted.exit_code(fail_on, strict=strict), list[str]()
+    if gate is not None or min_judged is not None:
+        result = gated.apply_gate(out, gate)
+        code, told = gated.exit_code(result, counted), list(gated.lines(result))
+    typer.echo(inert(summary_text(counted, out, code, told)))
     if pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(code))

@@ -14,6 +14,7 @@ from drivelint.cli.console import progress as bar
 from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
+from drivelint.errors import UsageError
 from drivelint.phrases import inert_json, inert_line
 from drivelint.settings import find_settings
 
@@ -29,7 +30,9 @@ if TYPE_CHECKING:
 @options.takes_drive_input
 def check(
     *,
-    traces: Annotated[list[str], argument("TRACE", "Recorded drives: files, globs or folders.")],
+    traces: Annotated[
+        list[str], argument("TRACE", "Recorded drives: files, globs, folders, or a manifest of them, as in audit.")
+    ],
     drive: options.DriveInputValues,
     out: Annotated[
         Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
@@ -58,16 +61,7 @@ def check(
             autocompletion=completion.rule_ids,
         ),
     ] = None,
-    min_judged: Annotated[
-        float | None,
-        option(
-            "--min-judged",
-            "SHARE",
-            "Of the rules that may apply, at least this share must be decided, such as 0.5: else exit code 4.",
-            min=0.0,
-            max=1.0,
-        ),
-    ] = None,
+    min_judged: options.MinJudged = None,
     format_: options.FormatOption = "text",
     margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
     keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
@@ -193,7 +187,6 @@ def check(
     )
     interruption = Interruption()
     with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
-        settings = replace(settings, out=work)
         deaf = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
@@ -207,6 +200,7 @@ def check(
 
         try:
             with receipts.recording():
+                settings = _with_manifests(replace(settings, out=work), packed=pack is not None)
                 gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
                     lambda: _judge(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=kept),
@@ -236,6 +230,18 @@ def _settings_file(*, quiet: bool) -> Path | None:
     if file is not None and not quiet:
         streams.say(f"drivelint: settings: {inert_line(str(file))}")
     return file
+
+
+def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
+    """Return the settings with the logs that manifests name in place of these. Errors: `UsageError`."""
+    if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
+        return settings
+    from drivelint.audit.sources import with_manifests
+
+    logs, own = with_manifests(settings.traces, settings)
+    if own and packed:
+        raise UsageError("--evidence: a pack has one set of options for all logs: audit the manifest, and pack that")
+    return replace(settings, traces=logs, own=own)
 
 
 def _judge(

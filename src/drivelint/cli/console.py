@@ -74,11 +74,11 @@ def say_kept(statuses: Sequence[str], out: Path | None) -> None:
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
     """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
-    from drivelint.report.progress import NotePrinter, Silent, bar
+    from drivelint.report.progress import Silent, bar, notes
 
     if quiet:
         return nullcontext(Silent())
-    return bar() if sys.stderr.isatty() else nullcontext(NotePrinter())
+    return bar() if sys.stderr.isatty() else notes()
 
 
 def _inert_console() -> type[Console]:

@@ -12,7 +12,7 @@ from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations u
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line
+from drivelint.phrases import inert, inert_json, inert_line, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,12 +22,22 @@ if TYPE_CHECKING:
 
 def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
     """Write the fleet page of an audit into it, and print its name."""
-    from drivelint.fleet_report import page
+    from drivelint.fleet_report import gated, page
     from drivelint.fleet_report.drive_pages import MOST_DRIVES
     from drivelint.fleet_report.opened import destination
 
-    if to not in page.FORMATS:
-        raise UsageError(f"--to {to}: of an audit there is {' and '.join(page.FORMATS)}: other formats are of a check")
+    if to not in (*page.FORMATS, *gated.FORMATS):
+        known = listed([*page.FORMATS, *gated.FORMATS])
+        raise UsageError(f"--to {to}: of an audit there are {known}: other formats are of a check")
+    if to in gated.FORMATS:
+        if by or baseline is not None or drive_pages is not None:
+            raise UsageError(
+                f"--by, --baseline and --drive-pages are of pages: {to} has the gate of the last drivelint audit"
+            )
+        name, audit = run_interruptible(lambda: gated.write_report(dest, to))
+        _warn(audit)
+        typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
+        return
     if drive_pages is not None and to != "html":
         raise UsageError("--drive-pages is for --to html: the other formats are one file")
     most = MOST_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)

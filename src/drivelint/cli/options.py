@@ -59,6 +59,16 @@ Baseline = Annotated[
 Waivers = Annotated[
     Path | None, option("--waivers", "FILE", "TOML of findings that an owner accepts until a day: shown, fail no run.")
 ]
+MinJudged = Annotated[
+    float | None,
+    option(
+        "--min-judged",
+        "SHARE",
+        "Of the rules that may apply, at least this share must be decided, such as 0.5: else exit code 4.",
+        min=0.0,
+        max=1.0,
+    ),
+]
 Today = Annotated[
     str | None, option("--today", "DATE", "The day that waivers are held against. Default: the system's.")
 ]

@@ -35,7 +35,8 @@ def report(
         option(
             "--incident",
             "FINDING",
-            "Two A4 pages about one finding, instead: incidents/ID.html. Its id, or RULE or RULE@DRIVE, as in explain.",
+            "Two A4 pages about one finding, instead: incidents/ID.html. Its id, or RULE or RULE@DRIVE, as in explain; "
+            "or contact: the worst contact.",
         ),
     ] = None,
     pdf: Annotated[
@@ -134,8 +135,8 @@ def diff(
     Of two audits it also says what else differs (software, rules, parameters, data, map, tool), and which rates do.
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error; 4 there is none so far, but
-    findings of BASE are unknown or not looked at in NEW, a run has not ended, or two audits have no drive in common (and --fail-on is
-    not given).
+    findings of BASE are unknown or not looked at in NEW, or a run has not ended. Of two audits without a common drive, and without
+    --fail-on: 1 where the rate of such a rule is higher than chance explains, 0 where none is, 4 where no rule has a rate in both.
     """
     from drivelint.fleet_report.opened import destination, is_audit
     from drivelint.gate import compare_results, descriptions

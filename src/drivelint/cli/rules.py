@@ -111,6 +111,9 @@ def run_tests(
     mutate: Annotated[
         bool, option("--mutate", None, "Break each rule in many ways, and ask whether some case notices.")
     ] = False,
+    watch: Annotated[
+        bool, option("--watch", None, "Then test each rule again when its file or its cases are saved, until Ctrl-C.")
+    ] = False,
 ) -> None:
     """Run the test cases beside the rules.
 
@@ -120,6 +123,8 @@ def run_tests(
     Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
     or its cases cannot be used.
     """
+    from threading import Event
+
     from drivelint.casefile import commands
 
     test = commands.mutation_test if mutate else commands.case_test
@@ -131,7 +136,12 @@ def run_tests(
             typer.echo(inert(text), file=out)
             shown.advance()
 
-        raise typer.Exit(int(run_interruptible(lambda: test(folder, tuple(only or ()), say))))
+        over, names = Event(), tuple(only or ())
+        if watch:
+            code = run_interruptible(lambda: commands.watch(test, folder, names, say, over), over.set)
+        else:
+            code = run_interruptible(lambda: test(folder, names, say))
+        raise typer.Exit(int(code))
 
 
 @app.command("scene")

@@ -64,8 +64,8 @@ def explain(request: ExplainRequest) -> Explanation:
     Errors: `UsageError` for a finding, rule, folder or log that is not there.
     """
     result = load_result(request.folder)
-    asked = run_request.load(request.folder)
     target = find_verdict(result, request.name, request.wanted)
+    asked = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
     case = _case(asked, target, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])

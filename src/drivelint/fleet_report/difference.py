@@ -121,6 +121,8 @@ class AuditDifference:
     no_more_judged: list[NoMoreJudged]
     opened: list[Opened]
     rates: list[RateChange]
+    gating_rules: dict[str, str]
+    """Stable rule of the newer audit -> its severity."""
 
     @property
     def headline(self) -> str:
@@ -143,6 +145,20 @@ class AuditDifference:
     def n_gone(self, fail_on: str) -> int:
         """Return how many such findings of the base are gone but not fixed."""
         return _at_or_above(self.gone, fail_on)
+
+    def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
+        """Return the tests by which a rate of a stable rule at or above a severity is higher than chance explains."""
+        severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
+        return [
+            (change, test)
+            for change, test in self.tested
+            if test.is_called and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
+        ]
+
+    @property
+    def has_rates(self) -> bool:
+        """Whether a rule has a rate in both audits, so that they can be compared at all."""
+        return any(each.p_value is not None or each.occasion_p_value is not None for each in self.rates)
 
     @property
     def called(self) -> list[RateChange]:
@@ -198,6 +214,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: in
         no_more_judged=[NoMoreJudged(**row) for row in rows(con, "no_more_judged", None, **sides)],
         opened=[Opened(**row) for row in rows(con, "opened", None, **sides)],
         rates=compare_rates(con, base=BASE, new=""),
+        gating_rules=dict(con.execute("SELECT rule_id, severity FROM rules WHERE status = 'stable'").fetchall()),
     )
 
 

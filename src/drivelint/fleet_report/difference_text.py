@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 AUDIT_DIFF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
+_MOST_RISEN: Final = 3
 JSON_ENTRIES: Final = 1_000
 """Findings of each standing that the JSON has."""
 
@@ -36,16 +37,26 @@ def rate_name(of: RateChange | RuleCoverage) -> str:
 
 def least_severity(found: AuditDifference, asked: str | None) -> str | None:
     """Return the severity that gates: what was asked, else the audit's own; None where no finding can be matched and nothing was asked."""
-    return asked or (None if found.is_disjoint else str(found.new.told.get("fail_on", "critical")))
+    return asked or (None if found.is_disjoint else _own_severity(found))
 
 
 def exit_code(found: AuditDifference, fail_on: str | None) -> ExitCode:
-    """FAILED for new findings that gate; NOT_JUDGED where more may come, or findings are gone but not fixed, or none can be matched."""
+    """FAILED for new findings that gate; NOT_JUDGED where more may come, or findings are gone but not fixed, or nothing can be compared.
+
+    `fail_on` None: of two audits without a common drive, rates that are higher than chance explains gate in the place of findings.
+    """
     if fail_on is None:
-        return ExitCode.NOT_JUDGED
+        if found.risen(_own_severity(found)):
+            return ExitCode.FAILED
+        return ExitCode.OK if found.has_rates and not _warnings(found) else ExitCode.NOT_JUDGED
     if found.n_failing(fail_on):
         return ExitCode.FAILED
     return ExitCode.NOT_JUDGED if found.n_gone(fail_on) or _warnings(found) else ExitCode.OK
+
+
+def _own_severity(found: AuditDifference) -> str:
+    """Return the severity by which the newer audit gates."""
+    return str(found.new.told.get("fail_on", "critical"))
 
 
 def _warnings(found: AuditDifference) -> list[str]:
@@ -61,12 +72,39 @@ def _exit(found: AuditDifference, fail_on: str | None) -> str:
 
 def _code_and_reason(found: AuditDifference, fail_on: str | None) -> str:
     if fail_on is None:
-        return f"exit 4: {NOTHING_IN_COMMON}; --fail-on SEVERITY gates on all of the newer audit"
+        return f"exit {int(exit_code(found, None))}: {_rates_sentence(found)}; --fail-on SEVERITY gates on all of the newer audit"
     if exit_code(found, fail_on) == ExitCode.NOT_JUDGED and _warnings(found):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(found)[0]}"
     n = found.n_gone(fail_on)
     return exit_sentence(
         found.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
+    )
+
+
+def _rates_sentence(found: AuditDifference) -> str:
+    """Return what the rates of two audits without a common drive come to."""
+    least = _own_severity(found)
+    if risen := found.risen(least):
+        told = ", ".join(f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN])
+        more = f" and {len(risen) - _MOST_RISEN} more" if len(risen) > _MOST_RISEN else ""
+        return f"rates at or above severity {least} are higher than chance explains: {told}{more}"
+    if warnings := _warnings(found):
+        return f"no rate at or above severity {least} is higher than chance explains so far, but {warnings[0]}"
+    if not found.has_rates:
+        return f"{NOTHING_IN_COMMON}, and no rule has a rate in both"
+    return f"no rate at or above severity {least} is higher than chance explains ({NOTHING_IN_COMMON})"
+
+
+def since(found: AuditDifference) -> str:
+    """Return what changed since the base, in one sentence for a headline."""
+    if not found.is_disjoint:
+        return found.headline
+    called = [f"{rate_name(change)} per {test.per} {times(test)}" for change, test in found.tested if test.is_called]
+    if not called:
+        return "no drive is in both, and no rate differs by more than chance explains"
+    more = f" and {len(called) - _MOST_RISEN} more" if len(called) > _MOST_RISEN else ""
+    return (
+        f"no drive is in both; rates that differ by more than chance explains: {', '.join(called[:_MOST_RISEN])}{more}"
     )
 
 

@@ -11,7 +11,7 @@ from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
 from drivelint.fleet_report import drive_pages, figures, page_files
 from drivelint.fleet_report.content import FleetContent, content
-from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, times
+from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, since, times
 from drivelint.fleet_report.drive_pages import MOST_DRIVES
 from drivelint.fleet_report.opened import opened
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
@@ -129,6 +129,7 @@ _FILTERS: Final[dict[str, Any]] = {
     "rate_name": rate_name,
     "rate_sides": rate_sides,
     "rate_line": rate_line,
+    "since": since,
     "times": times,
     "beside": _beside,
     "provide": _provide,

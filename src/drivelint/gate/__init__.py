@@ -12,8 +12,10 @@ from drivelint.errors import UsageError
 from drivelint.gate import descriptions, diff, waivers
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.gate import ComparedFinding, Difference, Gate, Waiver
+from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from datetime import date
     from pathlib import Path
 
@@ -42,14 +44,13 @@ class GateInputs:
         out: Path | None,
         *,
         confidence: float | None = None,
+        load: Callable[[Path], Result] = load_result,
     ) -> GateInputs | None:
         """Return the gate inputs that these files hold; None if no file gives any.
 
-        `settings_file` may hold waivers beside other settings; None: there is none. Errors: `UsageError` for a file or folder
-        that cannot be used, or a baseline that this run would overwrite.
+        `settings_file` may hold waivers beside other settings; None: there is none. `load`: what reads a baseline. Errors: `UsageError`
+        for a file or folder that cannot be used, or a baseline that this run would overwrite.
         """
-        from drivelint.result.load import load_result
-
         said = waivers.read(waiver_file) if waiver_file else []
         if settings_file and settings_file.is_file():
             said += waivers.read(settings_file, only_waivers=False)
@@ -58,7 +59,7 @@ class GateInputs:
         refuse_own_baseline(baseline, out)
         if baseline is None:
             return cls(today, waivers=tuple(said), confidence=confidence)
-        return cls(today, load_result(baseline), baseline.resolve().name, tuple(said), confidence)
+        return cls(today, load(baseline), baseline.resolve().name, tuple(said), confidence)
 
     def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: difference to the baseline, applied waivers, and findings that are only possible."""

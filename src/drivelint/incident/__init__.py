@@ -14,12 +14,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
+from drivelint.catalogue.header import CONTACT
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
-from drivelint.incident.finding import named_finding
+from drivelint.incident.finding import contacts, named_finding
 from drivelint.incident.judge import Judge, Judged
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
@@ -75,8 +76,11 @@ def other_drives(request: IncidentRequest) -> list[str]:
     row = named_finding(result, request.name).row
     if "@" in request.name or row["finding_id"].startswith(request.name):
         return []
-    rows = result.findings.select(["rule_id", "drive_id"]).to_pylist()
-    return sorted({each["drive_id"] for each in rows if each["rule_id"] == row["rule_id"]} - {row["drive_id"]})
+    every = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    same = (
+        contacts(result) if request.name == CONTACT else [each for each in every if each["rule_id"] == row["rule_id"]]
+    )
+    return sorted({each["drive_id"] for each in same} - {row["drive_id"]})
 
 
 def render(case: Case) -> bytes:
@@ -93,7 +97,7 @@ def open_case(request: IncidentRequest, asked: RunRequest | None = None) -> Case
     """
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
-    asked = asked or run_request.load(request.folder)
+    asked = (asked or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
     judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(

@@ -42,7 +42,7 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     """
     result = load_result(folder)
     finding = named_finding(result, name)
-    asked = run_request.load(folder)
+    asked = run_request.load(folder).of_drive(finding.row["drive_id"])
     request = _as_asked(request, asked, finding)
     judge = Judge.of_run(asked, [finding.row["rule_id"]], memory)
     for before_s, after_s, clip in _clips(finding):

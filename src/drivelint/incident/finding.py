@@ -9,6 +9,7 @@ from drivelint.catalogue.header import CONTACT
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.phrases import listed
+from drivelint.report.worst_first import is_contact, worst_first
 
 if TYPE_CHECKING:
     from drivelint.result.model import Result
@@ -47,15 +48,31 @@ class NamedFinding:
 
 
 def named_finding(result: Result, name: str) -> NamedFinding:
-    """Return the finding that `name` means, as `explain` takes it; of a rule, the worst.
+    """Return the finding that `name` means, as `explain` takes it; of a rule, the worst. `contact` or `contact@DRIVE`: the worst contact.
 
     Errors: `UsageError` where nothing is called so, or where the verdict is no finding.
     """
-    target = find_verdict(result, name, VerdictFilter())
-    row = target.finding or _worst_of(target.verdict, result)
     drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+    word, _, drive_id = name.partition("@")
+    if word == CONTACT:
+        found = [row for row in contacts(result) if row["drive_id"].startswith(drive_id)]
+        if not found:
+            raise UsageError(
+                f"--incident {name}: no finding is a contact{f' in {drive_id}' if drive_id else ''}: name another finding"
+            )
+        row = found[0]
+    else:
+        target = find_verdict(result, name, VerdictFilter())
+        row = target.finding or _worst_of(target.verdict, result)
     return NamedFinding(row, drives[row["drive_id"]], rules[row["rule_id"]])
+
+
+def contacts(result: Result) -> list[Row]:
+    """Return the findings that are contacts, the worst first, sure ones before those that are only possible."""
+    rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
+    found: list[Row] = worst_first(result.findings, rules).to_pylist()
+    return [row for row in found if is_contact(row, rules)]
 
 
 def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:

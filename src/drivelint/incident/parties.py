@@ -13,9 +13,9 @@ from drivelint.incident.delta_v import told_delta_v
 from drivelint.incident.judge import Judged
 from drivelint.incident.motion import BEFORE_S, slowing_known
 from drivelint.incident.sizes import size_source
-from drivelint.incident.words import nearly_same, speed
+from drivelint.incident.words import collision_title, nearly_same, speed
 from drivelint.report.html.plan_view import corners
-from drivelint.result.text import seconds
+from drivelint.result.text import seconds, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -136,6 +136,16 @@ def overtaking(case: Case, at: int | None) -> str:
     )
     against = case.again.steps["with_traffic"][at].as_py() is False
     return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
+
+
+def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
+    """Return what happened, as the sheet's title."""
+    finding, row = case.finding, case.finding.row
+    when = seconds(finding.moment_ns, finding.start_ns)
+    if not finding.is_contact or len(finding.parties) < 2:
+        return f"{went_wrong(finding.rule)}{', possibly' if possible else ''}, at {when}"
+    oncoming = at is not None and case.again.steps["with_traffic"][at].as_py() is False
+    return collision_title(motion, at, when=when, closing_mps=row["closing_mps"], oncoming=oncoming, possible=possible)
 
 
 def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:

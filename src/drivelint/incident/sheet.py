@@ -28,7 +28,7 @@ from drivelint.incident.fitting import (
 )
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
-from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party
+from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
 from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, surroundings
 from drivelint.incident.record import held_elements
 from drivelint.incident.scene import scene_at
@@ -146,6 +146,7 @@ def content(case: Case) -> dict[str, Any]:
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
     }
+    told["title"] = title(case, motion, at, possible=told["sure"]["title"] == POSSIBLE)
     told["crowded"] = is_crowded(told)
     taken = (
         check_room([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])

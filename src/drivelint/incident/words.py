@@ -150,6 +150,22 @@ def story(
     return f"{text[:1].upper()}{text[1:]}."
 
 
+def collision_title(
+    motion: Motion, at: int | None, *, when: str, closing_mps: float | None, oncoming: bool, possible: bool
+) -> str:
+    """Return what a contact of A and B was, as a title: how they stood to each other, when, where, and how fast they came nearer.
+
+    It blames nobody. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
+    """
+    turn = math.nan if at is None else float(motion.turn[at])
+    how = "" if math.isnan(turn) else f" {_angle(turn)}"
+    parts = [f"A and B {'may have ' if possible else ''}collided{how} at {when}"]
+    parts += ["A in the oncoming lane"] if oncoming else []
+    if closing_mps is not None and closing_mps > 0:
+        parts.append(f"closing at {closing_mps:.1f} m/s")
+    return ", ".join(parts)
+
+
 def _who(letter: str, kind: str | None, mps: float) -> str:
     """Return a party with its class and speed, as far as they are known; '' where neither is."""
     article = "an" if kind and kind[0] in "aeiou" else "a"

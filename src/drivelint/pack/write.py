@@ -108,6 +108,10 @@ def _content(request: PackRequest) -> Content:
     """Return what makes a pack of a check's result. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     asked = run_request.load(request.folder)
+    if asked.own:
+        raise UsageError(
+            f"{request.folder}: its logs have options of their own, by a manifest: audit that, and pack the audit"
+        )
     asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
     rules, found = again.rules_of(result, asked), again.finding_evidence(result, asked)
     checked = _Checked(result, asked, rules, found, sheets.of_result(request.folder, result, asked))

@@ -86,7 +86,7 @@ class RuleCounts(NamedTuple):
 def headline(result: Result) -> Headline:
     """Return what a run comes to. A finding is counted once: as new, or by why a gate lets it through."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    rows = result.findings.select(["finding_id", "severity", "drive_id", "rule_id", "n_copies", "n_stays"]).to_pylist()
+    rows = one_per_event(result.gate, result.findings.to_pylist())
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
     label = _label(result, bool(rows))
     told = counts.total(result.verdicts)
@@ -115,6 +115,13 @@ def headline(result: Result) -> Headline:
         missing = next((words for check, words in _NO_MAP.items() if check in checks), "no map was given")
         parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
+
+
+def one_per_event(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
+    """Return one finding of each event; of one whose findings stand differently, as new and as known, one of each standing."""
+    of_standing = counts.grouped(rows, lambda row: standing(gate, row["finding_id"]))
+    kept = {id(row) for mine in of_standing.values() for row in counts.one_per_event(mine)}
+    return [row for row in rows if id(row) in kept]
 
 
 def standing(gate: Gate | None, finding_id: str) -> str:
@@ -195,7 +202,7 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
     said = []
     for name, mine in groups.items():
         if name not in LET_THROUGH:
-            n, gating = len(mine), gating_findings(result).num_rows
+            n, gating = len(mine), len(counts.one_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
             label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED}[name]
             said.append(f"{n} {label} ({by_severity(mine)}{some})")

@@ -5,17 +5,26 @@ from __future__ import annotations
 import sys
 import time
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Final
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.phrases import inert_line
+from drivelint.evaluate.limits import RuleLimits
+from drivelint.phrases import inert_line, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import duckdb
     import rich.progress
+
+    from drivelint.evaluate.limits import Held
 
 
 TELL_EVERY_S: Final = 60.0
+_LOOK_S: Final = 1.0
+_LEAST_SHARE: Final = 0.1
+_AT_ONCE_S: Final = 0.5
+"""Units that are reported so soon after the beginning of a stage were done before."""
 
 
 class Progress:
@@ -27,8 +36,8 @@ class Progress:
     def advance(self, n: int = 1) -> None:
         """Report `n` more units of the current stage done."""
 
-    def doing(self, what: str) -> None:
-        """Say what is done within the stage; its units stay as they are."""
+    def doing(self, what: str, part: float = 0.0) -> None:
+        """Say what is done within the stage. `part`: so many units are done of those in hand, which are not yet reported as done."""
 
     def note(self, text: str) -> None:
         """Print a line for a person who waits."""
@@ -45,24 +54,101 @@ class NotePrinter(Silent):
     """A `Progress` for a stderr that is no terminal: what a person should read, and every minute how far it is, one line each."""
 
     def __init__(self) -> None:
-        self._name, self._done, self._told_s = "", 0, time.monotonic()
+        self._name, self._what, self._done, self._part = "", "", 0, 0.0
+        self._told_s = self._begun_s = time.monotonic()
+        self._had = 0
         self._total: int | None = None
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage; nothing is printed yet."""
-        self._name, self._total, self._done = name, total, 0
+        self._name, self._total, self._begun_s = name, total, time.monotonic()
+        self._what, self._done, self._part, self._had = "", 0, 0.0, 0
 
     def advance(self, n: int = 1) -> None:
-        """Print how far the stage is, if nothing was printed of it for a while."""
-        self._done += n
-        if self._total is not None and time.monotonic() - self._told_s >= TELL_EVERY_S:
-            self._told_s = time.monotonic()
-            self.note(f"{self._name}: {self._done:,} of {self._total:,}")
+        """Count the units, and print how far the stage is, if nothing was printed of it for a while."""
+        self._done, self._part = self._done + n, 0.0
+        if time.monotonic() - self._begun_s < _AT_ONCE_S:
+            self._had = self._done  # an earlier run did them: they say nothing of how long the others take
+        self.tell_if_due()
+
+    def doing(self, what: str, part: float = 0.0) -> None:
+        """Keep what is done."""
+        self._what, self._part = what, part
+
+    def tell_if_due(self) -> None:
+        """Print how far the stage is, and how long the rest may take, if nothing was printed of it for a while."""
+        now_s = time.monotonic()
+        if self._total is None or now_s - self._told_s < TELL_EVERY_S:
+            return
+        self._told_s = now_s
+        new = self._done + self._part - self._had
+        todo = self._total - self._had
+        # the first part of a unit took what is done once for all
+        left_s = (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_SHARE * todo) and new else None
+        self.note(
+            f"{self._name}: {self._done:,} of {self._total:,}"
+            f"{f' ({self._what})' if self._what else ''}{'' if left_s is None else f', {_duration(left_s)} left'}"
+        )
 
     def note(self, text: str) -> None:
         """Print the note."""
         with suppress(OSError):  # nobody may listen any more
             print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
+
+
+class ToldLimits(RuleLimits):
+    """Limits of rules that also tell how many rules a batch was judged by, so that a person sees it move."""
+
+    def __init__(self, progress: Progress, n_rules: int, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._progress, self._n_rules, self._n_drives = progress, n_rules, 0
+        self._begun: set[str] = set()
+
+    def begin(self, n_drives: int) -> None:
+        """Tell that a batch of so many drives is judged; at first, tables are derived."""
+        self._n_drives = n_drives
+        self._begun.clear()
+        self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")
+
+    @contextmanager
+    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[Held]:
+        """See `RuleLimits.hold`."""
+        self._begun.add(rule_id)
+        n = len(self._begun)
+        what = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"
+        self._progress.doing(what, self._n_drives * n / (self._n_rules + 1))
+        with super().hold(con, rule_id, alone=alone) as held:
+            yield held
+
+
+def _duration(seconds: float) -> str:
+    """Return about how long something takes, in words."""
+    minutes = round(seconds / 60)
+    return (
+        "less than a minute"
+        if minutes < 1
+        else f"about {minutes} min"
+        if minutes < 120
+        else f"about {round(seconds / 3600)} h"
+    )
+
+
+@contextmanager
+def notes() -> Iterator[NotePrinter]:
+    """Print notes as lines, and every minute how far it is, also while a single step takes long."""
+    printer, over = NotePrinter(), Event()
+
+    def tell() -> None:
+        while not over.wait(_LOOK_S):
+            printer.tell_if_due()
+
+    teller = Thread(target=tell, daemon=True, name="tells how far it is")
+    teller.start()
+    try:
+        yield printer
+    finally:
+        over.set()
+        teller.join()
 
 
 class Bar(Progress):
@@ -71,18 +157,21 @@ class Bar(Progress):
     def __init__(self, progress: rich.progress.Progress) -> None:
         self._progress = progress
         self._task = self._progress.add_task("starting", total=None)
+        self._done = 0
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage: its name beside an empty bar."""
+        self._done = 0
         self._progress.reset(self._task, description=name, total=total)
 
     def advance(self, n: int = 1) -> None:
         """Move the bar by `n` units."""
-        self._progress.advance(self._task, n)
+        self._done += n
+        self._progress.update(self._task, completed=self._done)
 
-    def doing(self, what: str) -> None:
-        """Show it beside the bar."""
-        self._progress.update(self._task, description=what)
+    def doing(self, what: str, part: float = 0.0) -> None:
+        """Show it beside the bar, which moves on by the part of a unit."""
+        self._progress.update(self._task, description=what, completed=self._done + part)
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""
@@ -105,6 +194,7 @@ def bar() -> Iterator[Bar]:
         drawn.BarColumn(),
         drawn.MofNCompleteColumn(),
         drawn.TimeElapsedColumn(),
+        drawn.TimeRemainingColumn(),
     )
     console = Console(stderr=True)
     if console.is_jupyter:  # rich's own way needs ipywidgets, and warns at each step where they are not installed

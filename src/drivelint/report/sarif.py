@@ -19,7 +19,7 @@ from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt
 from drivelint.result.model import exit_status, gating_findings
 from drivelint.result.names import RUN_FILE
-from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, with_count
+from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, went_wrong, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -100,7 +100,7 @@ class _Run:
         measured = "" if row["reason_measures"] else comparison(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
         who = f"{subject(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
-        said = [f"{rule['title']}: {row['reason']}", measured, who, f"({doubt(row)})" if doubt(row) else ""]
+        said = [f"{went_wrong(rule)}: {row['reason']}", measured, who, f"({doubt(row)})" if doubt(row) else ""]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,

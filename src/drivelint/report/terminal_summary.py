@@ -18,12 +18,12 @@ from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
 from drivelint.report.inputs import LAW, input_notes
 from drivelint.report.law import law_words
-from drivelint.report.outcome import LABELS, LET_THROUGH, headline, rule_counts, standing
+from drivelint.report.outcome import LABELS, LET_THROUGH, headline, one_per_event, rule_counts, standing
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, off_map_reason
-from drivelint.result.text import closing, number, seconds, tolerance
+from drivelint.result.text import closing, number, seconds, tolerance, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -39,6 +39,13 @@ MOST_REASONS: Final = 3
 
 STYLE: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT: Final = {"critical": "crit", "major": "maj", "minor": "min"}
+PROFILES: Final = {
+    "relaxed": "planned with much room",
+    "nominal": "planned as usual",
+    "aggressive": "planned with little room",
+    "observed": "as it was driven",
+}
+"""Profile that drivelint ships -> how an overtake was judged by it."""
 _STYLE_OF: Final = {
     "PASS": "bold green",
     "FAIL": "bold red",
@@ -54,7 +61,7 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     Findings that a gate lets through are counted, not listed; of a drive that has no others the worst of them is shown.
     """
     rules = _rules(result)
-    every: list[Row] = worst_first(result.findings, rules).to_pylist()
+    every = one_per_event(result.gate, worst_first(result.findings, rules).to_pylist())
     found = [row for row in every if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
     drives = _drives(result, found, every, rules, width)
     parts: list[RenderableType] = [_head(result), Text(), _verdict(result), Text(), drives, Text()]
@@ -195,8 +202,7 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_ego
             f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{of_it}{profile}"
         )
     if not contact:
-        # a title says what is so when the rule is kept: alone it would say the opposite
-        parts.append(rules[row["rule_id"]]["title"] if parts else f"not kept: {rules[row['rule_id']]['title']}")
+        parts.append(went_wrong(rules[row["rule_id"]]))
     parts += who
     if later := worst_later(row, rules, start_ns):
         parts.append(later)
@@ -249,7 +255,14 @@ def _lines(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_unknown(result), _inputs(result)]
+    return [Text(first), *_profiles(result), *_unknown(result), _inputs(result)]
+
+
+def _profiles(result: Result) -> list[Text]:
+    """Return what the profiles of the findings mean, which stand in brackets behind their numbers."""
+    names = sorted(set(result.findings["profile"].to_pylist()) & PROFILES.keys())
+    said = "; ".join(f"{name}: {PROFILES[name]}" for name in names)
+    return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
 
 
 def _unknown(result: Result) -> list[Text]:

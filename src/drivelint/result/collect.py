@@ -70,7 +70,7 @@ def rule_table(rules: Sequence[Rule], params: Mapping[str, Mapping[str, object]]
 def _rule_row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[str]) -> dict[str, object]:
     values = {name: overrides.get(name, param.default) for name, param in rule.params.items()}
     same = (
-        "pack", "pack_title", "title", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
+        "pack", "pack_title", "title", "breach", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
         "sense", "unit", "observes", "near_margin",
     )  # fmt: skip
     window = values.get(rule.window_s) if isinstance(rule.window_s, str) else rule.window_s

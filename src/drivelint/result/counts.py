@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.reasons.signals import UNRECORDED
+from drivelint.result.certainty import POSSIBLE, certainty
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 VERDICTS: Final = ("pass", "fail", "unknown", "not_applicable", "error")
 SEVERITIES: Final = ("critical", "major", "minor")
@@ -68,6 +70,31 @@ def undecided(verdicts: pa.Table) -> pa.Table:
 def unrecorded(verdicts: pa.Table) -> pa.Table:
     """Return the verdicts that are not applicable because the log has nothing of a signal: what they are about may have happened."""
     return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED))
+
+
+def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return one finding of each event, in the order of the rows, which is what counts of findings count.
+
+    Findings of one rule at the same time are one event if they are about one ego and object under several profiles, or if each of two
+    egos is the object of the other. A sure one stands for it before one that is only possible, and an earlier row before a later one.
+    `queries/fleet/event.sql` does the same for audits.
+    """
+    ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
+    kept: dict[tuple[str, str, frozenset[str | None]], list[Mapping[str, Any]]] = defaultdict(list)
+    places = []
+    for place, row in ordered:
+        mine = kept[row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})]
+        if not any(_is_same_event(other, row) for other in mine):
+            places.append((place, row))
+        mine.append(row)
+    return [row for _, row in sorted(places, key=itemgetter(0))]
+
+
+def _is_same_event(other: Mapping[str, Any], row: Mapping[str, Any]) -> bool:
+    """Whether two findings of one rule and the same parties are of one event."""
+    at_once = other["t_start_ns"] <= row["t_end_ns"] and row["t_start_ns"] <= other["t_end_ns"]
+    of_other_profile = other["profile"] != row["profile"]
+    return bool(at_once and of_other_profile == (other["ego_id"] == row["ego_id"]))
 
 
 def grouped(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:

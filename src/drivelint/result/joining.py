@@ -42,5 +42,6 @@ def join(results: Sequence[Result]) -> Result:
     if asked:
         traces = {drive: path for each in reversed(asked) for drive, path in each.traces.items()}
         named = {drive: path for each in reversed(asked) for drive, path in each.named.items()}
-        tables["asked"] = replace(asked[0], traces=traces, named=dict(sorted(named.items())))
+        own = {drive: options for each in reversed(asked) for drive, options in each.own.items()}
+        tables["asked"] = replace(asked[0], traces=traces, named=dict(sorted(named.items())), own=own)
     return replace(first, **tables, interrupted=any(result.interrupted for result in results))

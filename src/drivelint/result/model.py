@@ -14,7 +14,7 @@ from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED
-from drivelint.result.counts import SEVERITIES, unrecorded
+from drivelint.result.counts import SEVERITIES, grouped, one_per_event, unrecorded
 from drivelint.result.gate import NOT_FIXED
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import conform, empty_table
@@ -294,7 +294,10 @@ def _severities(result: Result) -> tuple[str, ...]:
 
 def _stopped(result: Result) -> str:
     """Return what makes exit code 1, in words; '' for nothing."""
-    found, bare = gating_findings(result).num_rows, _severe(result, failures_without_finding(result)).num_rows
+    found, bare = (
+        len(one_per_event(gating_findings(result).to_pylist())),
+        _severe(result, failures_without_finding(result)).num_rows,
+    )
     new = "new finding" if result.gate is not None and result.gate.baseline is not None else "finding"
     parts = [plural(found, new)] if found else []
     parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
@@ -305,14 +308,10 @@ def _let_through(result: Result) -> str:
     """Return how many severe findings baseline, waivers and confidence let through, in words; '' without any of these."""
     if (gate := result.gate) is None:
         return ""
-    ids = _severe(result, result.findings)["finding_id"].to_pylist()
-    waived = sum(gate.waiver(name) is not None for name in ids)
-    known = sum(gate.waiver(name) is None and gate.in_baseline(name) for name in ids)
-    through = [f"{known} known"] if gate.baseline is not None else []
-    through += [f"{waived} waived"] if gate.waivers else []
-    if gate.confidence is not None:
-        possible = [n for n in ids if gate.is_possible(n) and gate.waiver(n) is None and not gate.in_baseline(n)]
-        through.append(f"{len(possible)} only possible")
+    of_standing = grouped(_severe(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"]))
+    asked = {"known": gate.baseline is not None, "waived": bool(gate.waivers), "possible": gate.confidence is not None}
+    words = {"known": "known", "waived": "waived", "possible": "only possible"}
+    through = [f"{len(one_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told]
     return f" (of that severity {', '.join(through)})" if through else ""
 
 

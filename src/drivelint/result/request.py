@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path, PurePath
 from typing import Any, Final
 
@@ -25,7 +25,8 @@ class RunRequest(DriveInput):
     """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
 
     `named`: drive_id -> that path from the folder in which the check ran, with `/`; a log outside that folder has none.
-    `ego` is what was given: the egos that were judged are those of the verdicts.
+    `ego` is what was given: the egos that were judged are those of the verdicts. `own`: drive_id -> what a manifest said of that log
+    and its map, in place of the options of the run.
     """
 
     traces: dict[str, str] = field(default_factory=dict)
@@ -34,23 +35,38 @@ class RunRequest(DriveInput):
     params: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
     robustness: bool | None = None
+    own: dict[str, DriveInput] = field(default_factory=dict)
+
+    def of_drive(self, drive_id: str) -> RunRequest:
+        """Return the request with the options that hold for a drive."""
+        mine = self.own.get(drive_id)
+        return (
+            self
+            if mine is None
+            else replace(self, **{each.name: getattr(mine, each.name) for each in fields(DriveInput)})
+        )
 
     @classmethod
-    def from_options(cls, given: DriveInput, traces: dict[str, str]) -> RunRequest:
+    def from_options(
+        cls, given: DriveInput, traces: dict[str, str], own: dict[str, DriveInput] | None = None
+    ) -> RunRequest:
         """Return what was asked with the options of `check`, of which all but the traces are kept as they are."""
-        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name not in {"traces", "named"}}
+        apart = {"traces", "named", "own"}
+        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name not in apart}
         named = {drive: path for drive, path in sorted((name, _named(path)) for name, path in traces.items()) if path}
-        return cls(**kept, traces=traces, named=named)
+        return cls(**kept, traces=traces, named=named, own=own or {})
 
 
 def render(asked: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
     plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
-    plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
     plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]
-    if asked.mapping is not None and Path(asked.mapping).is_file():  # else the name of a shipped one
-        plain["mapping"] = {"file": _relative(asked.mapping, out)}
+    _make_relative(plain, out)
+    for mine in plain["own"].values():
+        _make_relative(mine, out)
+    if not plain["own"]:
+        del plain["own"]
     return (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
 
 
@@ -64,10 +80,9 @@ def load(folder: Path) -> RunRequest:
         plain = {"visibility": "none", "ego": None, "robustness": True} | json.loads(
             file.read_text(encoding="utf-8")
         )  # older results do not say it
-        if isinstance(plain["mapping"], dict):
-            plain["mapping"] = str(folder / plain["mapping"]["file"])
+        for each in (plain, *plain.get("own", {}).values()):
+            _join_to(folder, each)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
-        plain |= {key: str(folder / plain[key]) for key in _PATHS if plain[key] is not None}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
         return msgspec.convert(plain, RunRequest, dec_hook=lambda kind, value: kind(value))
     except FileNotFoundError as error:
@@ -76,6 +91,20 @@ def load(folder: Path) -> RunRequest:
         ) from error
     except (OSError, ValueError, KeyError, TypeError, AttributeError, msgspec.ValidationError) as error:
         raise UsageError(f"{file}: not what drivelint writes: check the drives again") from error
+
+
+def _make_relative(plain: dict[str, Any], out: Path) -> None:
+    """Make the paths of the options about a log relative to the result folder."""
+    plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
+    if plain["mapping"] is not None and Path(plain["mapping"]).is_file():  # else the name of a shipped one
+        plain["mapping"] = {"file": _relative(plain["mapping"], out)}
+
+
+def _join_to(folder: Path, plain: dict[str, Any]) -> None:
+    """Undo `_make_relative`."""
+    if isinstance(plain["mapping"], dict):
+        plain["mapping"] = str(folder / plain["mapping"]["file"])
+    plain |= {key: str(folder / plain[key]) for key in _PATHS if plain[key] is not None}
 
 
 def _named(path: str) -> str:

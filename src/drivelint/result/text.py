@@ -23,6 +23,11 @@ def number(value: float | None, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
+def went_wrong(rule: Row) -> str:
+    """Return what happened where a rule is not kept, as a title. `rule`: its row of the table `rule`."""
+    return rule["breach"] or f"Not kept: {rule['title']}"
+
+
 def closing(mps: float) -> str:
     """Return in words how fast two road users come nearer, or draw apart."""
     apart = mps < 0 and round(mps, 2) != 0

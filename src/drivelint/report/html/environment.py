@@ -17,7 +17,7 @@ from drivelint.phrases import shown
 from drivelint.report.html.anchors import anchor
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.schemas import OUTPUT_VERSION
-from drivelint.result.text import measure, number
+from drivelint.result.text import measure, number, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -60,7 +60,7 @@ def page_environment(
         duckdb_version=duckdb.__version__,
         output_schema=OUTPUT_VERSION,
     )
-    environment.filters["measure"] = measure
+    environment.filters |= {"measure": measure, "went_wrong": went_wrong}
     return environment
 
 

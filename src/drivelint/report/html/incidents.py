@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.catalogue.header import CONTACT
@@ -17,10 +18,10 @@ from drivelint.report.same_contact import as_others_say
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.counts import SEVERITIES, grouped
-from drivelint.result.text import measure, non_breaking, number, seconds, utc_at
+from drivelint.result.text import measure, non_breaking, number, seconds, utc_at, went_wrong
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
     from drivelint.report.html.road import Road
@@ -186,6 +187,7 @@ def _objects(lines: Iterable[FindingLine]) -> set[str]:
 
 def _moment(at: Key, found: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
     failed = [line for line in found if line.kind == "fail"]
+    title: Callable[[Row], str] = went_wrong if failed else itemgetter("title")
     gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = grouped(found, lambda line: line.row["rule_id"])
     return {
@@ -199,7 +201,7 @@ def _moment(at: Key, found: Sequence[FindingLine], drive: Row) -> dict[str, Any]
         "objects": sorted(_objects(found)),
         "kind": "fail" if failed else "near",
         "severity": gravest[0].row["severity"],
-        "titles": list(dict.fromkeys(line.rule["title"] for line in gravest)),
+        "titles": list(dict.fromkeys(title(line.rule) for line in gravest)),
         "on_earth": next((line.row for line in failed if None not in {line.row["lon"], line.row["lat"]}), None),
         "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
     }

@@ -58,7 +58,7 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
     ]
     measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST
     is_gap = measured and finding["unit"] == "m"
-    if met and not is_gap and (gap := _gap(ego, met)) is not None:
+    if met and not is_gap and (gap := gap_series(ego, met)) is not None:
         drawn.append(("distance from box to box", "m", [gap]))
     if measured and course is not None:
         lines = [
@@ -95,7 +95,7 @@ def _series(kind: str, actor: Row, column: str) -> Series:
     return Series(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
 
 
-def _gap(ego: Row, met: Row) -> Series | None:
+def gap_series(ego: Row, met: Row) -> Series | None:
     """Return the distance between two boxes at the times that both ways have; None: a size is not known."""
     if any(actor[side] is None for actor in (ego, met) for side in ("length_m", "width_m")):
         return None

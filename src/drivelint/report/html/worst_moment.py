@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from urllib.parse import quote
 
@@ -11,7 +12,7 @@ from drivelint.report.html.contact import before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.strips import strips
-from drivelint.result.text import utc_at
+from drivelint.result.text import utc_at, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,8 +64,8 @@ def worst_moment(
         "before": before_contact(scene, row, start_ns) if touched and scene is not None else None,
         "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
         "also": [
-            (how, list(dict.fromkeys(each.rule["title"] for each in along if each.kind == kind))[:_ALSO])
-            for kind, how in (("fail", "not kept"), ("near", "only just kept"))
+            (how, list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_ALSO])
+            for kind, how, title in (("fail", "also", went_wrong), ("near", "also only just kept", itemgetter("title")))
         ],
         "commands": [
             ["drivelint explain", shlex.quote(_name(row)), "--in ."],

@@ -1,0 +1,100 @@
+"""What an audit found, for whoever asks it in Python."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+
+from drivelint.api.arguments import typed
+from drivelint.api.tables import Table, TableSet
+from drivelint.errors import UsageError
+from drivelint.fleet import rates
+from drivelint.fleet.counted import create_counted_views
+from drivelint.fleet_report import gated
+from drivelint.fleet_report.opened import destination, is_audit, opened
+from drivelint.phrases import listed
+from drivelint.report.outcome import headline
+from drivelint.report.outputs import REPORT_FORMATS
+from drivelint.result.counts import one_per_event
+from drivelint.result.model import exit_status
+
+if TYPE_CHECKING:
+    from drivelint.api.options import AnyPath
+
+_SCHEMAS = {"verdicts": "verdict", "findings": "finding", "drives": "drive", "rules": "rule", "events": "finding"}
+
+
+class AuditResult(TableSet):
+    """The result of an audit: its tables, in which logs of one content are one drive, its gate, and its rates.
+
+    The tables are those of a check; `events` has the findings that count (a touch of two egos once, and one overtake under several
+    profiles), and `logs` where the log of each drive is, and its tags. All rows are in memory: some 0.3 MB a drive of all rules.
+    """
+
+    verdicts: Table
+    findings: Table
+    drives: Table
+    rules: Table
+    events: Table
+    logs: Table
+
+    @typed
+    def __init__(self, folder: AnyPath) -> None:
+        """Open what `audit --out` wrote. Errors: `DriveLintError` where no audit is."""
+        self._dest = destination(Path(folder))
+        if not is_audit(self._dest):
+            raise UsageError(f"{folder}: no audit is here: name the folder that drivelint audit --out wrote")
+        self._result = gated.audit_result(self._dest)
+        findings = self._result.findings
+        tables = {name: getattr(self._result, name) for name in ("verdicts", "findings", "drives", "rules")}
+        tables["events"] = pa.Table.from_pylist(one_per_event(findings.to_pylist()), schema=findings.schema)
+        with opened(self._dest) as (con, audit, _):
+            counted = create_counted_views(con)
+            tables["logs"] = con.execute(
+                f"SELECT drive_id, log, tags FROM {counted}drives ORDER BY ALL"
+            ).to_arrow_table()
+            self.notes = tuple(filter(None, [audit.warning]))
+        super().__init__(tables, schema_tables=_SCHEMAS)
+        for name, table in self.tables.items():
+            setattr(self, name, table)
+
+    @property
+    def exit_code(self) -> int:
+        """The exit code that the findings, the unknown verdicts and the gate of the last `drivelint audit` make."""
+        return int(exit_status(self._result).code)
+
+    @property
+    def why(self) -> str:
+        """Why it is what it is, in one sentence."""
+        return exit_status(self._result).why
+
+    @typed
+    def rates(self, by: str | None = None) -> Table:
+        """Return a row per rule and profile, with `by` also per value of a tag or situation: events per 100 km, per hour, and per occasion.
+
+        Rates have the columns `rate`, `low` and `high` (95 %) in a struct. Errors: `DriveLintError` for a tag that no drive has.
+        """
+        with opened(self._dest) as (con, _, _):
+            rows = [_row(rate) for rate in rates.rates(con, by)]
+        return Table(pa.Table.from_pylist(rows))
+
+    @typed
+    def report(self, *, to: str) -> str:
+        """Return a report as text. `to`: junit or sarif; `drivelint report` writes the pages of a fleet."""
+        if to not in gated.FORMATS:
+            raise UsageError(f"to={to!r}: of an audit there are {listed(gated.FORMATS)}")
+        return REPORT_FORMATS[to][1](self._result).decode()
+
+    def __repr__(self) -> str:
+        return f"<drivelint.AuditResult: {headline(self._result).sentence}; exit code {self.exit_code}>"
+
+
+def _row(rate: rates.Rate) -> dict[str, Any]:
+    """Return a rate as a row, its estimates as structs."""
+    told = asdict(rate)
+    for name in ("per_100km", "per_hour", "per_occasion", "per_ego"):
+        told[name] = getattr(rate, name)._asdict()
+    return told

@@ -1,0 +1,116 @@
+"""What happened around a finding over time: a table for whoever computes with it, and strips to look at."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from drivelint.api.tables import Table
+from drivelint.incident.finding import named_finding
+from drivelint.report.html.environment import page_environment
+from drivelint.report.html.strips import gap_series, strips
+from drivelint.report.html.worst_moment import finding_key
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from drivelint.api.options import AnyPath
+    from drivelint.result.model import Result
+    from drivelint.result.text import Row
+
+_COLUMNS = (
+    "gap_m", "ego_speed_mps", "ego_accel_mps2", "object_speed_mps", "object_accel_mps2", "observed", "required", "margin",
+)  # fmt: skip
+_PAGE = """{% import 'macros.html.j2' as m with context %}<!doctype html><html lang="en"><head><meta charset="utf-8">
+<title>{{ title }}</title><style>{{ style }}</style></head><body><figure class="scene">{{ m.strips(s) }}</figure></body></html>"""
+
+
+class Figure:
+    """A drawing that a notebook shows, and that can be saved as a page of its own."""
+
+    def __init__(self, page: str, height: int) -> None:
+        self._page, self._height = page, height
+
+    def save(self, path: AnyPath) -> Path:
+        """Write the drawing as an HTML page, which opens offline."""
+        file = Path(path)
+        file.write_text(self._page, encoding="utf-8")
+        return file
+
+    def _repr_html_(self) -> str:
+        """Return it in a frame of its own, so that its style and that of the notebook leave each other alone."""
+        return f'<iframe srcdoc="{escape(self._page)}" width="640" height="{self._height}" style="border: 0"></iframe>'
+
+
+class Timeline(Table):
+    """A row per time stamp, from 5 s before the worst step of a finding to 5 s after it, and per judged step.
+
+    `t_ns`, `t_s`: the log's clock, and since the drive's first time stamp. `gap_m`: from box to box, 0 where they touch. Speeds and
+    accelerations in m/s and m/s2, at most five values a second. `observed`, `required`, `margin`: of the rule, in its unit, at the
+    steps that it judged. NULL: not known, or not at this time stamp.
+    """
+
+    __slots__ = ("_strips", "_title")
+
+    def __init__(self, rows: pa.Table, drawn: dict[str, Any] | None, title: str) -> None:
+        super().__init__(rows)
+        self._strips, self._title = drawn, title
+
+    def plot(self) -> Figure | None:
+        """Return the strips of the report: speeds, gap, and what the rule measures; None where the ego's way is not known."""
+        if self._strips is None:
+            return None
+        template = page_environment(()).from_string(_PAGE)
+        return Figure(
+            template.render(s=self._strips, title=self._title), round(float(self._strips["height"]) * 1.1) + 60
+        )
+
+
+def timeline(result: Result, name: str) -> Timeline:
+    """Return the timeline of a finding. `name`: as `explain` takes it. Errors: `UsageError` for one that is not there."""
+    finding = named_finding(result, name)
+    row, start_ns = finding.row, finding.start_ns
+    at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
+    scene = next(iter(_rows(result.scenes, at)), None)
+    courses = _rows(result.courses, {"finding_id": row["finding_id"]})
+    course = next((each for each in courses if finding_key(each) == finding_key(row)), None)
+    values: dict[int, dict[str, float | None]] = {}
+    if scene is not None:
+        _add_ways(values, scene, row["object_id"])
+    if course is not None:
+        for t_ns, *told in zip(*(course[key] for key in ("t_ns", "observed", "required", "margin")), strict=True):
+            values.setdefault(t_ns, {}).update(zip(("observed", "required", "margin"), told, strict=True))
+    times = sorted(values)
+    table = pa.table(
+        {
+            "t_ns": pa.array(times, pa.int64()),
+            "t_s": pa.array([(t_ns - start_ns) / 1e9 for t_ns in times], pa.float64()),
+            **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _COLUMNS},
+        }
+    )
+    drawn = None if scene is None else strips(scene, row, course, finding.rule["observes"], start_ns)
+    return Timeline(table, drawn, f"{row['rule_id']} in {row['drive_id']}")
+
+
+def _rows(table: pa.Table, of: Mapping[str, object]) -> list[Row]:
+    for column, value in of.items():
+        table = table.filter(pc.equal(table[column], value))
+    found: list[Row] = table.to_pylist()
+    return found
+
+
+def _add_ways(values: dict[int, dict[str, float | None]], scene: Row, object_id: str | None) -> None:
+    """Add the speeds and accelerations of ego and object, and the gap between them."""
+    ego = scene["actors"][0]
+    met = next((each for each in scene["actors"][1:] if each["actor_id"] == object_id), None)
+    for who, actor in (("ego", ego), ("object", met)):
+        for point in (actor and actor["path"]) or ():
+            told = {f"{who}_speed_mps": point["speed_mps"], f"{who}_accel_mps2": point["accel_mps2"]}
+            values.setdefault(point["t_ns"], {}).update(told)
+    gap = gap_series(ego, met) if met is not None and ego["path"] and met["path"] else None
+    for t_ns, distance in zip(gap.t_ns, gap.values, strict=True) if gap is not None else ():
+        values[t_ns]["gap_m"] = distance

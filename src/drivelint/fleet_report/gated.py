@@ -1,0 +1,122 @@
+"""The gate of an audit: it is read as the result of a check, so that baseline, waivers, exit codes, JUnit and SARIF are those of `check`.
+
+Logs of one content are one drive, as in every count of an audit. All rows are in memory: some 0.3 MB per drive of some 60 rules.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Final
+
+from drivelint.audit.bucket import is_url
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE
+from drivelint.audit.sealed import seal
+from drivelint.audit.unpacked import SUMMARY_FILE
+from drivelint.errors import ExitCode
+from drivelint.fleet.counted import create_counted_views
+from drivelint.fleet_report.opened import destination, is_audit, opened
+from drivelint.gate import descriptions
+from drivelint.report.outcome import headline
+from drivelint.report.outputs import REPORT_FORMATS
+from drivelint.result import gate
+from drivelint.result.collect import ORDER_OF_FINDINGS, ORDER_OF_VERDICTS
+from drivelint.result.load import load_result
+from drivelint.result.model import Result, exit_status
+from drivelint.result.names import GATE_FILE
+from drivelint.result.request import RunRequest
+from drivelint.run import CheckOptions
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import duckdb
+
+    from drivelint.audit.store import ResultStore
+    from drivelint.audit.summary import AuditSummary
+    from drivelint.fleet_report.opened import Audit
+    from drivelint.gate import GateInputs
+
+FORMATS: Final = ("junit", "sarif")
+"""Reports of a check that an audit has, too."""
+_WEIGHT: Final = (ExitCode.USAGE, ExitCode.FAILED, ExitCode.NOT_JUDGED, ExitCode.LOSSY, ExitCode.OK)
+"""Exit codes, the one that counts first."""
+
+
+def audit_result(dest: str) -> Result:
+    """Return an audit as the result of a check, with its gate. Errors: as `opened`."""
+    with opened(dest) as (con, audit, _):
+        return _result(con, audit)
+
+
+def load(path: Path) -> Result:
+    """Return what `check --out` or `audit --out` wrote there. Errors: `UsageError`."""
+    dest = destination(path)
+    return audit_result(dest) if is_audit(dest) else load_result(path)
+
+
+def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
+    """Hold an audit that has ended against its baseline and waivers; write `gate.json` into it; return it with its gate."""
+    with opened(dest) as (con, audit, _):
+        result = _result(con, audit)
+        result = result if inputs is None else inputs.apply_to(result)
+        if result.gate is not None:
+            audit.results.write(GATE_FILE, gate.render(result.gate))
+            seal(audit.results, [AUDIT_FILE, RULES_FILE, SUMMARY_FILE, GATE_FILE])
+    return result
+
+
+def exit_code(result: Result, counted: AuditSummary) -> ExitCode:
+    """Return the weightiest of what the findings come to, by the gate, and of all else that an audit tells."""
+    others = replace(counted, failed={}).exit_code("never", strict=result.strict)
+    return min((exit_status(result).code, others), key=_WEIGHT.index)
+
+
+def lines(result: Result) -> Iterator[str]:
+    """Yield what the gate comes to, in words: the findings by how they stand, the reason of the exit code, and doubtful waivers."""
+    yield f"gate: {headline(result).sentence}"
+    yield f"  {exit_status(result).why}"
+    if result.gate is not None:
+        yield from (f"  {text}" for text in descriptions.waiver_warnings(result.gate))
+
+
+def write_report(dest: str, to: str) -> tuple[str, Audit]:
+    """Write a report of `FORMATS` into the audit; return its name, and the audit. Errors: as `opened`; `OutputError`."""
+    name, render = REPORT_FORMATS[to]
+    with opened(dest) as (con, audit, _):
+        audit.results.write(name, render(_result(con, audit)))
+    return name, audit
+
+
+def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
+    counted = create_counted_views(con)
+    orders = {"verdicts": ORDER_OF_VERDICTS, "findings": ORDER_OF_FINDINGS}
+    rows = {
+        table: con.execute(statement("fleet_report/as_checked", of=counted, table=table, order=order)).to_arrow_table()
+        for table, order in orders.items()
+    }
+    drives = con.execute(statement("fleet_report/drives_as_checked", of=counted)).to_arrow_table()
+    logs = dict(zip(drives["drive_id"].to_pylist(), drives["log"].to_pylist(), strict=True))
+    here = {drive: log for drive, log in logs.items() if not is_url(log)}
+    return Result(
+        **rows,
+        drives=drives.drop_columns(["log"]),
+        rules=con.execute("FROM rules ORDER BY rule_id").to_arrow_table(),
+        fail_on=audit.told["fail_on"],
+        strict=audit.told.get("strict", False),  # older audits say neither
+        min_judged=audit.told.get("min_judged"),
+        gate=_gate(audit.results),
+        asked=RunRequest.from_options(CheckOptions(()), here),
+    )
+
+
+def _gate(results: ResultStore) -> gate.Gate | None:
+    """Return what the audit's last run said of its gate; None: there was none."""
+    content = results.read(GATE_FILE)
+    if content is None:
+        return None
+    with TemporaryDirectory(prefix="drivelint-gate-") as home:
+        (Path(home) / GATE_FILE).write_bytes(content)
+        return gate.load(Path(home))
