@@ -131,6 +131,14 @@ def verify(
     key: Annotated[
         Path | None, option("--key", "PUBLIC", "The Ed25519 key that it must be signed with, PEM. Default: that in it.")
     ] = None,
+    require_signature: Annotated[
+        bool,
+        option("--require-signature", None, "A pack of which nobody knows who signed it is wrong: it needs --key, too."),
+    ] = False,
+    not_before: Annotated[
+        str | None,
+        option("--not-before", "YYYY-MM-DD", "A pack with an earlier Bagging-Date, or without one, is wrong."),
+    ] = None,
     traces: Traces = None,
     map_: Map = None,
     timestamp_root: Annotated[
@@ -145,13 +153,18 @@ def verify(
     """Verify an evidence pack: its files, its signature, what it states; and judge the logs again.
 
     Without a log in the pack or --trace nothing is judged again, and the line says so. Each thing that is wrong has a line of its own.
+    Without --key the exit code tells nothing of who made the pack: --require-signature makes that 1. An older pack of the same signer is
+    as good as a newer one: the line says the date, and --not-before makes an older one 1.
 
     Exit codes: 0 untouched; 1 something is wrong; 2 usage error.
     """
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified
 
-    request = VerifyRequest(folder, key, tuple(traces or ()), map_, timestamp_root)
+    request = VerifyRequest(
+        folder, key, tuple(traces or ()), map_, timestamp_root,
+        require_signature, None if not_before is None else _day("--not-before", not_before),
+    )  # fmt: skip
     found = run_interruptible(lambda: verified(request))
     for note in found.notes:
         typer.echo(f"drivelint: {inert_line(note)}", err=True)
@@ -167,8 +180,15 @@ def _date(given: str | None) -> str | None:
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         if given is not None:
-            return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
+            return _day("--date", given)
         return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
     except (ValueError, OverflowError, OSError) as error:
-        what = f"--date {given}" if given is not None else f"SOURCE_DATE_EPOCH={epoch}"
-        raise UsageError(f"{what}: no day: write --date as 2026-11-26, SOURCE_DATE_EPOCH in seconds") from error
+        raise UsageError(f"SOURCE_DATE_EPOCH={epoch}: no day: write it in seconds since 1970") from error
+
+
+def _day(option: str, given: str) -> str:
+    """Return a day as an option names it. Errors: `UsageError`."""
+    try:
+        return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
+    except ValueError as error:
+        raise UsageError(f"{option} {given}: no day: write it as 2026-11-26") from error
