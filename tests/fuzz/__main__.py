@@ -1,8 +1,8 @@
 """`python -m tests.fuzz N [--seed S] [--only KIND]`, from the repository's root: N damaged files, and what became of them.
 
-The numbers are shared out among the kinds. `--log FILE` writes every outcome there, and a second run with it goes on where the first ended: so
-are 100,000 files tried, beside other work. `--only KIND --at NUMBER --save FOLDER` repeats one case and keeps its files. The exit code is 1 where
-a case shows a bug.
+The numbers are shared out among the kinds. `--log FILE` writes every outcome there, and a second run with it goes on where the first
+ended: so 100,000 files are tried, beside other work. `--only KIND --at NUMBER --save FOLDER` repeats one case and keeps its files. The exit
+code is 1 where a case shows a bug.
 """
 
 from __future__ import annotations
@@ -83,7 +83,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=0, help="the first number of each kind")
     parser.add_argument("--at", type=int, help="only this number of the one kind")
     parser.add_argument("--save", metavar="FOLDER", help="with --at: where its files are written")
-    parser.add_argument("--log", metavar="FILE", type=Path, help="where outcomes are written; a run goes on after those of it")
+    parser.add_argument(
+        "--log", metavar="FILE", type=Path, help="where outcomes are written; a run goes on after those of it"
+    )
     parser.add_argument("--read-only", action="store_true", help="read, and judge nothing")
     parser.add_argument("--time-limit", type=float, default=TIME_LIMIT_S, metavar="S", help="for each file")
     options = parser.parse_args(arguments)

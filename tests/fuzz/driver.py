@@ -9,7 +9,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final, Self
 
 from drivelint.audit.executors.local import computed_s
-from drivelint.evaluate.limits import resident_bytes
+from drivelint.computing import resident_bytes
 from tests.fuzz.outcome import Outcome
 from tests.fuzz.sources import removed, scratch
 from tests.fuzz.worker import Job, serve
@@ -81,7 +81,9 @@ class Driver:
             job = job._replace(first=at + 1, n=end - at - 1)
 
     def _started(self, kind: str) -> tuple[Connection, float]:
-        if self._n >= CASES_PER_PROCESS or kind != self._kind:  # another kind: its valid files are no memory of a damaged one
+        if (
+            self._n >= CASES_PER_PROCESS or kind != self._kind
+        ):  # another kind: its valid files are no memory of a damaged one
             self._stop()
         self._kind = kind
         if self._connection is not None:

@@ -28,9 +28,7 @@ def verified(*given: object) -> tuple[int, str]:
 def dated(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Path]:
     """Return packs without their logs: of two days, and of none."""
     home = tmp_path_factory.mktemp("dated")
-    older, newer = (
-        make_pack(packed.result, home / day, packed.key, date=day) for day in ("2026-10-31", "2026-11-26")
-    )
+    older, newer = (make_pack(packed.result, home / day, packed.key, date=day) for day in ("2026-10-31", "2026-11-26"))
     return older, newer, make_pack(packed.result, home / "none", packed.key)
 
 
@@ -66,4 +64,5 @@ def test_an_older_pack_is_told_by_its_date(dated: tuple[Path, ...], packed: Pack
     for pack in (swapped, without):
         code, said = verified(pack, *key, "--not-before", "2026-11-26")
         assert (code, said.startswith("older pack: ")) == (1, True)
-    assert verified(newer, "--not-before", "yesterday")[0] == 2
+    found = CliRunner().invoke(app, ["verify", str(newer), "--not-before", "yesterday"])
+    assert str(found.exception) == "--not-before yesterday: no day: write it as 2026-11-26"

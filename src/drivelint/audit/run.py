@@ -349,7 +349,9 @@ def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
             return told
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
-    raise UsageError(f"{dest}: {AUDIT_FILE} is not as drivelint audit wrote it: audit the drives again into another --out")
+    raise UsageError(
+        f"{dest}: {AUDIT_FILE} is not as drivelint audit wrote it: audit the drives again into another --out"
+    )
 
 
 def _is_whole(results: ResultStore, dest: str) -> bool:

@@ -65,7 +65,7 @@ def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
 
 
 def require_as_written(results: ResultStore, home: Path, dest: str) -> None:
-    """Refuse to read an audit that was changed: one that has ended and lacks its list, changed files, rows that are not as the receipts say.
+    """Refuse to read an audit that was changed: it has ended and lacks its list, a file or the rows of a receipt are others.
 
     `home`: for copies. Errors: `UsageError`; `OutputError`.
     """

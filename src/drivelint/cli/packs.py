@@ -133,7 +133,9 @@ def verify(
     ] = None,
     require_signature: Annotated[
         bool,
-        option("--require-signature", None, "A pack of which nobody knows who signed it is wrong: it needs --key, too."),
+        option(
+            "--require-signature", None, "A pack of which nobody knows who signed it is wrong: it needs --key, too."
+        ),
     ] = False,
     not_before: Annotated[
         str | None,

@@ -76,7 +76,9 @@ def _of_request(request: VerifyRequest) -> list[Problem]:
     """Return in what a pack is not what was asked for, however consistent it is: nobody's, or an older one."""
     found = []
     if request.require_signature and request.key is None:
-        what = "its own key says nothing of whose it is" if (request.folder / ENVELOPE).is_file() else "it is not signed"
+        what = (
+            "its own key says nothing of whose it is" if (request.folder / ENVELOPE).is_file() else "it is not signed"
+        )
         found.append(Problem("nobody identified", f"{what}: give the signer's with --key"))
     date = bag.date_of(request.folder)
     if request.not_before is not None and (date is None or date < request.not_before):
