@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 PER_JOB = 100
-JOBS_PER_ROUND = 25
+JOBS_PER_ROUND = 10
 """So many jobs of one kind follow each other: a run that is ended early has tried all kinds."""
 
 
