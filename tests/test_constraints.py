@@ -59,7 +59,7 @@ def test_they_install_together_and_drivelint_runs_with_them(python: str, tmp_pat
     if program is None or subprocess.run([program, "--version"], check=False, capture_output=True).returncode:
         pytest.skip(f"python{python} is not installed")
     subprocess.run([program, "-m", "venv", tmp_path / "venv"], check=True)
-    pip = [tmp_path / "venv" / "bin" / "python", "-m", "pip", "-q", "--disable-pip-version-check"]
+    pip = [str(tmp_path / "venv" / "bin" / "python"), "-m", "pip", "-q", "--disable-pip-version-check"]
     done = subprocess.run([*pip, "install", "-c", FILE, "."], cwd=ROOT, check=False, capture_output=True, text=True)
     if "No matching distribution" in done.stderr or "ConnectionError" in done.stderr:
         pytest.skip("the package index cannot be reached")

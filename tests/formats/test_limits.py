@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 def for_ever(*_: Any) -> None:
-    kept = []
+    kept: list[int] = []
     while True:
         kept.append(len(kept))
         del kept[:-9]
 
 
 def growing(*_: Any) -> None:
-    kept = []
+    kept: list[bytearray] = []
     while True:
         kept.append(bytearray(b"1" * 2**20))
 
