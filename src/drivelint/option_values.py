@@ -147,11 +147,18 @@ def asked_pack(
 
 def parse_pack_date(given: str | None) -> str | None:
     """Return the day of the pack: given, or that of SOURCE_DATE_EPOCH; None: neither says one. Errors: `UsageError`."""
+    if given is not None:
+        return parse_day("--date", given)
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
-        if given is not None:
-            return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
         return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
     except (ValueError, OverflowError, OSError) as error:
-        what = f"--date {given}" if given is not None else f"SOURCE_DATE_EPOCH={epoch}"
-        raise UsageError(f"{what}: no day: write --date as 2026-11-26, SOURCE_DATE_EPOCH in seconds") from error
+        raise UsageError(f"SOURCE_DATE_EPOCH={epoch}: no day: write it in seconds since 1970") from error
+
+
+def parse_day(option: str, given: str) -> str:
+    """Return a day as an option names it. Errors: `UsageError`."""
+    try:
+        return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
+    except ValueError as error:
+        raise UsageError(f"{option} {given}: no day: write it as 2026-11-26") from error

@@ -1,4 +1,5 @@
-"""`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and without; both must give the same tables.
+"""`python -m tests.audit kills DRIVES KILLS`: a large fleet, audited with kills and beside a drive that always exhausts its worker, and
+without; both must give the same tables.
 
 `python -m tests.audit plan DRIVES`: what ten million drives would take beside their judging. `memory DRIVES`: how the memory of the
 driver and of one worker grows with the drives, its mean and the most since the line before. `workers DRIVES`: what a second worker brings.
@@ -13,6 +14,7 @@ import sys
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import pyarrow.parquet as pq
 
@@ -25,20 +27,33 @@ def kills(n_drives: int, n_kills: int) -> None:
     """Print what was seen; exit 1 where the tables differ, or the findings are not those planted."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         drives = fleet.write(Path(home) / "fleet", n_drives)
+        greedy = Path(home) / "fleet" / "logs" / "greedy.parquet"
+        fleet.write_exhausting(greedy, greedy.with_name("drive-00000.parquet"))
+        killed_out, whole_out = (str(Path(home) / name) for name in ("killed", "whole"))
+        limit = ("--worker-memory", f"{fleet.LITTLE_BYTES // 10**6}MB")
         begin = time.monotonic()
-        code, killed = audit_with_kills(drives.command(Path(home) / "killed"), n_kills, 20.0)
-        print(f"with {killed} kills: exit {code}, {time.monotonic() - begin:.0f} s")
+        command = drives.command(Path(killed_out), *limit)
+        code, killed = audit_with_kills([*command[:2], str(greedy), *command[2:]], n_kills, 20.0)
+        print(f"with {killed} kills: exit {code}, {time.monotonic() - begin:.0f} s", flush=True)
+        told = [_summary(killed_out)]
+        _run(drives.command(Path(killed_out), "--prune"))  # without the greedy drive, which no table may show any more
         begin = time.monotonic()
-        done = _run(drives.command(Path(home) / "whole"))
+        done = _run(drives.command(Path(whole_out)))
         print(f"undisturbed: exit {done.returncode}, {time.monotonic() - begin:.0f} s")
-        told = [json.loads((Path(home) / name / "summary.json").read_text("utf-8")) for name in ("killed", "whole")]
+        told += [_summary(out) for out in (killed_out, whole_out)]
         for each in told:
             print(json.dumps(each, sort_keys=True))
         broken = f"SELECT DISTINCT file_name FROM findings JOIN drives USING (key) WHERE rule_id = '{fleet.RULE}'"
-        found = _run(["sql", str(Path(home) / "killed"), broken, "--format", "csv"])
+        found = _run(["sql", killed_out, broken, "--format", "csv"])
         names = set(found.stdout.decode().split()[1:])
         print(f"planted contacts: {len(drives.planted)}; found: {len(names)}; the same: {names == drives.planted}")
-        sys.exit(int(told[0]["digest"] != told[1]["digest"] or names != drives.planted))
+        as_due = (told[0]["judged"], told[0]["quarantined"]) == (n_drives, 1) and told[1]["digest"] == told[2]["digest"]
+        sys.exit(int(not as_due or names != drives.planted))
+
+
+def _summary(out: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((Path(out) / "summary.json").read_text("utf-8"))
+    return found
 
 
 def memory(n_drives: int) -> None:

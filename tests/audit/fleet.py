@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 SECONDS, HERTZ = 4.0, 5
 RULE = "ukhc.no-collision"
 """The rule that the planted drives break."""
+LITTLE_BYTES = 600_000_000
+_MUCH = 4_000_000
+"""Rows of a log whose reading takes more than that."""
 _SITES = ("leeds", "york", "hull")
 
 
@@ -51,6 +54,14 @@ def write(home: Path, n_drives: int, seed: int = 0) -> Fleet:
     pa_csv.write_csv(pa.Table.from_pylist(rows), manifest)
     planted = frozenset(f"drive-{n:05d}.parquet" for n in np.flatnonzero(contacts))
     return Fleet(manifest, road, planted)
+
+
+def write_exhausting(log: Path, of: Path) -> None:
+    """Write a log of the columns of another one whose reading takes more memory than a worker with `LITTLE_BYTES` may."""
+    states = pq.read_table(of)
+    columns = {name: np.resize(states[name].to_numpy(zero_copy_only=False), _MUCH) for name in states.column_names}
+    columns["t_ns"] = np.arange(_MUCH) // 3 * 10_000_000
+    pq.write_table(pa.table(columns, schema=states.schema), log)
 
 
 def _write_drive(path: Path, start: float, *, contact: bool) -> None:

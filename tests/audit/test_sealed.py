@@ -206,6 +206,61 @@ def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.parametrize("gone", [(MANIFEST,), (MANIFEST, "summary.json"), ()])
+def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Path, gone: tuple[str, ...]) -> None:
+    """Else whoever changes a file takes the list away, too."""
+    (copy / MANIFEST).write_text("{}", encoding="utf-8")
+    for name in gone:
+        (copy / name).unlink()
+    with pytest.raises(UsageError, match=r"has ended, and files\.json.*give the same audit again"), opened(str(copy)):
+        pass
+    with pytest.raises(UsageError, match="has ended"), opened_both(str(ended), str(copy)):
+        pass
+    with pytest.raises(UsageError, match="has ended"):
+        ask(str(copy), "FROM findings", "json")
+
+
+@pytest.fixture(scope="module")
+def loose(few: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return an audit that is not packed."""
+    out = tmp_path_factory.mktemp("loose") / "out"
+    judged(few, out, shard=(1, 1))
+    return out
+
+
+@pytest.fixture
+def open_copies(copy: Path, loose: Path, tmp_path: Path) -> tuple[Path, Path]:
+    """Return two audits that have not ended: packed, and not packed."""
+    for name in (MANIFEST, "summary.json", "parts/ended/all"):
+        (copy / name).unlink()
+    return copy, tmp_path / shutil.copytree(loose, tmp_path / "loose").name
+
+
+def test_readers_hold_rows_of_an_unfinished_audit_against_its_receipts(open_copies: tuple[Path, Path]) -> None:
+    for out in open_copies:
+        warned: list[str] = []
+        with opened(str(out)) as (_, audit, _):
+            assert audit.warning
+        verdicts = next(each for each in out.rglob("*.parquet") if each.parent.name == "verdicts")
+        passed(verdicts)
+        with pytest.raises(UsageError, match="as drivelint audit wrote"), opened(str(out)):
+            pass
+        assert ask(str(out), "FROM verdicts", "json", warned.append)
+        assert "as drivelint audit wrote" in warned[0]
+
+
+def test_a_file_that_was_cut_is_an_error_with_a_sentence(
+    ended: Path, open_copies: tuple[Path, Path], tmp_path: Path
+) -> None:
+    for of in (ended, *open_copies):
+        for name in (each.relative_to(of) for each in of.rglob("[!.]*.*") if each.is_file()):
+            out = tmp_path / shutil.copytree(of, tmp_path / "cut", dirs_exist_ok=True).name
+            (out / name).write_bytes((of / name).read_bytes()[:40])
+            with pytest.raises(UsageError, match=r"not as drivelint|not a receipt|has ended"), opened(str(out)):
+                raise AssertionError(name)
+            shutil.rmtree(out)
+
+
 class Dying(InThisProcess):
     """An executor that fails before anything is judged."""
 

@@ -6,9 +6,6 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
 
 from drivelint.audit import AuditRequest, AuditSummary, audit
@@ -29,20 +26,13 @@ if TYPE_CHECKING:
 
     from drivelint.audit.model import Receipt
 
-MUCH = 4_000_000
-"""Rows of a log whose reading takes more than `LITTLE_BYTES`."""
-LITTLE_BYTES = 600_000_000
-
 
 @pytest.mark.slow
 def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_without_it(tmp_path: Path) -> None:
     drives = fleet.write(tmp_path / "fleet", 5)
     undisturbed = judged(drives, tmp_path / "before")
     log = tmp_path / "fleet" / "logs" / "drive-00005.parquet"
-    states = pq.read_table(log.with_name("drive-00004.parquet"))
-    columns = {name: np.resize(states[name].to_numpy(zero_copy_only=False), MUCH) for name in states.column_names}
-    columns["t_ns"] = np.arange(MUCH) // 3 * 10_000_000
-    pq.write_table(pa.table(columns, schema=states.schema), log)
+    fleet.write_exhausting(log, log.with_name("drive-00004.parquet"))
     counted = audit(
         AuditRequest(
             sources=(str(drives.manifest), str(log)),
@@ -50,7 +40,7 @@ def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_w
             out=str(tmp_path / "out"),
             settings=SETTINGS,
             workers=2,
-            worker_memory=LITTLE_BYTES,
+            worker_memory=fleet.LITTLE_BYTES,
         ),
         Silent(),
     )

@@ -14,6 +14,7 @@ import duckdb
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint import computing
 from drivelint.errors import ExitCode
 from drivelint.evaluate import limits
 from drivelint.report.progress import Silent
@@ -158,7 +159,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
             found.append((excess, next(bytes_now)))
             ended.set()
 
-    monkeypatch.setattr(limits.Work, "seconds", lambda _work: now)
+    monkeypatch.setattr(computing.Work, "seconds", lambda _work: now)
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
     monkeypatch.setattr(limits, "_LOOK_S", 0.001)
     monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
@@ -186,7 +187,7 @@ def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None
             sum(range(1000))
 
     reader = Thread(target=spin)
-    work = limits.Work(get_native_id())
+    work = computing.Work(get_native_id())
     reader.start()
     began = process_time()
     while process_time() - began < 0.5:
@@ -194,7 +195,7 @@ def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None
     assert work.seconds() < 0.25
     ends.set()
     reader.join()
-    work, began = limits.Work(get_native_id()), thread_time()
+    work, began = computing.Work(get_native_id()), thread_time()
     while thread_time() - began < 0.3:
         sum(range(1000))
     assert 0.25 < work.seconds() < 0.6

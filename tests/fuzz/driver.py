@@ -9,7 +9,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final, Self
 
 from drivelint.audit.executors.local import computed_s
-from drivelint.evaluate.limits import resident_bytes
+from drivelint.computing import resident_bytes
 from tests.fuzz.outcome import Outcome
 from tests.fuzz.sources import removed, scratch
 from tests.fuzz.worker import Job, serve
@@ -40,6 +40,7 @@ class Driver:
     _process: BaseProcess | None = None
     _connection: Connection | None = None
     _n: int = 0
+    _kind: str = ""
     _warm_bytes: int = 0
     """What it had at its first answer, when libraries are loaded and the valid files of a kind are made."""
 
@@ -55,7 +56,7 @@ class Driver:
         end = job.first + job.n
         while job.first < end:
             at = job.first
-            connection, limit = self._started()
+            connection, limit = self._started(job.kind)
             connection.send(job)
             try:
                 while True:
@@ -79,9 +80,12 @@ class Driver:
                 self._stop()
             job = job._replace(first=at + 1, n=end - at - 1)
 
-    def _started(self) -> tuple[Connection, float]:
-        if self._n >= CASES_PER_PROCESS:
+    def _started(self, kind: str) -> tuple[Connection, float]:
+        if (
+            self._n >= CASES_PER_PROCESS or kind != self._kind
+        ):  # another kind: its valid files are no memory of a damaged one
             self._stop()
+        self._kind = kind
         if self._connection is not None:
             return self._connection, max(self.time_limit_s, START_LIMIT_S)
         context = multiprocessing.get_context("spawn")  # threads of compiled libraries do not survive a fork

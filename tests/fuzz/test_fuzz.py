@@ -13,7 +13,7 @@ import pytest
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import InternalError, TraceError
 from tests.fuzz import judging, sources, traces
-from tests.fuzz.__main__ import jobs, table
+from tests.fuzz.__main__ import JOBS_PER_ROUND, jobs, logged, main, table
 from tests.fuzz.driver import Driver
 from tests.fuzz.mutations import BINARY, TEXT, XML, generator
 from tests.fuzz.outcome import BAD, Outcome, of_error
@@ -125,6 +125,31 @@ def test_a_pass_over_a_failure_is_a_contradiction() -> None:
     assert judging.contradiction([row("fail", 5, 9, 8), row("pass", 0, 6, 1), row("unknown", 0, 9, 7)], whole) is None
     assert "pass" in str(judging.contradiction([row("pass", 0, 9, 1)], whole))
     assert "fail" in str(judging.contradiction([row("fail", 0, 4, 2)], whole))
+
+
+def test_a_run_goes_on_after_what_its_log_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[Job] = []
+
+    def run(_: Driver, job: Job) -> list[Outcome]:
+        ran.append(job)
+        return [Outcome(job.kind, number, "a", "refused") for number in range(job.first, job.first + job.n)]
+
+    monkeypatch.setattr(Driver, "run", run)
+    log = tmp_path / "log"
+    words = ["500", "--only", "csv", "--only", "rule", "--log", str(log)]
+    assert (main(words), len(ran)) == (0, 6)
+    text = log.read_text(encoding="utf-8")
+    assert (main(words), len(ran)) == (0, 6)
+    log.write_text(text[:-40], encoding="utf-8")  # killed while it wrote the last one
+    assert (main(words), ran[6:]) == (0, [ran[5]])
+    outcomes, ended = logged(log)
+    assert (len(outcomes), len(ended)) == (500, 6)
+
+
+def test_a_run_that_is_ended_early_has_tried_all_kinds() -> None:
+    work = list(jobs(100_000, KINDS, 1))
+    assert {job.kind for job in work[: JOBS_PER_ROUND * len(KINDS)]} == set(KINDS)
+    assert sum(job.n for job in work) == 100_000
 
 
 def test_the_table_counts_cases() -> None:

@@ -130,6 +130,9 @@ def serve(connection: Connection, log: str) -> None:
     try:
         while (job := connection.recv()) is not None:
             try:
+                resource.setrlimit(
+                    resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+                )  # of the last job
                 for source in bench.of(job.kind):
                     bench.whole_content(job.kind, source)
                 _limit_memory()

@@ -69,8 +69,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
     """Create the views of an audit, or of a check's result, and close the database off from everything else."""
     results = open_store(dest)
     is_audit = results.read(AUDIT_FILE) is not None
-    if isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
-        _warn_of_changes(results, dest, home, warn, is_audit=is_audit)
+    _warn_of_changes(results, dest, home, warn, is_audit=is_audit)
     if is_audit:
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
@@ -95,19 +94,23 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
 
 
 def _warn_of_changes(
-    results: LocalFolder, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
+    results: ResultStore, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
-    """Tell of the first file that is not as it was written; whoever asks may want to look at just that."""
-    if not is_audit:
+    """Tell of the first file that is not as it was written; whoever asks may want to look at just that.
+
+    Errors: `UsageError` for an audit that has ended and does not say how its files were.
+    """
+    if is_audit:
+        sealed.require_list(results, dest)
+        try:
+            sealed.require_as_written(results, home, dest)
+        except UsageError as error:
+            warn(str(error))
+    elif isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
         for name in changed(results.root)[:1]:
             warn(
                 f"{dest.rstrip('/')}/{name}: is not as drivelint check wrote it with the others: check the drives again"
             )
-        return
-    try:
-        sealed.require_unchanged(results, home, dest)
-    except UsageError as error:
-        warn(str(error))
 
 
 def _view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, home: Path) -> None:

@@ -34,11 +34,11 @@ def ask(results: ResultStore, part: str, n_drives: int) -> None:
 
 def asked(results: ResultStore) -> int | None:
     """Return how many drives the parts without an end are to judge, or all parts; of shards all of them; None: not known."""
-    begun = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
-    open_ = missing(results) or sorted(begun)
+    said = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
+    open_ = missing(results) or sorted(said)
     if not open_:
         return None
-    counted = [n for name, n in begun.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
+    counted = [n for name, n in said.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
     return sum(map(int, counted)) if all(n.isdigit() for n in counted) else None
 
 
@@ -47,7 +47,11 @@ def end(results: ResultStore, part: str) -> None:
     results.write(f"parts/ended/{part}", b"\n")
 
 
+def begun(results: ResultStore) -> set[str]:
+    """Return the parts that have begun, or are expected."""
+    return {Path(name).name for name in results.names("parts/begun")}
+
+
 def missing(results: ResultStore) -> list[str]:
     """Return the parts that have begun, or are expected, and have not come to their end."""
-    begun, ended = ({Path(name).name for name in results.names(f"parts/{state}")} for state in ("begun", "ended"))
-    return sorted(begun - ended)
+    return sorted(begun(results) - {Path(name).name for name in results.names("parts/ended")})

@@ -261,10 +261,11 @@ def _close(
     sealed.unseal(results)
     compact(results)
     create_views(con, results, home)
-    asked = json.loads(results.read(AUDIT_FILE) or b"{}")["settings"]
-    counted = replace(summed(con, n_reused), missing_parts=list(missing), robust=bool(asked["robustness"]))
-    results.write(SUMMARY_FILE, (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode())
-    sealed.seal(results, [AUDIT_FILE, RULES_FILE, SUMMARY_FILE])
+    told = told_of(results, "the audit") or {}
+    robust = bool(told.get("settings", {}).get("robustness"))
+    counted = replace(summed(con, n_reused), missing_parts=list(missing), robust=robust)
+    content = (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode()
+    sealed.seal(results, [AUDIT_FILE, RULES_FILE], content)
     return counted
 
 
@@ -292,10 +293,10 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     `delta_dest`: folder or prefix of Delta tables of the packed tables. Errors: `UsageError`, `OutputError`.
     """
     results = open_store(out)
-    told = results.read(AUDIT_FILE)
+    told = told_of(results, out)
     if told is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
-    id_ = json.loads(told)["run_id"]
+    id_ = told["run_id"]
     if delta_dest is not None:
         delta.ready(delta_dest, out, id_)
     progress.stage("packing", None)
@@ -330,7 +331,7 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
     was_whole = False
     if not results.create(AUDIT_FILE, content):
-        there = json.loads(results.read(AUDIT_FILE) or b"{}")
+        there = told_of(results, request.out) or {}
         if there.get("run_id") != id_:
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
@@ -343,6 +344,20 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
     # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
     return was_whole
+
+
+def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
+    """Return what `audit.json` says; None: no audit is there. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
+    content = results.read(AUDIT_FILE)
+    try:
+        told = None if content is None else json.loads(content)
+        if told is None or (isinstance(told["settings"], dict) and isinstance(told["run_id"], str)):
+            return told
+    except (ValueError, KeyError, TypeError, RecursionError):
+        pass
+    raise UsageError(
+        f"{dest}: {AUDIT_FILE} is not as drivelint audit wrote it: audit the drives again into another --out"
+    )
 
 
 def _is_whole(results: ResultStore, dest: str) -> bool:

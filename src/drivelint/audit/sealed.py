@@ -16,8 +16,10 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from drivelint.audit.compact import chunk_name, chunks, loose_receipts
+from drivelint.audit import parts
+from drivelint.audit.compact import RECEIPT_SCHEMA, chunk_name, chunks, loose_receipts
 from drivelint.audit.driver import empty_rows
+from drivelint.audit.unpacked import AT_WORK, SUMMARY_FILE
 from drivelint.audit.worker import TABLES, batch_name, rows_sha256
 from drivelint.errors import UsageError
 from drivelint.result.folder import hashes_in, manifest
@@ -32,11 +34,12 @@ _TABLES: Final = "tables"
 _AGAIN: Final = "audit the drives again into another --out"
 
 
-def seal(results: ResultStore, names: Iterable[str]) -> None:
-    """Write the list of these files and of all tables. Errors: `OutputError`."""
-    listed = {*names, *results.names(_TABLES)}
-    hashes = {name: sha256(results.read(name) or b"").hexdigest() for name in sorted(listed)}
-    results.write(MANIFEST, manifest(listed, hashes))
+def seal(results: ResultStore, names: Iterable[str], summary: bytes) -> None:
+    """Write the summary, and then the list of it, of these files and of all tables. Errors: `OutputError`."""
+    hashes = {name: sha256(results.read(name) or b"").hexdigest() for name in {*names, *results.names(_TABLES)}}
+    hashes[SUMMARY_FILE] = sha256(summary).hexdigest()
+    results.write(SUMMARY_FILE, summary)  # after all is hashed: with it the audit has ended, and has to have the list
+    results.write(MANIFEST, manifest(set(hashes), dict(sorted(hashes.items()))))
 
 
 def unseal(results: ResultStore) -> None:
@@ -61,6 +64,42 @@ def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
     return True
 
 
+def require_as_written(results: ResultStore, home: Path, dest: str) -> None:
+    """Refuse to read an audit that was changed: it has ended and lacks its list, a file or the rows of a receipt are others.
+
+    `home`: for copies. Errors: `UsageError`; `OutputError`.
+    """
+    require_list(results, dest)
+    is_listed = require_unchanged(results, home, dest)
+    before = _names(results)
+    try:
+        require_rows_unchanged(results, dest, packed=not is_listed)
+    except UsageError as error:
+        if _names(results) != before:
+            raise UsageError(f"{dest}: {AT_WORK}") from error
+        raise
+
+
+def require_list(results: ResultStore, dest: str) -> None:
+    """Refuse an audit that has ended and does not say how its files were. Errors: `UsageError`; `OutputError`."""
+    if not hashes_in(results.read(MANIFEST) or b"") and _has_ended(results):
+        raise UsageError(
+            f"{dest}: has ended, and {MANIFEST}, which says how its files were, is not there or not readable: "
+            "give the same audit again, which holds all rows against their receipts"
+        )
+
+
+def _has_ended(results: ResultStore) -> bool:
+    """Whether an audit has come to its end: that of all drives has, or what was judged was summed up."""
+    if results.read(SUMMARY_FILE) is not None:
+        return True
+    return parts.begun(results) == {parts.ALL} and not parts.missing(results)
+
+
+def _names(results: ResultStore) -> set[str]:
+    return {name for folder in ("receipts", "batches", _TABLES) for name in results.names(folder)}
+
+
 def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> None:
     """Refuse an audit in which a drive's rows are not those of its receipt. Not while anybody packs.
 
@@ -76,7 +115,7 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
     for chunk in chunks(results) if packed else ():
         names = {table: chunk_name(table, chunk) for table in (*TABLES, "receipts")}
         with TemporaryDirectory(prefix="drivelint-audit-") as home:
-            receipts = _read(results, dest, names.pop("receipts"), Path(home)).to_pylist()
+            receipts = _read(results, dest, names.pop("receipts"), Path(home), RECEIPT_SCHEMA).to_pylist()
         said = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
         _require_rows(results, dest, names, said, nothing_else=True)
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 SUMMARY_FILE: Final = "summary.json"
+AT_WORK: Final = "an audit is at work there and has just packed results: ask again"
 
 
 class Standing(NamedTuple):
@@ -81,14 +82,19 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
             both = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
             con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
         con.execute(f"CREATE OR REPLACE VIEW {prefix}rules AS FROM {inner}rules")
+        (n,) = con.execute(f"SELECT count(*) FROM {prefix}receipts").fetchone() or (0,)
+        told = json.loads(results.read(SUMMARY_FILE) or b"{}")
     except (duckdb.IOException, FileNotFoundError) as error:
         if results.read(MANIFEST) is not None:
             raise UsageError(
                 "a file that files.json lists is missing there: audit the drives again into another --out"
             ) from error
-        raise UsageError("an audit is at work there and has just packed results: ask again") from error
-    (n,) = con.execute(f"SELECT count(*) FROM {prefix}receipts").fetchone() or (0,)
-    told = json.loads(results.read(SUMMARY_FILE) or b"{}")
+        raise UsageError(AT_WORK) from error
+    except (duckdb.Error, ValueError) as error:
+        why = " ".join(str(error).split())[:300]
+        raise UsageError(
+            f"a file there is not as drivelint audit wrote it ({why}): audit the drives again into another --out"
+        ) from error
     missing = parts.missing(results)
     return Standing(told.get("digest"), len(loose), n, parts.asked(results), tuple(missing))
 

@@ -115,6 +115,16 @@ def verify(
     key: Annotated[
         Path | None, option("--key", "PUBLIC", "The Ed25519 key that it must be signed with, PEM. Default: that in it.")
     ] = None,
+    require_signature: Annotated[
+        bool,
+        option(
+            "--require-signature", None, "A pack of which nobody knows who signed it is wrong: it needs --key, too."
+        ),
+    ] = False,
+    not_before: Annotated[
+        str | None,
+        option("--not-before", "YYYY-MM-DD", "A pack with an earlier Bagging-Date, or without one, is wrong."),
+    ] = None,
     traces: Traces = None,
     map_: Map = None,
     timestamp_root: Annotated[
@@ -129,13 +139,18 @@ def verify(
     """Verify an evidence pack: its files, its signature, what it states; and judge the logs again.
 
     Without a log in the pack or --trace nothing is judged again, and the line says so. Each thing that is wrong has a line of its own.
+    Without --key the exit code tells nothing of who made the pack: --require-signature makes that 1. An older pack of the same signer is
+    as good as a newer one: the line says the date, and --not-before makes an older one 1.
 
     Exit codes: 0 untouched; 1 something is wrong; 2 usage error.
     """
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified
 
-    request = VerifyRequest(folder, key, tuple(traces or ()), map_, timestamp_root)
+    request = VerifyRequest(
+        folder, key, tuple(traces or ()), map_, timestamp_root,
+        require_signature, None if not_before is None else option_values.parse_day("--not-before", not_before),
+    )  # fmt: skip
     found = run_interruptible(lambda: verified(request))
     for note in found.notes:
         typer.echo(f"drivelint: {inert_line(note)}", err=True)

@@ -64,7 +64,7 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
         result = result if inputs is None else inputs.apply_to(result)
         if result.gate is not None:
             audit.results.write(GATE_FILE, gate.render(result.gate))
-            seal(audit.results, [AUDIT_FILE, RULES_FILE, SUMMARY_FILE, GATE_FILE])
+            seal(audit.results, [AUDIT_FILE, RULES_FILE, GATE_FILE], audit.results.read(SUMMARY_FILE) or b"")
     return result
 
 

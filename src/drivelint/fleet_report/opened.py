@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.bucket import as_url
 from drivelint.audit.compact import database
-from drivelint.audit.run import AUDIT_FILE
-from drivelint.audit.sealed import require_unchanged
+from drivelint.audit.run import AUDIT_FILE, told_of
+from drivelint.audit.sealed import require_as_written
 from drivelint.audit.store import open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
@@ -88,6 +87,13 @@ def opened(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPy
 
 
 @contextmanager
+def opened_packed(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
+    """Open the audit of an evidence pack, which lists its files and compares rows and receipts by itself. Errors: as `opened`."""
+    with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
+        yield con, _open(con, str(folder), Path(home) / "new", "", is_packed=True)
+
+
+@contextmanager
 def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
     """Open two audits, the earlier one under the names that begin with `BASE`. Errors: as `opened`."""
     with opened(new, base) as (con, later, earlier):
@@ -96,11 +102,12 @@ def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection
         yield con, earlier, later
 
 
-def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str) -> Audit:
+def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str, *, is_packed: bool = False) -> Audit:
     home.mkdir()
     results = open_store(dest)
-    content = results.read(AUDIT_FILE)
-    if content is None:
+    told = told_of(results, dest)
+    if told is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
-    require_unchanged(results, home, dest)
-    return Audit(dest, results, json.loads(content), views_of_all(con, results, home, prefix))
+    if not is_packed:
+        require_as_written(results, home, dest)
+    return Audit(dest, results, told, views_of_all(con, results, home, prefix))

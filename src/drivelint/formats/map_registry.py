@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.files import is_utf8
+from drivelint.formats.limits import bounded
 from drivelint.formats.probe import wrapping
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import shown
@@ -91,8 +92,12 @@ def load_map(
         raise _too_large(source.name, len(source.content))
     side = None if handedness == "auto" else handedness
     request = MapOptions((float(offset[0]), float(offset[1])), side, voted_handedness, origin)
-    tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
-    return tables
+
+    def read() -> MapTables:
+        tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+        return tables
+
+    return bounded(read, f"map {source.name}", len(source.content), MapError)
 
 
 def _reader(source: MapSource) -> str:

@@ -10,6 +10,7 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.folders import is_drive_folder
+from drivelint.formats.limits import bounded
 from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
 from drivelint.formats.search import why_not_followed, why_not_here
@@ -63,6 +64,13 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
         raise UsageError(f"--sensor-range {options.sensor_range_m}: the range must be more than 0 m")
     probe = _probe(path, options)
     before = file_states(path)
+    n_bytes = sum(size for _, size, _ in before)
+    return bounded(lambda: _read(probe, before), str(path), n_bytes, TraceError)
+
+
+def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
+    """Read a log, if its files are still as they were `before`. Errors: as `read_trace`."""
+    path, options = probe.path, probe.options
     identity = identify(path)
     if reader := next((each for each in readers() if each.accepts(probe)), None):
         recording = reader.read(probe)

@@ -20,7 +20,7 @@ TAG_MANIFEST: Final = "tagmanifest-sha256.txt"
 _DECLARED: Final = b"BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"
 _LINE: Final = re.compile(r"([0-9a-f]{64})  ([^\s].*)")
 _SAID: Final = re.compile(
-    r"(?:Bagging-Date: \d{4}-\d\d-\d\d\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
+    r"(?:Bagging-Date: (\d{4}-\d\d-\d\d)\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
 )
 _UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 
@@ -103,6 +103,13 @@ def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
     return sorted(set(found), key=lambda each: (each.what, each.kind))
 
 
+def date_of(folder: Path) -> str | None:
+    """Return the day that `bag-info.txt` says, as 2026-11-26; None: it says none, or cannot be read."""
+    path = folder / INFO
+    match = _SAID.fullmatch(path.read_text("utf-8", "replace")) if path.is_file() else None
+    return match[1] if match else None
+
+
 def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
     """Return in what `bag-info.txt` is not what `begin` writes of such a payload."""
     text = (folder / INFO).read_text("utf-8", "replace")
@@ -111,7 +118,7 @@ def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
         return [Problem("bag-info.txt not readable", INFO)]
     sizes = [(folder / name).stat().st_size for name in payload]
     due = f"{sum(sizes)}.{len(sizes)}"
-    return [] if match[1] == due else [Problem("Payload-Oxum wrong", f"{INFO}: {match[1]}, and it is {due}")]
+    return [] if match[2] == due else [Problem("Payload-Oxum wrong", f"{INFO}: {match[2]}, and it is {due}")]
 
 
 def _read_manifest(path: Path, *, payload: bool) -> tuple[dict[str, str], list[Problem]]:

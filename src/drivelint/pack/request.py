@@ -43,13 +43,19 @@ class Content(NamedTuple):
 
 @dataclass(frozen=True)
 class VerifyRequest:
-    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it."""
+    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it.
+
+    `require_signature`: without `key`, which tells whose a signature is, something is wrong. `not_before`: the earliest day of its
+    Bagging-Date, as 2026-11-26; None: any, or none.
+    """
 
     folder: Path
     key: Path | None = None
     traces: tuple[Path, ...] = ()
     map: Path | None = None
     timestamp_root: Path | None = None
+    require_signature: bool = False
+    not_before: str | None = None
 
 
 @dataclass(frozen=True)

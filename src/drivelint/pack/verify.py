@@ -37,6 +37,9 @@ _OUTCOMES: Final = {
     "FAILED": "the drives broke rules",
 }
 
+_OF_WHOM: Final = {"not signed", "nobody identified", "older pack"}
+"""Problems of packs that are as they were written."""
+
 
 def verify(request: VerifyRequest) -> Verification:
     """Verify a pack. What its files, signature and statement say is looked at before anything in it is used.
@@ -47,7 +50,7 @@ def verify(request: VerifyRequest) -> Verification:
     wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE, timestamp.FILE))
     more, signed = _of_signature(request.folder, key)
     stamp = timestamp.of_pack(request.folder, request.timestamp_root)
-    wrong += [problem for problem in (*more, *stamp.problems) if problem not in wrong]
+    wrong += [problem for problem in (*more, *stamp.problems, *_of_request(request)) if problem not in wrong]
     notes: list[str] = []
     judging, outcome = "not judged again", ""
     if not wrong and audits.is_packed(request.folder):
@@ -57,15 +60,31 @@ def verify(request: VerifyRequest) -> Verification:
         if stated is not None and not wrong:
             judging, wrong, notes = _of_contents(request, stated)
             outcome = stated.outcome
-    elif any(problem.kind != "not signed" for problem in wrong):
+    elif any(problem.kind not in _OF_WHOM for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
-    signed = ", ".join(filter(None, (signed, stamp.said)))
+    date = bag.date_of(request.folder)
+    signed = ", ".join(filter(None, (signed, stamp.said, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"
     states = f"; it states that {_OUTCOMES[outcome]} ({outcome})" if outcome else ""
     sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{states}"
     return Verification(wrong, sentence, [*stamp.notes, *notes])
+
+
+def _of_request(request: VerifyRequest) -> list[Problem]:
+    """Return in what a pack is not what was asked for, however consistent it is: nobody's, or an older one."""
+    found = []
+    if request.require_signature and request.key is None:
+        what = (
+            "its own key says nothing of whose it is" if (request.folder / ENVELOPE).is_file() else "it is not signed"
+        )
+        found.append(Problem("nobody identified", f"{what}: give the signer's with --key"))
+    date = bag.date_of(request.folder)
+    if request.not_before is not None and (date is None or date < request.not_before):
+        said = "without a date" if date is None else f"dated {date}"
+        found.append(Problem("older pack", f"{said}, and not before {request.not_before} was asked for"))
+    return found
 
 
 def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:

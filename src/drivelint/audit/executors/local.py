@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.audit.executors import Outcome
 from drivelint.audit.worker import run_task, warm_up
+from drivelint.computing import resident_bytes
 from drivelint.errors import InternalError
-from drivelint.evaluate.limits import resident_bytes
 from drivelint.without_pandas import leave_out_pandas
 
 if TYPE_CHECKING:

@@ -1,0 +1,54 @@
+"""What work takes: seconds of the processor, which do not depend on what else the machine does, and memory."""
+
+from __future__ import annotations
+
+import os
+import threading
+from contextlib import suppress
+from time import process_time
+
+
+class Work:
+    """Counts the seconds that this process computes, but for its other Python threads, such as those that read logs meanwhile.
+
+    `thread`: the system's number of the thread whose work it is; the database's own threads work for it, too.
+    """
+
+    def __init__(self, thread: int) -> None:
+        self._thread = thread
+        self._seconds = 0.0
+        self._process_s, self._others_s = process_time(), self._others()
+
+    def seconds(self) -> float:
+        """Return the seconds of work until now."""
+        process_s, others_s = process_time(), self._others()
+        by_others = sum(now - self._others_s.get(thread, 0.0) for thread, now in others_s.items())
+        self._seconds += max(0.0, process_s - self._process_s - by_others)
+        self._process_s, self._others_s = process_s, others_s
+        return self._seconds
+
+    def _others(self) -> dict[int, float]:
+        """Return how long each other Python thread has computed; nothing where the system does not tell."""
+        found: dict[int, float] = {}
+        for thread in threading.enumerate():
+            if (number := thread.native_id) is not None and number != self._thread:
+                with suppress(OSError, ValueError, IndexError):
+                    found[number] = int(_content(f"/proc/self/task/{number}/schedstat").split()[0]) / 1e9
+        return found
+
+
+def resident_bytes(process: int | None = None) -> int:
+    """Return the memory that a process (None: this one) has at present; 0 where the system does not tell."""
+    try:
+        return int(_content(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError):  # a process that ends meanwhile may leave the file empty
+        return 0
+
+
+def _content(path: str) -> bytes:
+    """Return what a file of the system says; many times a second, a path object costs more than the file."""
+    file = os.open(path, os.O_RDONLY)
+    try:
+        return os.read(file, 1024)
+    finally:
+        os.close(file)

@@ -1,0 +1,100 @@
+"""Bounds what reading a file may take. A small file can describe a huge drive or map: nobody should wait for it, or lose all memory to it.
+
+What is bounded is computing and growth of memory, by the size of the file. Where reading goes beyond, it is interrupted between two
+steps of Python; a single call into a library goes on to its end.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from drivelint.computing import Work, resident_bytes
+from drivelint.receipts.events import machine_bound
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from drivelint.errors import DriveLintError
+
+T = TypeVar("T")
+
+LEAST_S: Final = 60.0
+S_PER_BYTE: Final = 20e-6
+"""Seconds of computing for any file, and for each byte of it: forty times what the slowest readers take for real logs and maps."""
+LEAST_BYTES: Final = 2 << 30
+BYTES_PER_BYTE: Final = 64
+"""The memory that may be taken for any file, and for each byte of it."""
+_LOOK_S: Final = 0.1
+_PACKAGE: Final = Path(__file__).parents[1]
+
+
+class _BeyondError(BaseException):
+    """Ends reading; no `Exception`, which readers take for a damaged file."""
+
+
+class _Watch:
+    """Looks from a thread of its own at what the thread that made it takes, and interrupts that one once."""
+
+    def __init__(self, n_bytes: int) -> None:
+        self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, LEAST_BYTES + n_bytes * BYTES_PER_BYTE
+        self.excess = ""
+        self._reader = threading.get_ident()
+        self._work, self._before = Work(threading.get_native_id()), resident_bytes()
+        self._over, self._lock = threading.Event(), threading.Lock()
+
+    def begin(self) -> None:
+        """Begin to look."""
+        threading.Thread(target=self._look, daemon=True, name="limits of reading").start()
+
+    def end(self) -> None:
+        """Look no more. An interrupt that is on its way comes before this returns."""
+        self._over.set()
+        with self._lock:
+            pass
+        _noticed()
+
+    def _look(self) -> None:
+        while not self._over.wait(_LOOK_S):
+            if self._work.seconds() > self.seconds:
+                excess = f"more than {self.seconds:.0f} s of computing"
+            elif resident_bytes() - self._before > self.bytes:
+                excess = f"more than {self.bytes >> 20} MiB of memory"
+            else:
+                continue
+            with self._lock:
+                if not self._over.is_set():
+                    self.excess = excess
+                    machine_bound(f"reading took {excess}")
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                        ctypes.c_ulong(self._reader), ctypes.py_object(_BeyondError)
+                    )
+            return
+
+
+def _noticed() -> None:
+    """Do nothing: Python looks for an interrupt where a function begins."""
+
+
+def bounded(read: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
+    """Return what `read` does of a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
+    watch = _Watch(n_bytes)
+    try:
+        try:
+            watch.begin()
+            return read()
+        finally:
+            watch.end()
+    except _BeyondError as error:
+        files = [Path(each.filename) for each in traceback.extract_tb(error.__traceback__)]
+        inner = [
+            file.relative_to(_PACKAGE) for file in files if file.is_relative_to(_PACKAGE) and file != Path(__file__)
+        ]
+        place = inner[-1].with_suffix("").as_posix() if inner else "the end"
+        raise kind(
+            f"{name}: reading it took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): "
+            "it describes more than a drive or a road network has; give a part of it"
+        ) from None

@@ -1,0 +1,67 @@
+"""Reading a file is bounded by its size: a small one that describes a huge drive or map is refused with the reason and the place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import MapError, TraceError
+from drivelint.formats import limits, load_map, read_trace
+from drivelint.road.map_reader import MapSource
+from tests.formats.logs import cars, mapping
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+def for_ever(*_: Any) -> None:
+    kept: list[int] = []
+    while True:
+        kept.append(len(kept))
+        del kept[:-9]
+
+
+def growing(*_: Any) -> None:
+    kept: list[bytearray] = []
+    while True:
+        kept.append(bytearray(b"1" * 2**20))
+
+
+@pytest.mark.parametrize(("read", "why"), [(for_ever, "0 s of computing"), (growing, "64 MiB of memory")])
+def test_reading_that_takes_too_much_is_a_sentence(
+    read: Callable[..., None], why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(limits, "LEAST_S", 0.2 if read is for_ever else 60.0)
+    monkeypatch.setattr(limits, "LEAST_BYTES", 64 << 20 if read is growing else 2 << 30)
+    with pytest.raises(TraceError, match=f"^log: reading it took more than {why}, too much for a file of 5 bytes"):
+        limits.bounded(read, "log", 5, TraceError)
+
+
+def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither another thread, nor what follows, whenever it comes."""
+    monkeypatch.setattr(limits, "LEAST_S", -1.0)
+    monkeypatch.setattr(limits, "_LOOK_S", 0.0001)
+    ends = set()
+    for _ in range(300):
+        try:
+            ends.add(limits.bounded(lambda: sum(range(500)), "log", 5, TraceError))
+        except TraceError:
+            ends.add(0)
+    assert ends <= {0, sum(range(500))}
+    assert 0 in ends
+
+
+def test_readers_of_logs_and_maps_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where they take every `Exception` for a damaged file."""
+    monkeypatch.setattr(limits, "LEAST_S", 0.1)
+    table = tmp_path / "cars.csv"
+    table.write_text("\n".join(cars(3)), encoding="utf-8")
+    monkeypatch.setattr("drivelint.drive.finish.finish_trace", for_ever)
+    with pytest.raises(TraceError, match=r"cars\.csv: reading it took.*\(in formats/"):
+        read_trace(table, IngestOptions(mapping=str(mapping(tmp_path))))
+    monkeypatch.setattr("drivelint.formats.opendrive.reader.read", for_ever)
+    with pytest.raises(MapError, match=r"^map road: reading it took"):
+        load_map(MapSource("road", b"<OpenDRIVE/>"))
