@@ -495,6 +495,6 @@ def test_a_command_is_built_alone() -> None:
     whole = typer.main.get_command(cli.app).commands  # type: ignore[attr-defined]
     for name, command in whole.items():
         part = typer.main.get_command(_part_of(name)).commands  # type: ignore[attr-defined]
-        assert list(part) == [name]
+        assert list(part) == (list(whole) if name == "docs" else [name])  # which tells of all
         assert [param.name for param in part[name].params] == [param.name for param in command.params]
     assert _part_of("nonsense") is _part_of("") is cli.app

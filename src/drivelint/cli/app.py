@@ -218,8 +218,10 @@ def main() -> NoReturn:
 def _part_of(word: str) -> typer.Typer:
     """Return the command line with the command or group of this name alone: to build them all takes longer than some of them run.
 
-    All of them if none has it.
+    All of them if none has it, and for `docs`, which tells of all.
     """
+    if word == "docs":
+        return app
     part = copy(app)
     part.registered_commands = [each for each in app.registered_commands if _name_of(each) == word]
     part.registered_groups = [each for each in app.registered_groups if each.name == word]
