@@ -45,8 +45,10 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": 1, "tests/derive": 1, "tests/evaluate": 1}
+FEW: Final = {"tests/absence": 1, "tests/evaluate": 1}
 """Folder -> so many cases of each of its tests are quick, and the others are marked `ci`, unless the test is marked `sample`."""
+LATER: Final = ROOT / "tests" / "derive"
+"""The folder whose tests are all marked `ci`: to answer the scenes of fifteen files takes half a minute, however few are asked for."""
 
 
 @pytest.fixture(scope="session")
@@ -81,6 +83,8 @@ def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
     """
     by_test: dict[tuple[str, str], list[pytest.Function]] = defaultdict(list)
     for item in items:
+        if item.path.is_relative_to(LATER):
+            item.add_marker(pytest.mark.ci)
         if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
             by_test[str(item.path), item.originalname].append(item)
     for (path, name), cases in by_test.items():

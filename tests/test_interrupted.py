@@ -305,7 +305,7 @@ def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize(
     ("n", "sizes"),
-    [(6, [6]), (9, [8, 1]), (40, [8, 24, 8]), (100, [8, 24, 68])],
+    [(6, [6]), (17, [16, 1]), (40, [16, 24]), (200, [16, 96, 88])],
 )
 def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
     refused = [RefusedLog(Path(f"{k}.csv"), TraceError("broken")) for k in range(n)]
@@ -315,4 +315,4 @@ def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
 def test_the_first_batches_have_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch.Drive, "size", 40_000)
     drives = [batch.Drive(None, None) for _ in range(30)]  # type: ignore[arg-type]
-    assert [len(each) for each in batch.cut_batches(drives)] == [2, 6, 10, 10, 2]
+    assert [len(each) for each in batch.cut_batches(drives)] == [2, 10, 10, 8]
