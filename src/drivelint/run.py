@@ -27,7 +27,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.pictures import Camerawork, chosen_rows, planned_shots
-from drivelint.report.progress import ToldLimits
+from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES, grouped
 from drivelint.result.joining import join

@@ -15,9 +15,12 @@ import pytest
 from drivelint.audit import AuditRequest, AuditSummary, JudgeSettings, audit, summary
 from drivelint.audit.ask import ask
 from drivelint.audit.compact import create_views, database
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE
+from drivelint.audit.sealed import seal
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.summary import summed
 from drivelint.audit.text import summary_text
+from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
 from drivelint.fleet_report.content import content
@@ -277,7 +280,8 @@ def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int])
         lines = summary_text(summed(con, 0), "out", ExitCode.OK).splitlines()
     assert f"  lossy: {', '.join(lossy)} and 1 more" in lines
     assert f"  off their map: {off_map}" in lines
-    (out / "files.json").unlink()
+    results = LocalFolder(out)
+    seal(results, [AUDIT_FILE, RULES_FILE], results.read(SUMMARY_FILE) or b"")
     for kind in ("markdown", "html"):
         name, _ = page.write(str(out), kind, (), None)
         text = (out / name).read_text(encoding="utf-8").replace("`", "").replace("&#45;", "-")

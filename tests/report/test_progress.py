@@ -7,7 +7,8 @@ import time
 import pytest
 import rich.progress
 
-from drivelint.report.progress import Bar, NotePrinter, ToldLimits, notes
+from drivelint.report.progress import Bar, NotePrinter, notes
+from drivelint.report.rule_progress import ToldLimits
 
 
 def test_it_is_told_once_a_minute_how_far_a_stage_is(
