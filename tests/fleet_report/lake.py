@@ -13,6 +13,9 @@ from drivelint.audit.compact import CHUNK_DRIVES, RECEIPT_SCHEMA
 from drivelint.audit.driver import empty_rows
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.model import JudgeSettings
+from drivelint.audit.run import AUDIT_FILE, RULES_FILE
+from drivelint.audit.sealed import seal
+from drivelint.audit.store import LocalFolder
 from drivelint.result.files import parquet_bytes
 
 if TYPE_CHECKING:
@@ -76,7 +79,7 @@ def write(folder: Path, n_drives: int, seed: int = 0, settings: JudgeSettings | 
             path = folder / "tables" / name / f"{first:08d}.parquet"
             path.parent.mkdir(parents=True, exist_ok=True)
             pq.write_table(rows, path, compression="zstd")
-    (folder / "summary.json").write_text(json.dumps({"digest": f"{seed:064d}"}), encoding="utf-8")
+    seal(LocalFolder(folder), [AUDIT_FILE, RULES_FILE], json.dumps({"digest": f"{seed:064d}"}).encode())
     return Lake(folder, n_drives, n_lost, n_findings, worst[0])
 
 

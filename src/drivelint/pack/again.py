@@ -139,7 +139,7 @@ def _of_rule(
             evaluation = Evaluation(con, [binding], margins=True)
             evaluation.prepare()
             evaluation.judge_rule(binding)
-            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
+            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM _reference_step").fetchall())
         tables = {
             table: finding_rows.rows_of_ego(con, table, first["drive_id"], first["ego_id"])
             for table in finding_sql.tables_of(rule)
