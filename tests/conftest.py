@@ -45,10 +45,10 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": 1, "tests/evaluate": 1}
-"""Folder -> so many cases of each of its tests are quick, and the others are marked `ci`, unless the test is marked `sample`."""
+FEW: Final = {"tests/absence": (1, 1), "tests/derive": (0, 4), "tests/evaluate": (1, 3)}
+"""Folder -> so many cases of each of its tests are quick, and so many more `ci`; the others are slow, unless the test is marked `sample`."""
 LATER: Final = ROOT / "tests" / "derive"
-"""The folder whose tests are all marked `ci`: to answer the scenes of fifteen files takes half a minute, however few are asked for."""
+"""The folder of which no test is quick: to answer the scenes of fifteen files takes half a minute, however few are asked for."""
 
 
 @pytest.fixture(scope="session")
@@ -95,7 +95,7 @@ def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
         if sample := cases[0].get_closest_marker("sample"):
             quick, later = _parted(quick, sample.args[0], sample.kwargs.get("ci", 0))
         elif few := FEW.get(Path(path).parent.relative_to(ROOT).as_posix()):
-            quick, later = _parted(quick, few, len(quick))
+            quick, later = _parted(quick, *few)
         for case in cases:
             if case not in quick:
                 case.add_marker(pytest.mark.ci if case in later else pytest.mark.slow)

@@ -24,6 +24,7 @@ def comfort(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.
     return str(row["verdict"])
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize(
     ("hardest_mps2", "ramp_s", "then_mps2", "verdict"),
     [

@@ -18,7 +18,7 @@ from drivelint.scene.judge import differences, gating_rules, judged, rules_for
 from drivelint.scene.scene import Scene, scenes_of
 from tests.drawn import SCENES, TOPICS
 
-BY_CI: Final = {"crossroads", "junctions", "overtaking"}
+BY_CI: Final = {"crossroads", "overtaking"}
 
 
 @pytest.mark.parametrize(

@@ -208,7 +208,7 @@ def test_commands(
     assert run_cli(monkeypatch, "verify", out) == 0
     told = capsys.readouterr()
     assert told.out.startswith(f"{out}: consistent: ")
-    assert "not signed, not judged again" in told.out
+    assert "not signed, dated 2025-11-26, not judged again" in told.out
     assert len(told.out.splitlines()) == 1
     assert "--trace" in told.err
     assert run_cli(monkeypatch, "verify", out, "--key", packed.public) == 1

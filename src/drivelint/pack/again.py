@@ -139,12 +139,15 @@ def _of_rule(
             evaluation = Evaluation(con, [binding], margins=True)
             evaluation.prepare()
             evaluation.judge_rule(binding)
-            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM _reference_step").fetchall())
+            # as the condition sees it
+            con.execute("CREATE OR REPLACE TEMP VIEW reference_step AS SELECT * EXCLUDE (rule_no) FROM _reference_step")
+            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
         tables = {
             table: finding_rows.rows_of_ego(con, table, first["drive_id"], first["ego_id"])
             for table in finding_sql.tables_of(rule)
         }
     finally:
+        con.execute("DROP VIEW IF EXISTS temp.reference_step")
         drop_tables(con)
     return {
         row["finding_id"]: finding_rows.evidence(rule, params, row, references.get(row["ref_id"]), tables)
