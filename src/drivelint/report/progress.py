@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import rich.progress
 
 
-
 TELL_EVERY_S: Final = 60.0
 _LOOK_S: Final = 1.0
 _LEAST_SHARE: Final = 0.1
