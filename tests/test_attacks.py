@@ -195,7 +195,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> Callable[[tuple[str, ...]
 @pytest.mark.parametrize(
     ("topics", "most"),
     [
-        pytest.param(("following",), 2, marks=pytest.mark.ci),
+        pytest.param(("following", "speeds"), 2, marks=pytest.mark.ci),
         pytest.param(tuple(TOPICS), 4, marks=pytest.mark.slow),
     ],
 )

@@ -40,7 +40,8 @@ sample AS (
         CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns,
         g.sensor_range_m IS NOT NULL AND coalesce(CASE WHEN o.are_all THEN NOT coalesce(list_contains(o.of_recorder, st.ego_id), false) ELSE list_contains(o.by_user, st.ego_id) END, false) AS is_measured,
         -- also where it reverses
-        coalesce(s.speed_mps > 5.0 AND abs(sin(course.rad - s.yaw_rad)) > sin(slides_rad()), false) AS slides
+        coalesce(s.speed_mps > 5.0 AND abs(sin(course.rad - s.yaw_rad)) > sin(slides_rad()), false) AS slides,
+        EXISTS (FROM doubt d WHERE d.drive_id = st.drive_id AND d.actor_id = st.ego_id AND d.quantity = 'velocity' AND st.t_ns BETWEEN d.t_from_ns AND d.t_to_ns) AS is_doubted
     FROM step st
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g ON g.drive_id = st.drive_id
@@ -61,7 +62,7 @@ unwrapped_sample AS (
 ),
 slope_sample AS (
     SELECT
-        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured, slides, abs(avg(v - v_of_places) OVER near) / (2 * half_ns) AS off_places_mps2,
+        drive_id, ego_id, seg, t_ns, age_ns, v_long_mps, half_ns, is_measured, slides, is_doubted, abs(avg(v - v_of_places) OVER near) / (2 * half_ns) AS off_places_mps2,
         CASE WHEN whole_window(t_ns, min(t_ns) OVER near, max(t_ns) OVER near, half_ns) THEN
             CASE WHEN count(v) OVER near = count(*) OVER near THEN exact_slope(
                 count(*) OVER near, sum(age_ns::HUGEINT) OVER near, sum(v) OVER near, sum(age_ns * v) OVER near, sum(age_ns::HUGEINT * age_ns) OVER near
@@ -111,7 +112,8 @@ window_sample AS (
     SELECT
         *,
         v_long_mps * yaw_rate_radps AS lat_accel_mps2,
-        first_value({'t_ns': t_ns, 'v': v_long_mps}) OVER (w RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS at_2s,
+        -- The engine doubts a mean at the step at which it ends; what it begins with is doubted here.
+        first_value({'t_ns': t_ns, 'v': CASE WHEN NOT is_doubted THEN v_long_mps END}) OVER (w RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS at_2s,
         first_value({'t_ns': t_ns, 'a': accel_mps2, 'error': accel_error_mps2}) OVER (w RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW) AS at_1s,
         first_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND CURRENT ROW) AS half_window_before,
         last_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN CURRENT ROW AND coalesce(half_ns, 0) FOLLOWING) AS half_window_after
