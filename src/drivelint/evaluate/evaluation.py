@@ -184,8 +184,6 @@ class Evaluation:
         self._empty = store.empty_tables(self.con)
         self._has_doubts = "doubt" not in self._empty
         self._has_sensors = bool(self._count("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
-        if self._has_sensors:
-            self._run("key_frames")
         if self._has_doubts:
             temp_tables.create_doubts(self.con, self.bindings)
         quick = [b for b in self.bindings if self._is_quick(b)]
@@ -273,7 +271,7 @@ class Evaluation:
             if self._has_doubts:
                 self._run("doubt_of_short_time", "doubt_of_steps")
             if self._has_sensors:
-                self._run("error_of_measuring", "error_of_one_sample")
+                self._run("error_of_measuring", "key_frames", "error_of_one_sample")
             if True in kinds:
                 self._run("outcome_of_episodes", *(["outcome_of_holes"] if self._has_holes else []))
         if False in kinds and not self._may_stop(self._count("SELECT count(*) FROM (FROM _occasion LIMIT 1)")):
