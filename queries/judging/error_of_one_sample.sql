@@ -20,13 +20,12 @@ FROM (
     )
     SELECT DISTINCT s.* EXCLUDE (is_ego, n_samples)
     FROM (
-        SELECT s.* EXCLUDE (actor_id), count(a.t_ns) AS n_samples
+        SELECT s.* EXCLUDE (actor_id), count(*) FILTER (a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))) AS n_samples
         FROM side s
         -- an object may be a place of the map, which nobody measures
         SEMI JOIN actor o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id
         LEFT JOIN _key_frame f ON f.drive_id = s.drive_id AND f.actor_id = s.actor_id
         LEFT JOIN actor_state a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND a.t_ns BETWEEN s.t_start_ns AND s.t_end_ns
-            AND a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))
         GROUP BY ALL
     ) s
     WHERE n_samples < 2
