@@ -177,7 +177,7 @@ passage_relation AS (
 relation_result AS (
     SELECT
         a.drive_id, a.ego_id, a.occurrence, a.relation, h.braking,
-        -- Who leaves enough time says nothing where another one may have left too little.
+        -- One vehicle leaves enough time. That decides nothing if another vehicle may have left too little.
         CASE WHEN n.merging IS NULL OR n.other.pet_s < least_junction_s() THEN n.other END AS other,
         coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) WHEN n.merging IS NOT NULL THEN why('turns_in_behind', n.merging) END) AS reason
     FROM passage_relation a

@@ -17,7 +17,7 @@ SOUND_S = 1.0
 def unnoticed(result: Result) -> list[str]:
     """Return a line for each near contact at speed, between two sound tracks, of which nothing is said within a second.
 
-    One of which `ukhc.no-collision` says neither unknown nor near miss is a miss; the line says which it is.
+    The line says whether `ukhc.no-collision` is unknown, or passes as a near miss, or says nothing: MISSED.
     """
     tracks = recording(result.folder).tracks
     egos = [row["ego_id"] for row in result.rows("SELECT DISTINCT ego_id FROM {verdicts} ORDER BY 1")]

@@ -77,7 +77,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """What a rule says about itself, field by field as in the design."""
 
     title: str
-    """What is so where the rule is kept."""
+    """A statement that is true when the rule is kept."""
     breach: str | None = None
     """What happened where it is not, as the title of its findings; None: they are told as "Not kept" and the title."""
     clause: str
