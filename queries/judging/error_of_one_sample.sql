@@ -1,5 +1,6 @@
 -- Two measurements make a miss: one alone may be off, and its neighbours contradict it. Where sensors measured the places, a stretch of
--- misses within which the ego, or the object, was measured once only is not decided. A contact may be over before it is seen twice.
+-- misses within which the ego, or the object, was measured once only is not decided. A contact may be over before it is seen twice, and
+-- nothing contradicts a detection of which the samples beside it say that nobody was detected.
 UPDATE _judged SET holds = NULL, code = 'one_sample'
 FROM (
     WITH miss AS (
@@ -18,9 +19,9 @@ FROM (
         UNION ALL
         SELECT *, unnest(objects) AS actor_id, false AS is_ego FROM stretch
     )
-    SELECT DISTINCT s.* EXCLUDE (is_ego, n_samples)
+    SELECT s.* EXCLUDE (actor_id, is_ego, n_samples)
     FROM (
-        SELECT s.* EXCLUDE (actor_id), count(*) FILTER (a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))) AS n_samples
+        SELECT s.*, count(*) FILTER (a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))) AS n_samples
         FROM side s
         -- an object may be a place of the map, which nobody measures
         SEMI JOIN actor o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id
@@ -28,7 +29,10 @@ FROM (
         LEFT JOIN actor_state a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND a.t_ns BETWEEN s.t_start_ns AND s.t_end_ns
         GROUP BY ALL
     ) s
-    WHERE n_samples < 2
+    ASOF LEFT JOIN actor_state b ON b.drive_id = s.drive_id AND b.actor_id = s.actor_id AND b.t_ns < s.t_start_ns
+    ASOF LEFT JOIN actor_state n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.t_ns > s.t_end_ns
+    GROUP BY ALL
+    HAVING min(n_samples) < 2 AND NOT bool_or(b.x_m IS NULL AND n.x_m IS NULL AND coalesce(b.t_ns, n.t_ns) IS NOT NULL)
 ) x
 WHERE NOT _judged.holds AND _judged.rule_no = x.rule_no AND _judged.drive_id = x.drive_id AND _judged.ego_id = x.ego_id AND _judged.object_id = x.object_id
     AND _judged.profile = x.profile AND _judged.label = x.label AND _judged.t_ns BETWEEN x.t_start_ns AND x.t_end_ns

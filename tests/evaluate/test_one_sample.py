@@ -104,6 +104,27 @@ def test_the_object_counts_as_the_ego_does(tmp_path: Path, missed: list[int], ex
     assert brief(verdicts(rule, given)) == [expected]
 
 
+@pytest.mark.parametrize(
+    ("missed", "unseen", "expected"),
+    [
+        (12, [11, 13], FAIL),
+        (0, [1], FAIL),
+        (N - 1, [N - 2], FAIL),
+        (12, [11], UNKNOWN),
+        (12, [13], UNKNOWN),
+        (12, [10, 14], UNKNOWN),
+        (0, [], UNKNOWN),
+    ],
+)
+def test_nothing_contradicts_a_detection_that_nobody_was_detected_beside(
+    tmp_path: Path, missed: int, unseen: list[int], expected: tuple[str, str]
+) -> None:
+    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
+    given = scene([missed], measured())
+    given["actor_state"]["x_m"] = [None if i in unseen else x for i, x in enumerate(given["actor_state"]["x_m"])]
+    assert brief(verdicts(rule, given)) == [expected]
+
+
 def test_the_sentence_has_both_numbers(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
     (row,) = verdicts(rule, scene([12], measured()))
