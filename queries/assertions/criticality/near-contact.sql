@@ -1,0 +1,65 @@
+-- title = "Room beside whom the ego passes"
+-- breach = "Nearly touched another road user"
+-- clause = "Our default: boxes of data sets leave out mirrors, which stand out by some 0.2 m; who passes nearer than 0.3 m has touched but for luck"
+-- hypothesis = "At every step at which the ego drove past another road user, or that one past it, were there at least 0.3 m between their boxes?"
+-- kind = "invariant"
+-- derivation = "model"
+-- severity = "minor"
+-- legal = "should"
+-- status = "stable"
+-- sense = ">="
+-- unit = "m"
+-- observes = "distance between the two"
+-- near_margin = 0.2
+-- merge_gap_s = 2.0
+-- reads = ["between_steps", "clearance_least", "ego_state", "pair", "state_dynamics"]
+-- requires = ["ego_size", "speeds"]
+--
+-- [params.least_m]
+-- default = 0.3
+-- unit = "m"
+-- why = "our default: a mirror of 0.2 m, and a hand's breadth"
+--
+-- [params.passing_mps]
+-- default = 2.0
+-- unit = "m/s"
+-- why = "our default: a brisk walk; an ego that is slower manoeuvres, and who moves as it does drives beside it and does not pass"
+--
+-- [params.near_m]
+-- default = 3.0
+-- unit = "m"
+-- why = "our default: the width of a lane; who is further away is not passed but met"
+--
+-- [params.contact_s]
+-- default = 2.0
+-- unit = "s"
+-- why = "our default: so long before and after a contact the distance is the contact's, which ukhc.no-collision judges"
+--
+-- [reasons.nearness_between_steps]
+-- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
+
+-- @applies
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
+    -- Who may drive over or under the ego's road is perhaps not passed.
+    CASE WHEN NOT p.off_level THEN e.speed_mps > $passing_mps AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies
+FROM pair p
+LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
+LEFT JOIN state_dynamics o ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
+LEFT JOIN (
+    SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns
+    FROM pair
+    WHERE clearance_m <= 0
+    GROUP BY drive_id, ego_id, object_id
+) c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.object_id = p.object_id
+WHERE coalesce(p.clearance_m, l.least_m, 0.0) <= $near_m AND p.actor_class IS DISTINCT FROM 'object'
+    AND coalesce(p.t_ns < c.t_first_ns - ($contact_s * 1e9)::BIGINT OR p.t_ns > c.t_last_ns + ($contact_s * 1e9)::BIGINT, true)
+
+-- @condition
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $least_m AS required,
+    CASE WHEN b.t_ns IS NULL OR p.clearance_m < $least_m AND NOT p.clearance_is_bound THEN coalesce(p.clearance_m, l.least_m) END AS observed,
+    p.clearance_is_bound OR p.clearance_m IS NULL AS at_least,
+    CASE WHEN observed IS NULL AND b.t_ns IS NOT NULL THEN why('nearness_between_steps', {'step_s': (b.t_next_ns - b.t_ns) / 1e9}) END AS reason
+FROM pair p
+LEFT JOIN between_steps b USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
