@@ -192,6 +192,7 @@ def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.Complete
     assert json.loads(out)["exit"]["code"] == code == 1
 
 
+@pytest.mark.ci
 def test_fail_on_never(ran: Ran) -> None:
     assert ran("check", TRACES[2], *ON_ROAD, *SDA, NO_COPIES, "--fail-on", "never")[0] == 0
 
@@ -238,6 +239,7 @@ def test_a_mistake_is_one_line_with_the_right_exit_code(
     assert got == code or (code is None and got in {2, 4})
 
 
+@pytest.mark.ci
 @pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize(("n", "is_there"), [(1, True), (2, True), (1, False)], ids=["one", "two", "a name of nothing"])
 def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(
@@ -277,6 +279,7 @@ def test_a_log_without_an_ego_says_so(tmp_path: Path, refused: Refused) -> None:
     assert "--ego" in line
 
 
+@pytest.mark.ci
 def test_a_drive_that_cannot_be_judged_does_not_harm_the_others(tmp_path: Path, ran: Ran) -> None:
     bad = tmp_path / "bad.csv"
     bad.write_text("time_s,actor\n", encoding="utf-8")

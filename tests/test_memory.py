@@ -208,7 +208,7 @@ def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tm
     assert again.drives.equals(usual.drives)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [SHORT, AT_COMMIT], ids=["at once", "at commit"])
 def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monkeypatch: pytest.MonkeyPatch) -> None:
     usual = check(overtakes("safe"), Silent())

@@ -164,7 +164,7 @@ def test_a_place_that_is_not_recorded_is_none(tmp_path: Path) -> None:
     require_missed(checked(path), "4.0 of 5.9 s (68 %)", FROM)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_topics_begin_and_end_beside_each_other(tmp_path: Path) -> None:
     """A recorder of ROS finds the odometry up to a second after the objects."""
     missing = [*range(8), *range(N - 8, N)]
@@ -242,7 +242,7 @@ def test_a_frame_far_from_all_others_is_no_part_of_the_drive(tmp_path: Path) -> 
     assert (code, drive["lossy"], drive["duration_s"]) == (1, False, pytest.approx(5.9))
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
     """At 100 Hz, and gone for three seconds in which objects come at 10 Hz: one stretch is unknown, not thirty."""
     messages = [ros_log.things(k / 10, ros_log.thing(1, 300.0, 4.0), topic="/objects") for k in range(60)]

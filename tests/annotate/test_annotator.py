@@ -174,6 +174,7 @@ def test_a_finding_shows_the_pair_concerned_and_says_what_is_wrong(out: Path) ->
     assert text.color.r > 0.8 > text.color.g
 
 
+@pytest.mark.slow
 def test_near_misses_are_drawn_too(logged: tuple[Path, Path]) -> None:
     _, path = logged
     near = [row for row in rows(path.parents[1], "verdicts", path.stem) if row["near_miss"]]
@@ -381,7 +382,7 @@ def test_a_log_that_changes_while_it_is_judged_is_not_judged(tmp_path: Path, mon
     assert not list((tmp_path / "out").rglob("*.mcap*"))
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_ends_the_run(tmp_path: Path) -> None:
     (tmp_path / "annotated").write_text("a file where the folder should be", encoding="utf-8")
     with pytest.raises(OutputError, match=r"cannot write the annotated log: .*--no-annotate"):

@@ -167,6 +167,7 @@ def test_the_time_to_collision_is_that_of_its_rule(out: Path, name: str) -> None
     } == said
 
 
+@pytest.mark.ci
 def test_what_is_not_known_is_left_out(tmp_path: Path) -> None:
     """Without a map nobody knows who comes the other way in which lane, nor a speed limit."""
     path = the(run(tmp_path, CASE / "collision.csv", map=None), "collision")

@@ -437,6 +437,7 @@ def test_margins_need_no_folder(drives: Path, tmp_path: Path) -> None:
     assert drivelint.check(**asked).margins is None
 
 
+@pytest.mark.ci
 def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.mcap").write_bytes(b"\x89MCAP")
     found = drivelint.check(

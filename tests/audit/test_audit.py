@@ -61,6 +61,7 @@ def test_the_planted_contacts_and_only_they_are_found(
     assert counted.exit_code("critical", strict=False) == ExitCode.FAILED
 
 
+@pytest.mark.ci
 def test_the_rows_are_those_of_check(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -146,7 +147,7 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     assert len(released) > 1
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_shards_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
@@ -242,7 +243,7 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
@@ -271,7 +272,7 @@ def tags_in(out: Path) -> list[dict[str, str]]:
     return sorted((dict(row["tags"]) for row in rows), key=str)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 1)
     log = few.manifest.parent / "logs" / "drive-00000.parquet"
@@ -289,7 +290,7 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
         assert "1 log of the name and content of another, with its tags" in summary_text(counted, "out", ExitCode.OK)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     judged(few, tmp_path / "out")

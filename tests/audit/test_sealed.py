@@ -160,6 +160,7 @@ def test_no_run_goes_on_from_changed_rows_without_the_list(
     assert not (copy / MANIFEST).exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [passed, without_a_sense])
 def test_no_run_goes_on_from_changed_rows_that_are_not_packed(
     few: fleet.Fleet, tmp_path: Path, change: Callable[[Path], None]
@@ -196,6 +197,7 @@ def test_an_audit_that_goes_on_is_no_changed_one(few: fleet.Fleet, copy: Path, t
         assert audit.warning
 
 
+@pytest.mark.slow
 def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
     for part in (1, 2):
         judged(few, tmp_path / "out", shard=(part, 2))

@@ -67,6 +67,7 @@ def change(out: Path, **columns: object) -> pa.Table:
     return table
 
 
+@pytest.mark.ci
 def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Path, int]) -> None:
     out, n = audited
     change(out, n_stays=30)
@@ -139,7 +140,7 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
     assert "more reason" not in all_told
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "MOST_RULES", 0)
     few = fleet.write(tmp_path / "fleet", 12)
@@ -148,6 +149,7 @@ def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: p
     assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(counted, "out", ExitCode.FAILED)
 
 
+@pytest.mark.slow
 @pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("ego", ["0", "1"])
 def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: str) -> None:
@@ -180,6 +182,7 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
     assert any(line.startswith("  and 3 more: drivelint sql out ") for line in lines)
 
 
+@pytest.mark.slow
 @pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
     ("tag", "told"),
@@ -230,7 +233,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
@@ -247,6 +250,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
         assert content(con, out, None, ()).n_not_judged == 1
 
 
+@pytest.mark.slow
 @pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize(
     ("column", "value", "words"),
@@ -264,6 +268,7 @@ def test_a_log_that_is_listed_twice_says_what_differs(tmp_path: Path, column: st
     assert f"drive-00000.parquet: {words}" in text
 
 
+@pytest.mark.ci
 def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int]) -> None:
     """On the terminal and on both fleet pages: the first three, of one content one."""
     out, _ = audited

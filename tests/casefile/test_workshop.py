@@ -30,7 +30,7 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
     assert "no case notices" not in "\n".join(said)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
     workshop.new_rule("mine.two", tmp_path, "invariant")
@@ -161,6 +161,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
     assert [line.split(" ")[0] for line in said[4:]] == ["REFUSED"]
 
 
+@pytest.mark.slow
 @pytest.mark.sample(3, ci=3)
 @pytest.mark.parametrize(
     ("cases", "line", "message"),

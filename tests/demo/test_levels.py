@@ -134,6 +134,7 @@ def test_without_the_heights_of_the_log_what_depends_on_them_is_unknown(
     assert not any(row["verdict"] in {"pass", "fail"} and row["object_id"] is not None for row in found)
 
 
+@pytest.mark.ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("name", "heights"),
@@ -181,6 +182,7 @@ def test_the_ego_is_on_the_deck_at_its_height(upper: bool) -> None:
     }
 
 
+@pytest.mark.ci
 @pytest.mark.sample(2)
 @EACH
 @pytest.mark.parametrize("height", [0.0, 0.75])

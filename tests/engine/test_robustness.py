@@ -94,7 +94,7 @@ def test_windows_tell_what_whole_copies_tell(judged: tuple[Path, list[Row]]) -> 
         assert found.counts.get("fail", 0) == row["n_stays"], row["rule_id"]
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_other_drives_of_a_batch_change_nothing(logs: Path, judged: tuple[Path, list[Row]]) -> None:
     alone = checked(logs, ("collision",))
     assert alone == [row for row in judged[1] if row["drive_id"].startswith("collision")]

@@ -65,6 +65,7 @@ def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -
     assert found.decides_ns == found.verdict["t_ref_ns"]
 
 
+@pytest.mark.ci
 def test_a_requirement_is_taken_apart(folder: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     assert math.isclose(sum(part.value for part in found.parts), found.verdict["required"], rel_tol=1e-9)
@@ -89,7 +90,7 @@ def test_a_value_that_is_nearly_nothing_keeps_its_digits() -> None:
     assert told == "Distance 0.0042 m at 7.70 s, object 3.1234 where more than -1.23 m/s2 is required"
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not(folder: Path, tmp_path: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     change = next(c for c in found.changes if c.name == "nominal.pull_out_headroom_m")
@@ -134,6 +135,7 @@ def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_pa
         } <= expected
 
 
+@pytest.mark.ci
 def test_a_finding_is_found_by_the_beginning_of_its_id(folder: Path) -> None:
     found = of(folder, "r126.ds-av-out-of-ov@collision")
     ids = {row["finding_id"]: row for row in _findings(folder)}
@@ -187,7 +189,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert "SELECT" not in text
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path) -> None:
     rule = tmp_path / "packs" / "mine" / "wet.sql"
     rule.parent.mkdir(parents=True)
@@ -206,7 +208,7 @@ def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path)
     assert re.search(rf"ego_state:(?:\n   .*)*\n +lanelet_id +{re.escape(state.rows[0]['lanelet_id'])}", shown)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     """The oncoming car has no place for two seconds, long enough to have been anywhere: there the margin is not known."""
     lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()
@@ -328,7 +330,7 @@ def test_the_kept_database_says_the_same_as_the_log(folder: Path, tmp_path: Path
             assert getattr(read, part) == getattr(kept, part), part
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path) -> None:
     log = tmp_path / "drive.csv"
     shutil.copy(OVERTAKE / "near_miss.csv", log)
@@ -372,6 +374,7 @@ def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     assert "Judged anew it is fail, not pass" in flat(said(found))
 
 
+@pytest.mark.ci
 def test_json_has_it_all(folder: Path) -> None:
     plain = json.loads(to_json(of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(samples=2))))
     assert plain["explain_schema"] == 1
@@ -426,7 +429,7 @@ def test_the_whole_name_of_a_log_goes_before_the_beginning_of_another() -> None:
         _meant("near", known, "drive")
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_worst_verdict_is_meant_unless_one_is_asked_for(folder: Path) -> None:
     found = of(folder, "no-collision")
     assert found.verdict["drive_id"].startswith("collision")

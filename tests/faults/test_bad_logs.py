@@ -72,6 +72,7 @@ def of_sound(result: drivelint.CheckResult) -> list[dict[str, Any]]:
     return [row for row in result.verdicts.arrow().to_pylist() if row["drive_id"].startswith("sound")]
 
 
+@pytest.mark.ci
 @pytest.mark.sample(3, ci=5)
 @pytest.mark.parametrize("bad", BAD_LOGS, ids=id_of)
 def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:

@@ -75,6 +75,7 @@ def test_it_says_what_diff_says_of_two_checks(audited: Audited, checked: list[Pa
     assert changes[0] == changes[1]
 
 
+@pytest.mark.slow
 def test_the_text_has_the_same_words(audited: Audited, checked: list[Path]) -> None:
     ours, theirs = ran("diff", audited.base, audited.new), ran("diff", *checked)
     assert ours.code == theirs.code == 1
@@ -129,6 +130,7 @@ def test_a_true_difference_of_rates_is_called(
     assert called == {rules[3]}
 
 
+@pytest.mark.slow
 def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path) -> None:
     """The other audit says unknown of everything: nothing is fixed."""
     new = tmp_path / "new"
@@ -157,6 +159,7 @@ def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path)
     assert "More is unknown than was" in ran("diff", audited.base, new).out
 
 
+@pytest.mark.slow
 def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_finding(tmp_path: Path) -> None:
     """Of its map it is not known whether it differs; the exit code is that of two checks."""
     drives = fleet.write(tmp_path / "fleet", 8)

@@ -147,6 +147,7 @@ def test_all_are_all_drives_of_the_audit(lake_copy: Path) -> None:
     assert lost["status_reason"] in words(page.find(".//header"))
 
 
+@pytest.mark.slow
 def test_pages_of_an_earlier_report_are_removed_and_nothing_else(own_ten: Path) -> None:
     kept = [own_ten / "drives" / "notes.html", own_ten / "drives" / f"{'a' * 64}.html", own_ten / "summary.json"]
     for file in kept[:2]:
@@ -166,6 +167,7 @@ def test_pages_of_an_earlier_report_are_removed_and_nothing_else(own_ten: Path) 
         file.unlink()
 
 
+@pytest.mark.slow
 def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
     own_ten: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -270,6 +272,7 @@ def test_a_name_holds_nothing_of_a_key_that_is_no_hash() -> None:
     assert not drive_pages.is_page_name(f"drives/{'0a' * 32}.html\n")
 
 
+@pytest.mark.slow
 def test_markdown_leaves_the_pages_as_they_are(ten: Path) -> None:
     before = {file: file.read_bytes() for file in (ten / "drives").iterdir()}
     assert ran("report", ten, "--to", "markdown").code == 0

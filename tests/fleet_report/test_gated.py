@@ -75,6 +75,7 @@ def test_a_waiver_lets_through_until_its_day(audited: Audited, again: Path, tmp_
     assert "expired 2030-01-01 (jo@example.org)" in late.out
 
 
+@pytest.mark.ci
 def test_the_next_run_without_a_gate_has_none(audited: Audited, again: Path) -> None:
     audit(audited, again, "--baseline", audited.new)
     assert (again / "gate.json").is_file()

@@ -127,6 +127,7 @@ def test_findings_of_added_drives_are_told_apart() -> None:
     assert difference_text.least_severity(told, None) == "critical"
 
 
+@pytest.mark.ci
 def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_only_it_has() -> None:
     for told in (compared(), compared(base_also=("shared",), new_also=("shared",))):
         assert set(told.causes) == {("drive", "software")}

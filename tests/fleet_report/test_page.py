@@ -169,7 +169,7 @@ def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     assert made[0] == made[1]
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_markdown_has_the_same_rates(filled: lake.Lake, written: Any) -> None:
     done = ran("report", filled.folder, "--to", "markdown")
     assert done.code == 0
@@ -180,7 +180,7 @@ def test_markdown_has_the_same_rates(filled: lake.Lake, written: Any) -> None:
         assert f"`{row['rule'].split()[-1]}` | {row['severity']} | {row['findings'].replace(',', '')} |" in text
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_command_of_the_worst_drive_opens_it(
     audited: Audited, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -211,7 +211,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     assert log.name in section(written, "open").text_content()
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     out = tmp_path / "out"
@@ -221,7 +221,7 @@ def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> Non
     assert "Not complete" in page_of(out).text_content()
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_baseline_says_what_is_new(audited: Audited) -> None:
     ran("report", audited.new, "--baseline", audited.base)
     since = section(page_of(audited.new), "since")

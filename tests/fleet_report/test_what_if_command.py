@@ -82,6 +82,7 @@ def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, l
     assert sum(becomes.values()) == 12
 
 
+@pytest.mark.slow
 def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
@@ -98,6 +99,7 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     assert [f"  {each['log']}: ego {each['ego_id']}: {each['was']} -> {each['becomes']}" for each in flipped] == lines
 
 
+@pytest.mark.slow
 def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own, tmp_path: Path) -> None:
     manifest, logs = own.fleet.manifest, own.fleet.manifest.parent / "logs"
     shutil.copy(logs / "drive-00000.parquet", logs / "copy.parquet")

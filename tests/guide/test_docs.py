@@ -97,6 +97,7 @@ def test_docs_prints_one_table(docs: Docs) -> None:
     assert "\n\n" not in out.strip()
 
 
+@pytest.mark.ci
 def test_docs_prints_one_vocabulary_and_the_dictionary_all(docs: Docs) -> None:
     code, out, err = docs("dictionary", "lane_type")
     assert (code, err) == (0, "")

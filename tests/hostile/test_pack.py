@@ -47,7 +47,7 @@ def test_it_stands(nasty: Nasty, pack: Path) -> None:
     assert subject["name"] == f"{FILE}.parquet"
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_inputs_of_such_a_name_are_refused_or_found_again(nasty: Nasty, tmp_path: Path) -> None:
     """A name with a line's end would be a line of the manifest."""
     done = ran("pack", nasty.result, "--out", tmp_path / "pack", "--with-inputs")

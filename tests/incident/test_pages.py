@@ -154,7 +154,7 @@ def crowded_first_page(case: Case) -> Case:
     return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
     page_bytes = render(crowded_first_page(case_of("contact-signature@collision")))

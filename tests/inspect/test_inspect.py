@@ -113,6 +113,7 @@ def test_what_cannot_be_decided_is_what_check_calls_missing(road: Path | None) -
     ]
 
 
+@pytest.mark.ci
 def test_a_map_without_limits_and_road_types_promises_no_rule_about_them(tmp_path: Path) -> None:
     bare = re.sub(r"<type .*?</type>|<speed [^>]*>", "", ROAD.read_text("utf-8"), flags=re.DOTALL)
     (tmp_path / "bare.xodr").write_text(bare, "utf-8")
@@ -162,6 +163,7 @@ def test_a_map_of_another_place_is_told_and_not_used() -> None:
     assert exit_code(found) is ExitCode.NOT_JUDGED
 
 
+@pytest.mark.ci
 def test_no_ego_is_no_error_but_a_choice(tmp_path: Path) -> None:
     frames = []
     for i in range(20):

@@ -125,6 +125,7 @@ def test_any_duckdb_gives_the_margin_of_each_finding(packed: PackedAudit) -> Non
         assert not numbers["holds"]
 
 
+@pytest.mark.slow
 def test_an_untouched_pack_is_said_to_be_so_in_one_line(
     packed: PackedAudit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -425,6 +426,7 @@ def test_rows_that_do_not_follow_from_the_log_are_named(packed: PackedAudit, tmp
     assert len(named) == 2
 
 
+@pytest.mark.slow
 def test_rows_of_a_finding_that_do_not_give_its_numbers_are_named(
     packed: PackedAudit, without_logs: Path, tmp_path: Path
 ) -> None:

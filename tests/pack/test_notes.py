@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tests.pack.conftest import Packed
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_what_is_the_packs_own_is_said(packed: Packed, tmp_path: Path) -> None:
     """A profile of the pack has the name of one of drivelint's: verdicts by it come out again, and are not what the name says."""
     own = tmp_path / "rules" / "own"

@@ -47,6 +47,7 @@ def sheets(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted((folder / "incidents").iterdir())}
 
 
+@pytest.mark.slow
 def test_sheets_go_into_the_pack(pack: Path, result: Path) -> None:
     there, packed_sheets = sheets(result), sheets(pack / "data")
     evidence = json.loads((pack / "data/evidence.json").read_text("utf-8"))
@@ -61,6 +62,7 @@ def test_sheets_go_into_the_pack(pack: Path, result: Path) -> None:
     assert [name for name in evidence["left_out"] if "incidents/" in name] == [f"incidents/{name}" for name in left]
 
 
+@pytest.mark.slow
 def test_verify_writes_the_pages_again(packed: Packed, mine: Path) -> None:
     """The one page that was changed is found; the other is as it is written again."""
     page = min((mine / "data/incidents").glob("*.html"))
@@ -73,6 +75,7 @@ def test_verify_writes_the_pages_again(packed: Packed, mine: Path) -> None:
     assert "an incident sheet as PDF is as the pack says: the page beside it is what is written again" in found.notes
 
 
+@pytest.mark.slow
 def test_a_sheet_that_evidence_does_not_name(packed: Packed, mine: Path) -> None:
     shutil.copy(min((mine / "data/incidents").glob("*.html")), mine / "data/incidents/more.html")
     reseal(mine, packed.key)

@@ -224,6 +224,7 @@ def test_without_the_package_a_stamp_is_not_looked_at(
         timestamp.read(pack / timestamp.FILE, b"")
 
 
+@pytest.mark.slow
 def test_a_stamp_of_an_unsigned_pack_is_a_file_that_was_added(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack")
     (pack / timestamp.FILE).write_bytes(b"whatever")

@@ -32,6 +32,7 @@ def dated(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
     return older, newer, make_pack(packed.result, home / "none", packed.key)
 
 
+@pytest.mark.slow
 def test_without_a_key_nobody_is_identified(dated: tuple[Path, ...], packed: Packed, tmp_path: Path) -> None:
     pack = dated[1]
     code, said = verified(pack)
@@ -42,6 +43,7 @@ def test_without_a_key_nobody_is_identified(dated: tuple[Path, ...], packed: Pac
     assert verified(pack, "--require-signature", "--key", packed.other_public)[0] == 1
 
 
+@pytest.mark.slow
 def test_a_pack_that_is_not_signed(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack", None)
     assert not (pack / STATEMENT).exists()
@@ -51,6 +53,7 @@ def test_a_pack_that_is_not_signed(packed: Packed, tmp_path: Path) -> None:
         assert (code, "not signed" in said) == (1, True)
 
 
+@pytest.mark.slow
 def test_an_older_pack_is_told_by_its_date(dated: tuple[Path, ...], packed: Packed, tmp_path: Path) -> None:
     older, newer, without = dated
     swapped = tmp_path / "newest"

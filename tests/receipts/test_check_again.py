@@ -383,6 +383,7 @@ def _copied(to: Path) -> Path:
     return to
 
 
+@pytest.mark.ci
 def test_the_second_run_imports_nothing_heavy(first: Ran, tmp_path: Path) -> None:
     work = _copied(tmp_path / "work")
     command = (

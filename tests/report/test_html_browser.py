@@ -170,6 +170,7 @@ def test_it_prints_whole_though_folded(opened: Page) -> None:
     assert opened.value("document.querySelectorAll('.drive[open]').length") == 0  # folded again
 
 
+@pytest.mark.ci
 def test_markup_in_names_does_nothing(tmp_path: Path) -> None:
     file = tmp_path / "a 'quoted' & <odd> name.html"
     file.write_text(page(nasty()), encoding="utf-8")

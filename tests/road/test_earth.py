@@ -157,6 +157,7 @@ def test_an_osi_log_whose_reference_is_a_placeholder(tmp_path: Path) -> None:
     assert "the log's geo reference" in rows[0]["message"]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["cav_loop/loop_geo_RHD.xodr", "overtake_case_study/t_junction.xodr"])
 def test_a_real_map_against_pyproj(name: str) -> None:
     pyproj = pytest.importorskip("pyproj")
@@ -205,6 +206,7 @@ def run_on(folder: Path, reference: str) -> Result:
     )
 
 
+@pytest.mark.ci
 def test_a_run_puts_findings_and_the_drive_on_the_earth(tmp_path: Path) -> None:
     result = run_on(tmp_path, KARLSRUHE)
     (found, *_) = result.findings.to_pylist()

@@ -69,7 +69,7 @@ def test_outer_joins_compare_both_sides(name: str) -> None:
     assert doubtful(QUERIES[name]) == []
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_those_of_the_statements_of_rules_too() -> None:
     statements = selects.of_rules()
     assert {name: found for name, sql in statements.items() if (found := doubtful(sql))} == {}

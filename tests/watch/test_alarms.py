@@ -27,6 +27,7 @@ VERDICTS = pa.schema([
 BY_CI = ("collision-25mph", "exit-omitted")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.ci if name in BY_CI else pytest.mark.slow) for name in SCENES]
 )

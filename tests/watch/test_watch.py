@@ -131,7 +131,7 @@ def test_advice_names_a_profile_that_has_room() -> None:
     assert [each["mode"] for each in of_type(near, "mode")] == ["aggressive"]
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_it_halts_within_a_step_and_says_so(tmp_path: Path) -> None:
     out = tmp_path / "out"
     messages = watched(*options("ukhc.no-collision"), "--halt-on", "critical", "--out", out, every=2.5)
@@ -164,6 +164,7 @@ with target.open("wb") as file:
 """
 
 
+@pytest.mark.ci
 def test_a_program_that_writes_a_log_is_watched_and_halted(tmp_path: Path) -> None:
     """The program stops for long before the end of the log, so that only the halt can end it in time."""
     script, log = tmp_path / "writer.py", tmp_path / "growing.mcap"

@@ -109,6 +109,7 @@ def expect(table: cdr.Table, name: str, values: list[dict[str, Any]], types: dic
             assert table.columns[member].tolist() == [value[member] for value in values]
 
 
+@pytest.mark.ci
 @settings(max_examples=150, deadline=None)
 @given(cases(), st.sampled_from("<>"))
 def test_any_definition(case: tuple[dict[str, str], list[dict[str, Any]]], order: str) -> None:
