@@ -43,7 +43,8 @@ CREATE OR REPLACE TEMP MACRO hidden_reason(nearest) AS why(CASE nearest.code WHE
 
 -- Parts of sentences.
 CREATE OR REPLACE TEMP MACRO seconds(t_ns) AS format('{:.3f} s', t_ns / 1e9);
-CREATE OR REPLACE TEMP MACRO amount(value, unit) AS format('{:.6g}', value) || coalesce(' ' || unit, '');
+-- Four digits: what a log measures is known no better, and a margin beside a limit still shows.
+CREATE OR REPLACE TEMP MACRO amount(value, unit) AS format(CASE WHEN abs(value) < 9999.5 THEN '{:.4g}' ELSE '{:.0f}' END, value) || coalesce(' ' || unit, '');
 CREATE OR REPLACE TEMP MACRO threshold(sense, value, unit) AS CASE sense WHEN '>' THEN 'more than ' WHEN '>=' THEN 'at least '
     WHEN '<' THEN 'less than ' ELSE 'at most ' END || amount(value, unit);
 CREATE OR REPLACE TEMP MACRO capital(words) AS upper(words[1]) || words[2:];
