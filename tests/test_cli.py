@@ -183,6 +183,7 @@ def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.Complet
     }  # fmt: skip
 
 
+@pytest.mark.ci
 def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.CompletedProcess[str], Path], ran: Ran) -> None:
     _, folder = checked
     asked = [*reversed(TRACES), *ON_ROAD, *SDA, *PROFILES, NO_COPIES]
@@ -192,7 +193,7 @@ def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.Complete
     assert json.loads(out)["exit"]["code"] == code == 1
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_fail_on_never(ran: Ran) -> None:
     assert ran("check", TRACES[2], *ON_ROAD, *SDA, NO_COPIES, "--fail-on", "never")[0] == 0
 
@@ -239,7 +240,7 @@ def test_a_mistake_is_one_line_with_the_right_exit_code(
     assert got == code or (code is None and got in {2, 4})
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize(("n", "is_there"), [(1, True), (2, True), (1, False)], ids=["one", "two", "a name of nothing"])
 def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(

@@ -157,6 +157,7 @@ def test_a_damaged_log_is_annotated_without_its_own_messages(tmp_path: Path) -> 
     assert drivelint.read_trace(annotated, ego="0").drive_id if annotated else False
 
 
+@pytest.mark.slow
 def test_an_annotation_that_fails_voids_no_verdict(tmp_path: Path, good: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ValueError("no picture")

@@ -286,7 +286,7 @@ def test_each_report_is_written_from_the_folder_alone(results: dict[str, Path], 
     assert (folder / "junit.xml").read_bytes() == (results["new"] / "junit.xml").read_bytes()
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_new_run_leaves_no_report_of_an_older_one(ran: Ran) -> None:
     Path("w.toml").write_text(block("file: waivers.toml"), encoding="utf-8")
     check = ["check", SAFE, *ON_ROAD, *SDA, "--no-annotate", "--out", "out"]

@@ -96,7 +96,7 @@ def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = Non
     )
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "later_s",
     [pytest.param(0.0, id="between two drives", marks=pytest.mark.slow), pytest.param(1.0, id="while one is judged")],

@@ -86,6 +86,7 @@ def alone(asked: CheckOptions, tmp_path_factory: pytest.TempPathFactory) -> Alon
     return Alone(written(asked, out, 1, told), out, files(out), told)
 
 
+@pytest.mark.ci
 def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Alone, tmp_path: Path) -> None:
     expected, out, by_one, one = alone
     two = Counter()

@@ -262,7 +262,7 @@ def test_derived_rows_of_a_hundred_thousand_states() -> None:
     assert first["overtake"][0] > 5
 
 
-@pytest.mark.ci
+@pytest.mark.sample(0, ci=20)
 @pytest.mark.parametrize("table", [name for name, d in derivations().items() if d.needs])
 def test_a_derivation_that_is_not_run_would_have_had_no_rows(table: str) -> None:
     step, con = derivations()[table], _filled()

@@ -278,7 +278,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
         con.execute(large)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_tables_that_are_set_aside_on_disk_give_the_same_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, full: bool

@@ -79,7 +79,7 @@ def ragged(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_tracks_are_the_same_wherever_the_egos_are_cut(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -176,6 +176,7 @@ def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
     assert sum("not judged" in line for line in notes.said) == 1
 
 
+@pytest.mark.ci
 def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     from drivelint.engine.derive import derive
 
@@ -327,6 +328,7 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     assert said == {"lht": [], "rht": ["warning"]}
 
 
+@pytest.mark.slow
 @pytest.mark.sample(1, ci=3)
 @pytest.mark.parametrize(("moved_m", "told"), [(0.0, None), (-0.6, None), (0.8, "0.80 m"), (-1.1, "1.10 m")])
 def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told: str | None) -> None:

@@ -195,7 +195,7 @@ def screen(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
     return run
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [(), ("--strict",)])
 def test_the_first_screen_says_it(tmp_path: Path, screen: Screen, more: tuple[str, ...]) -> None:
     """The near miss of the fixtures without its ego from frame 60 of 181 on."""

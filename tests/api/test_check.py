@@ -437,7 +437,7 @@ def test_margins_need_no_folder(drives: Path, tmp_path: Path) -> None:
     assert drivelint.check(**asked).margins is None
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_what_could_not_be_judged_is_said(drives: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "bad.mcap").write_bytes(b"\x89MCAP")
     found = drivelint.check(
@@ -492,6 +492,7 @@ def test_an_interrupt_is_an_interrupt(drives: Path) -> None:
         assert running.returncode == 42, running.stderr and running.stderr.read()
 
 
+@pytest.mark.ci
 def test_types_of_arrays_and_frames_are_taken(drives: Path) -> None:
     asked: dict[str, Any] = {"rules": "ukhc.no-collision", "map": drives / "road.xodr", "robustness": np.False_}
     found = drivelint.check(

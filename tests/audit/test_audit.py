@@ -108,7 +108,7 @@ def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tupl
     assert not executor.tasks
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
     judged(few, tmp_path / "out")
@@ -212,7 +212,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_drive_that_takes_too_long_is_quarantined(drives: fleet.Fleet, tmp_path: Path) -> None:
     one = drives.manifest.parent / "logs" / "drive-00000.parquet"
     request = AuditRequest(
@@ -401,7 +401,7 @@ def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path:
             merge(str(tmp_path / "out"), Silent())
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"

@@ -136,6 +136,7 @@ def leaves(type_: pa.DataType) -> list[pa.DataType]:
     return [type_]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["lake", "a lake of #1, 50 % é"])
 def test_two_readers_find_the_rows_and_types_of_the_packed_tables(out: Path, tmp_path: Path, place: str) -> None:
     lake = tmp_path / place

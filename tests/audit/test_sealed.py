@@ -238,6 +238,7 @@ def open_copies(copy: Path, loose: Path, tmp_path: Path) -> tuple[Path, Path]:
     return copy, tmp_path / shutil.copytree(loose, tmp_path / "loose").name
 
 
+@pytest.mark.slow
 def test_readers_hold_rows_of_an_unfinished_audit_against_its_receipts(open_copies: tuple[Path, Path]) -> None:
     for out in open_copies:
         warned: list[str] = []

@@ -67,7 +67,7 @@ def change(out: Path, **columns: object) -> pa.Table:
     return table
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Path, int]) -> None:
     out, n = audited
     change(out, n_stays=30)
@@ -268,7 +268,7 @@ def test_a_log_that_is_listed_twice_says_what_differs(tmp_path: Path, column: st
     assert f"drive-00000.parquet: {words}" in text
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int]) -> None:
     """On the terminal and on both fleet pages: the first three, of one content one."""
     out, _ = audited

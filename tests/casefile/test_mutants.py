@@ -126,6 +126,7 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
     )
 
 
+@pytest.mark.ci
 def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     rule = with_cases(measured(tmp_path), LOOSE)
     entry = '[[survivor]]\nrule = "pack.rule"\nmutant = "{}"\nreason = "a test"\n'
@@ -151,6 +152,7 @@ def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None
     assert "case 'unknown': expected pass, got unknown" in proof.problem
 
 
+@pytest.mark.slow
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(("key", "other"), [("drive_id", "ego_id"), ("ego_id", "drive_id")])
 def test_a_join_without_a_key_is_noticed_by_cases_of_one_drive_each(tmp_path: Path, key: str, other: str) -> None:

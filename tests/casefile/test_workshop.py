@@ -136,7 +136,7 @@ def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp
     assert "speed_mps" in said
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workshop, "_LOOK_S", 0.01)
     rule = with_cases(measured(tmp_path), CASES)

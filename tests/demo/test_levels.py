@@ -107,7 +107,7 @@ def said() -> dict[str, list[Row]]:
     return found
 
 
-@pytest.mark.sample(2, ci=99)
+@pytest.mark.sample(2, ci=4)
 @EACH
 @pytest.mark.parametrize("variant", ["both", "log"])
 def test_with_heights_the_other_level_changes_no_verdict(said: dict[str, list[Row]], name: str, variant: str) -> None:
@@ -200,7 +200,7 @@ def test_a_height_that_the_log_does_not_have_rules_nothing_out(name: str, height
     assert verdicts == {"unknown"}
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize("road", sorted({scene.map_name for scene in SCENES.values()}))
 def test_check_of_the_files_finds_nobody_on_the_other_level(road: str) -> None:
     folder = ROOT / "fixtures" / "scenes"

@@ -290,7 +290,7 @@ meetings = st.builds(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @settings(max_examples=3)
 @given(st.lists(meetings, min_size=14, max_size=14))
 @example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])

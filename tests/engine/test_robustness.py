@@ -46,7 +46,7 @@ def judged(logs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, 
     return out, checked(logs, ("collision", "near-miss-25mph"), out, keep_db=True)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_about_half(
     judged: tuple[Path, list[Row]],
 ) -> None:
@@ -62,7 +62,7 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
     assert certainty(contact) == POSSIBLE
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_by_default_the_gravest_finding_of_a_rule_is_judged(logs: Path, judged: tuple[Path, list[Row]]) -> None:
     """Two findings of one rule at one time, by two profiles; what is only possible is so after fewer copies, and nothing else differs."""
     told = {(row["rule_id"], row["profile"]): row for row in judged[1] if row["drive_id"].startswith("collision")}

@@ -69,6 +69,7 @@ def test_a_mapping_that_names_the_signal_asks_for_it(names: bool) -> None:
     assert found[HORN] == ("not_applicable", "unrecorded_mode_horn")
 
 
+@pytest.mark.ci
 def test_a_signal_that_the_log_has_is_judged_and_one_of_the_map_stays_unknown() -> None:
     assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][0] in {"pass", "not_applicable"}
     assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][1] != "unrecorded_mode_horn"
@@ -79,6 +80,7 @@ def test_the_law_of_another_nation_is_told_first() -> None:
     assert said(saying(scene(), nation="de"), "ukhc")[HAZARDS] == ("not_applicable", "other_nation")
 
 
+@pytest.mark.slow
 def test_outside_its_conditions_a_rule_does_not_apply_whatever_the_log_lacks() -> None:
     by_day, by_night = (said(saying(scene(), light=light), "ukhc")["r113.headlights"] for light in ("day", "night"))
     assert (by_day, by_night) == (

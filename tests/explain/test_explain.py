@@ -135,7 +135,7 @@ def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_pa
         } <= expected
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_finding_is_found_by_the_beginning_of_its_id(folder: Path) -> None:
     found = of(folder, "r126.ds-av-out-of-ov@collision")
     ids = {row["finding_id"]: row for row in _findings(folder)}
@@ -359,7 +359,7 @@ def test_a_folder_that_moves_with_its_logs_still_finds_them(tmp_path: Path) -> N
     assert of(tmp_path / "b" / "out", "r126.ds").verdict["judged_anew"] == "fail"
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     rule = tmp_path / "packs" / "mine" / "near.sql"
     rule.parent.mkdir(parents=True)
@@ -374,7 +374,7 @@ def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     assert "Judged anew it is fail, not pass" in flat(said(found))
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_json_has_it_all(folder: Path) -> None:
     plain = json.loads(to_json(of(folder, "r126.ds-av-out-of-ov@near_miss", errors=MeasurementErrors(samples=2))))
     assert plain["explain_schema"] == 1

@@ -73,7 +73,7 @@ def of_sound(result: drivelint.CheckResult) -> list[dict[str, Any]]:
 
 
 @pytest.mark.ci
-@pytest.mark.sample(3, ci=5)
+@pytest.mark.sample(3, ci=2)
 @pytest.mark.parametrize("bad", BAD_LOGS, ids=id_of)
 def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:
     good, alone = sound

@@ -340,7 +340,7 @@ def changes(seeded: duckdb.DuckDBPyConnection) -> list[list[RateChange]]:
     return [rate_changes(sides[0][fleet], sides[1][fleet]) for fleet in sides[0]]
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_difference_of_nothing_is_called_in_at_most_5_percent_of_fleets(changes: list[list[RateChange]]) -> None:
     assert len(changes) == FLEETS
     assert {len(fleet) for fleet in changes} == {RULES}
@@ -365,7 +365,7 @@ def test_the_exact_test_is_poissons_given_the_sum(changes: list[list[RateChange]
         assert change.p_value == pytest.approx(rarer, rel=1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_true_difference_is_called_and_shared_logs_are_left_out(seeded: duckdb.DuckDBPyConnection) -> None:
     cursor = seeded.cursor()
     cursor.execute(

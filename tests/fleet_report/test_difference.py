@@ -54,6 +54,7 @@ def checked(audited: Audited, tmp_path_factory: pytest.TempPathFactory) -> list[
     return outs
 
 
+@pytest.mark.slow
 def test_it_says_what_diff_says_of_two_checks(audited: Audited, checked: list[Path]) -> None:
     ours, theirs = compared(audited.base, audited.new), compared(checked[0], checked[1])
     assert ours["counts"] == theirs["counts"]
@@ -95,6 +96,7 @@ def test_the_text_has_the_same_words(audited: Audited, checked: list[Path]) -> N
     )
 
 
+@pytest.mark.slow
 def test_an_audit_against_itself_has_nothing(filled: lake.Lake) -> None:
     found = compared(filled.folder, filled.folder)
     assert found["counts"] == {**dict.fromkeys(found["counts"], 0), "unchanged": filled.n_findings}
@@ -120,6 +122,7 @@ def test_lists_are_cut_and_say_so_and_the_rows_are_all_there(filled: lake.Lake, 
         assert listed[standing] + left == found["counts"][standing] == n[standing]
 
 
+@pytest.mark.slow
 def test_a_true_difference_of_rates_is_called(
     filled: lake.Lake, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -187,6 +187,7 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
     assert pages_in(own_ten) == {drive_pages.page_name(key) for key in worst_keys(own_ten)[:3]}
 
 
+@pytest.mark.slow
 def test_the_same_audit_gives_the_same_bytes(lake_copy: Path) -> None:
     assert made(lake_copy, 20) == made(lake_copy, 20)
 

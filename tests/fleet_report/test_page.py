@@ -159,7 +159,7 @@ def test_the_map_shows_every_finding_or_says_how_many_not(written: Any, filled: 
     assert xs[-1] > 800  # Leeds in the west, Hull in the east
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     made = []
     for _ in range(2):

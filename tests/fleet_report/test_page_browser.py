@@ -160,6 +160,7 @@ def test_paper_has_the_whole_drive_page_within_its_width(drive_page: Page) -> No
     drive_page.call("Emulation.setEmulatedMedia", media="")
 
 
+@pytest.mark.slow
 def test_its_link_leads_back_to_the_fleet_page(drive_page: Page) -> None:
     """The last test of the page, as it leaves it."""
     assert drive_page.value("document.querySelector('header a').offsetHeight > 0")

@@ -149,6 +149,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
         site.write(tmp_path / "file", ())
 
 
+@pytest.mark.slow
 @pytest.mark.sample(0, ci=1)
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("width", [390, 1280])

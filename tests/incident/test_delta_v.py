@@ -63,7 +63,7 @@ def test_a_recording_that_ends_in_the_impact_gives_a_bound() -> None:
     assert found.is_least
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_words(case_of: CaseOf) -> None:
     trace, motion = case_of("no-collision@collision").drive.trace, struck((-1.0, 0.0), (0.5, 0.0))
 

@@ -80,6 +80,7 @@ def rows_of(pack: Path, table: str) -> list[dict[str, Any]]:
     return rows
 
 
+@pytest.mark.slow
 def test_the_statement_names_every_drive_and_what_became_of_it(packed: PackedAudit) -> None:
     predicate = statement_of(packed.pack)["predicate"]
     drives = {drive["log"]: drive for drive in predicate["drivelint_drives"]}

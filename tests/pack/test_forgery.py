@@ -65,6 +65,7 @@ FILES = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.sample(0, ci=99)
 @pytest.mark.parametrize("name", [*FILES, "the log", "the SQL", "the rows"])
 def test_a_byte_of_each_class_of_file(name: str, packed: Packed, tmp_path: Path) -> None:

@@ -215,6 +215,7 @@ def unjudged(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_pack(packed.result, tmp_path_factory.mktemp("unjudged") / "pack", packed.key)
 
 
+@pytest.mark.slow
 @pytest.mark.sample(8)
 @pytest.mark.parametrize("name", BY_SIGNER)
 def test_what_the_signer_forged_is_named(name: str, unjudged: Path, packed: Packed, tmp_path: Path) -> None:

@@ -48,6 +48,7 @@ def opened(busy: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[P
         yield shown
 
 
+@pytest.mark.slow
 def test_it_is_small_and_opens_without_a_word_or_a_request(busy: Result, opened: Page) -> None:
     assert busy.drives["n_egos"][0].as_py() > 20
     assert busy.findings.num_rows > 50

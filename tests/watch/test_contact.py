@@ -261,7 +261,7 @@ class Going(Replay):
         return [Frame(int(t_ns), None, 0) for t_ns in part]
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_latency_of_an_alarm_counts_what_came_while_its_window_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = WatchOptions(
         source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,)

@@ -164,7 +164,7 @@ with target.open("wb") as file:
 """
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_program_that_writes_a_log_is_watched_and_halted(tmp_path: Path) -> None:
     """The program stops for long before the end of the log, so that only the halt can end it in time."""
     script, log = tmp_path / "writer.py", tmp_path / "growing.mcap"
