@@ -1,7 +1,7 @@
 -- title = "Room beside whom the ego passes"
 -- breach = "Nearly touched another road user"
 -- clause = "Our default: boxes of data sets leave out mirrors, which stand out by some 0.2 m; who passes nearer than 0.3 m has touched but for luck"
--- hypothesis = "At every step at which the ego drove past another road user, or that one past it, were there at least 0.3 m between their boxes?"
+-- hypothesis = "At every step at which the ego moved past another road user, or that one past it, were there at least 0.3 m between their boxes?"
 -- kind = "invariant"
 -- derivation = "model"
 -- severity = "minor"
@@ -23,7 +23,7 @@
 -- [params.passing_mps]
 -- default = 2.0
 -- unit = "m/s"
--- why = "our default: a brisk walk; an ego that is slower manoeuvres, and who moves as it does drives beside it and does not pass"
+-- why = "our default: a brisk walk; who differs by less in velocity drives beside the ego and does not pass"
 --
 -- [params.near_m]
 -- default = 3.0
@@ -41,7 +41,7 @@
 -- @applies
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
     -- Who may drive over or under the ego's road is perhaps not passed.
-    CASE WHEN NOT p.off_level THEN e.speed_mps > $passing_mps AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies
+    CASE WHEN NOT p.off_level THEN e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies
 FROM pair p
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
