@@ -8,6 +8,7 @@ from .lots import MOVED_M, Result
 from .recording import Track, apart, recording
 
 NEAR_M = 0.3
+JUDGES = ("ukhc.no-collision", "criticality.near-contact")
 RELATIVE_MPS = 2.0
 STEP_MPS = 3.0
 """Speeds that the positions give and that the recording gives differ by less, and the length of a sound track is longer."""
@@ -17,7 +18,7 @@ SOUND_S = 1.0
 def unnoticed(result: Result) -> list[str]:
     """Return a line for each near contact at speed, between two sound tracks, of which nothing is said within a second.
 
-    The line says whether `ukhc.no-collision` is unknown, or passes as a near miss, or says nothing: MISSED.
+    The line says whether a rule of `JUDGES` is unknown, or passes as a near miss, or says nothing: MISSED.
     """
     tracks = recording(result.folder).tracks
     egos = [row["ego_id"] for row in result.rows("SELECT DISTINCT ego_id FROM {verdicts} ORDER BY 1")]
@@ -27,7 +28,7 @@ def unnoticed(result: Result) -> list[str]:
         statement: {
             (row["ego_id"], row["object_id"])
             for row in result.rows(
-                f"SELECT DISTINCT ego_id, object_id FROM {{verdicts}} WHERE rule_id = 'ukhc.no-collision' AND {condition}"
+                f"SELECT DISTINCT ego_id, object_id FROM {{verdicts}} WHERE rule_id IN {JUDGES} AND {condition}"
             )
         }
         for statement, condition in statements.items()
