@@ -177,6 +177,9 @@ def common_jolts(states: States, step: Steps) -> Mask:
     shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
     common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
     at = middle[common[moment] & alike]
+    # beside a dip everybody seems to rise: the median of a window does not see the dip
+    window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
+    at = at[abs(speed[at] / window - 1.0) > COMMON_CHANGE]
     since = states.t_ns - states.t_ns.min()
     key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * COMMON_NS)
     edges = np.zeros(n + 1, np.int64)
