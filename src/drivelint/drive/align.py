@@ -25,7 +25,7 @@ DIFFERENT_RATE_FACTOR: Final = 1.5
 """A period longer than the ego's by more than this factor is another rate; a smaller difference is a missing sample now and then."""
 COVERED_SHARE: Final = 0.75
 """A track that has a sample at so many of the ego's steps needs no others."""
-_MOVED: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
+_PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
 def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
@@ -58,7 +58,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)
-    return sorted_states(States.joined([states.take(kept), *added])), [finding]
+    return sorted_states(States.concatenate([states.take(kept), *added])), [finding]
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
@@ -101,7 +101,7 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
         numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])
     numbers["yaw_rad"] = wrapped(numbers["yaw_rad"])
     age_s = np.where(inside, 0.0, (steps - t_ns[before]) / 1e9)
-    for place, velocity in _MOVED:
+    for place, velocity in _PLACE_AND_VELOCITY:
         numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])
     codes = {name: values[rows] for name, values in states.codes.items()}
     return States(states.ids, states.actor[rows], steps, numbers, codes, states.not_finite[rows])

@@ -55,7 +55,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     _refuse_no_drive(path, recording.states)
     pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
-    lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
+    lost = lost_time_findings(recording.lost_times, recording.frame_times, recording.states.t_ns)
     asked = absence.asked_ego(recording, options.ego)
     missed, picked = absence.absences(recording, asked), absence.chosen_findings(recording, asked)
     nobody_ns = absence.frames_without_states(recording, missed)
@@ -80,14 +80,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, split.alias)
-    egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, needed=options.need_ego)
+    egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, ego_required=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     findings += actor_rows.resolve_sizes(states, actors)
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
-        findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
+        findings += contradiction.resolve(states, step, actors, derived=derived, split_tracks=split)
         findings += implausible_motion(states, step, actors, derived=derived)
         findings += [*same_bodies(states, actors, egos), *false_entries(states, step), *held_tracks(states, actors)]
     findings += _lights(states, egos)
@@ -115,14 +115,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
 
 
 def _tracks(
-    states: States, named: list[str], *, assumed: bool
+    states: States, named_egos: list[str], *, assumed: bool
 ) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
     """Return the states with their tracks parted where they jump, but for the egos that are named, and the steps of these."""
     step, split, findings = steps(states), jumps.NO_SPLIT, []
     if not assumed:
-        states, gone = jumps.without_removed_actors(states, step, kept=named)
+        states, gone = jumps.without_removed_actors(states, step, kept_ids=named_egos)
         step = steps(states) if gone else step
-        split = jumps.split_tracks(states, step, kept=named)
+        split = jumps.split_tracks(states, step, kept_ids=named_egos)
         findings = [*gone, *split.findings]
     if split.alias:
         states = sorted_states(states)

@@ -134,25 +134,25 @@ def known_motion(states: States, step: Steps) -> Mask:
     return step.continuous & known[1:] & known[:-1]
 
 
-def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
-    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not `known`."""
+def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:
+    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not one of `known_steps`."""
     led: Floats = rate[..., 1:] + rate[..., :-1]
     led *= 0.5
     led *= step.dt_s
-    np.copyto(led, 0.0, where=~known)
+    np.copyto(led, 0.0, where=~known_steps)
     return led
 
 
-def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
+def displacements(states: States, step: Steps, known_steps: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
     """Compare how far positions go and velocities lead over every `k` steps of a track.
 
-    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
+    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are known, and the time in seconds.
     """
     went, led = np.empty((2, 2, max(0, len(states) - k)))
     for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         np.subtract(states.numbers[place][k:], states.numbers[place][:-k], out=went[axis])
-        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known), k)
-    whole: Mask = sums_over(~known, k) == 0
+        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known_steps), k)
+    whole: Mask = sums_over(~known_steps, k) == 0
     return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
 
 

@@ -137,12 +137,12 @@ def _is_result(file: Path, searched: Path) -> bool:
     Who names the folder of annotated logs itself, means them.
     """
     if file.name in RESULT_FILES:
-        return _checked(file.parent)
+        return _is_result_folder(file.parent)
     folder = file.parent.parent
-    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _checked(folder)
+    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _is_result_folder(folder)
 
 
-def _checked(folder: Path) -> bool:
+def _is_result_folder(folder: Path) -> bool:
     return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 

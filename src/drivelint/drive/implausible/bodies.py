@@ -212,55 +212,58 @@ def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
     return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), half, np.stack([vx, vy]))
 
 
-def _deep(one: _Boxes, other: _Boxes) -> Mask:
+def _deep(first: _Boxes, second: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
-    overlap, reach = _overlap(one, other)
-    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach), axis=0)
+    overlap, reach = _overlap(first, second)
+    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(first.half, reach), axis=0)
     return deep
 
 
-def _in_line(one: _Boxes, other: _Boxes) -> Mask:
+def _in_line(first: _Boxes, second: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they are close behind each other, one heading and one track; NaN: no."""
-    overlap, reach = _overlap(one, other)
-    aside = one.half[1] + reach[1] - overlap[1]
-    ahead = one.half[0] + reach[0] - overlap[0]
+    overlap, reach = _overlap(first, second)
+    aside = first.half[1] + reach[1] - overlap[1]
+    ahead = first.half[0] + reach[0] - overlap[0]
     near = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
-    line: Mask = near & ((one.along * other.along).sum(axis=0) > 0.95)
+    line: Mask = near & ((first.along * second.along).sum(axis=0) > 0.95)
     return line
 
 
-def _coupled(one: _Boxes, other: _Boxes) -> bool:
+def _coupled(first: _Boxes, second: _Boxes) -> bool:
     """Say whether two tracks keep close in line at speed in all that both have, and sink into each other without an impact."""
-    line = _in_line(one, other)
+    line = _in_line(first, second)
     if len(line) < COUPLED_LEAST or not line.all():
         return False
-    sunk = _overlap(one, other)[0][0] >= SUNK_M
-    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (one, other)])
+    sunk = _overlap(first, second)[0][0] >= SUNK_M
+    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (first, second)])
     return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
 
 
-def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
+def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
     """Say in which of their first samples (n) two tracks that move overlap, deep at once, or are hardly apart, without an impact."""
-    across, depth = _overlap(one, other)[0][1], _overlap(one, other)[0].min(axis=0)
-    speeds = np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
+    across, depth = _overlap(first, second)[0][1], _overlap(first, second)[0].min(axis=0)
+    speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
-    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
+    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (first, second)]
     # places that are off by so much are not believed before the boxes are as far apart as they overlapped
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
-    if across[0] <= BESIDE_SHARE * 2 * min(one.half[1][0], other.half[1][0]):
+    if across[0] <= BESIDE_SHARE * 2 * min(first.half[1][0], second.half[1][0]):
         most = across[together].max() + BESIDE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
 
 
-def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
+def _overlap(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
     """Return by how much pairs of boxes (n) overlap along the first and across it, negative: are apart, and the other's half extents so."""
-    apart = other.place - one.place
-    cos, sin = (one.along * other.along).sum(axis=0), one.along[0] * other.along[1] - one.along[1] * other.along[0]
-    length, width = other.half
+    apart = second.place - first.place
+    cos, sin = (
+        (first.along * second.along).sum(axis=0),
+        first.along[0] * second.along[1] - first.along[1] * second.along[0],
+    )
+    length, width = second.half
     reach = np.stack([length * abs(cos) + width * abs(sin), length * abs(sin) + width * abs(cos)])
-    offset = np.stack([(apart * one.along).sum(axis=0), one.along[0] * apart[1] - one.along[1] * apart[0]])
-    return one.half + reach - np.abs(offset), reach
+    offset = np.stack([(apart * first.along).sum(axis=0), first.along[0] * apart[1] - first.along[1] * apart[0]])
+    return first.half + reach - np.abs(offset), reach

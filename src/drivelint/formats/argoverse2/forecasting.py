@@ -80,7 +80,7 @@ def read(probe: Probe) -> Recording:
         {"actor_class": classes}, odd,
     )  # fmt: skip
     _place_ego(states)
-    recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost=lost, notes=notes)
+    recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost_times=lost, notes=notes)
     if EGO_ID in states.ids:
         recording.findings.append(vehicle.assumed_size(EGO_ID))
     recording.sensor_range_m = SENSOR_RANGE_M

@@ -108,10 +108,10 @@ def _archive(source: MapSource) -> dict[str, Any]:
     return dict(archive)
 
 
-def _segments(said: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
+def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
     """Return the lane segments by their ids; those that cannot be understood are reported."""
     found: dict[str, _Segment] = {}
-    for key, segment in said.items():
+    for key, segment in records.items():
         try:
             name = _name(segment["id"])
             if name in found:
@@ -126,19 +126,19 @@ def _why(error: Exception) -> str:
     return f"it has no {error}" if isinstance(error, KeyError) else str(error)
 
 
-def _segment(said: Mapping[str, Any]) -> _Segment:
+def _segment(record: Mapping[str, Any]) -> _Segment:
     """Return a segment. Errors: those of `_UNREADABLE`."""
-    left, right = (None if (number := said[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
+    left, right = (None if (number := record[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
     return _Segment(
-        left=_points(said["left_lane_boundary"]),
-        right=_points(said["right_lane_boundary"]),
-        lane_type=str(said["lane_type"]),
-        is_intersection=bool(said["is_intersection"]),
-        successors=tuple(map(_name, said["successors"])),
+        left=_points(record["left_lane_boundary"]),
+        right=_points(record["right_lane_boundary"]),
+        lane_type=str(record["lane_type"]),
+        is_intersection=bool(record["is_intersection"]),
+        successors=tuple(map(_name, record["successors"])),
         left_id=left,
         right_id=right,
-        left_mark=str(said["left_lane_mark_type"]),
-        right_mark=str(said["right_lane_mark_type"]),
+        left_mark=str(record["left_lane_mark_type"]),
+        right_mark=str(record["right_lane_mark_type"]),
     )
 
 
@@ -169,9 +169,9 @@ def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
     return lane
 
 
-def _is_against(own: Floats, with_it: Floats, against: Floats) -> bool:
+def _is_against(bound: Floats, with_it: Floats, against: Floats) -> bool:
     """Say whether a bound is rather one of the other lane's that runs against it than the one that runs with it."""
-    ends = own[[0, -1], :2]
+    ends = bound[[0, -1], :2]
     to_with, to_against = (
         float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
     )
@@ -265,10 +265,10 @@ def _have_heights(*lanes: BoundedLane) -> bool:
     return all(np.isfinite(lane.z).any() for lane in lanes)
 
 
-def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
+def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     """Return the pedestrian crossings, the two edges as the bounds of a lane for people on foot."""
     found = []
-    for key, crossing in said.items():
+    for key, crossing in records.items():
         try:
             first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
             name = _name(crossing["id"])

@@ -70,9 +70,9 @@ def read(probe: Probe) -> Recording:
         )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
     findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
-    others, more = _others(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
+    others, more = _annotated_states(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
     ego = _ego(steps, vehicle.box_poses(rear_axle), others.ids)
-    recording = Recording(NAME, States.joined([ego, others]), ego_ids=[EGO_ID], findings=findings, lost=lost)
+    recording = Recording(NAME, States.concatenate([ego, others]), ego_ids=[EGO_ID], findings=findings, lost_times=lost)
     recording.notes = notes + more
     recording.sensor_range_m = SENSOR_RANGE_M
     recording.conditions["nation"] = NATION
@@ -117,7 +117,7 @@ def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityF
     return [QualityFinding("frame_unresolved", "error", message, n, first)]
 
 
-def _others(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
+def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
     """Return the annotated boxes as states, `rear_axle`: the pose at each, and notes."""
     category = cells.cast(path, rows, "category", pa.string())
     classes, notes = class_codes(category, SENSOR_CLASSES)

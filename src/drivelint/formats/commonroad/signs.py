@@ -93,7 +93,7 @@ class Signs:
         known = {*self.elements, *lights}
         lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known)
         if lost:
-            message = f"lanelets refer to signs or lights that the map does not have: {_counted(lost)}"
+            message = f"lanelets refer to signs or lights that the map does not have: {_counts_text(lost)}"
             self.quality.add("missing_signal", "warning", None, message, lost.total())
         held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
         if idle := sorted(known - held):
@@ -106,12 +106,12 @@ class Signs:
         plain = Counter(e.code for e in unread) - numbered
         if numbered:
             message = (
-                f"signs with a number and a code that is not known ({self.country}): {_counted(numbered)}: "
+                f"signs with a number and a code that is not known ({self.country}): {_counts_text(numbered)}: "
                 "whether they limit the speed is not known"
             )
             self.quality.add("unknown_sign", "warning", None, message, numbered.total())
         if plain:
-            message = f"signs that no rule reads ({self.country}): {_counted(plain)}"
+            message = f"signs that no rule reads ({self.country}): {_counts_text(plain)}"
             self.quality.add("unknown_sign", "info", None, message, plain.total())
 
     def _report_values(self) -> None:
@@ -255,5 +255,5 @@ def _restricts(element: SignElement) -> bool:
     return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
 
 
-def _counted(found: Counter[str]) -> str:
-    return ", ".join(f"{code or 'no code'} ({n})" for code, n in sorted(found.items()))
+def _counts_text(code_counts: Counter[str]) -> str:
+    return ", ".join(f"{code or 'no code'} ({n})" for code, n in sorted(code_counts.items()))

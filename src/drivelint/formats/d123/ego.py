@@ -48,9 +48,9 @@ def read_ego(folder: Path) -> Modality:
     return found
 
 
-def ego_id(taken: Iterable[str]) -> str:
+def ego_id(box_ids: Iterable[str]) -> str:
     """Return an id for the ego that no box has."""
-    name, others = EGO_ID, set(taken)
+    name, others = EGO_ID, set(box_ids)
     while name in others:
         name += "_vehicle"
     return name

@@ -159,9 +159,9 @@ def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tu
     return ((0.0, 1.0, None),), "unread"
 
 
-def _runs_against(lane: Lane, other: Lane) -> bool:
+def _runs_against(lane: Lane, neighbour: Lane) -> bool:
     """Say whether a lane beside another is driven the other way, by their directions where they are nearest to each other."""
-    (own, along), (its, its_along) = _pieces(lane), _pieces(other)
+    (own, along), (its, its_along) = _pieces(lane), _pieces(neighbour)
     near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
     i, j = np.unravel_index(int(np.argmin(near)), near.shape)
     return bool(along[i] @ its_along[j] < 0.0)

@@ -30,7 +30,7 @@ class LightStates(NamedTuple):
     rows: pa.Table
     lanes: tuple[int, ...]
     findings: list[QualityFinding]
-    lost: list[LostTime]
+    lost_times: list[LostTime]
 
 
 def read_lights(folder: Path) -> Modality | None:

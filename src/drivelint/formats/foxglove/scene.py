@@ -95,9 +95,9 @@ def read(path: Path, topic: str | None) -> Recording:
         findings += container.findings
         parts.append(container)
     findings += bag.missing_messages(path, parts, FIELD_TREES.__contains__)
-    name = _chosen(path, scenes, topic, unread)
+    name = _scene_topic(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
-    recording.lost += times_of_parts([(part.path, part.losses) for part in parts])
+    recording.lost_times += times_of_parts([(part.path, part.losses) for part in parts])
     return recording
 
 
@@ -111,7 +111,7 @@ def _kind(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Sch
     return None
 
 
-def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
+def _scene_topic(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
     names = sorted(scenes)
     if topic is not None:
         if topic not in scenes:
@@ -191,7 +191,7 @@ def _recording(
         n = int((~named).sum())
         message = f"{topic}: entities without an id: {n}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, n))
-        lost = _lost(rows.take(~named), topic)
+        lost = _lost_times(rows.take(~named), topic)
         rows = rows.take(named)
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
@@ -206,13 +206,13 @@ def _recording(
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    recording = Recording("foxglove-mcap", states, findings=findings, lost=lost)
+    recording = Recording("foxglove-mcap", states, findings=findings, lost_times=lost)
     recording.notes = [f"positions are in the frame {fixed!r}"]
     recording.frame_times, recording.utc_start_ns = message_times([rows])
     return recording
 
 
-def _lost(nameless: RecordedPoses, topic: str) -> list[LostTime]:
+def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
     """Return when entities without an id were there: from their message on for their lifetime, if they have one."""
     times = zip(nameless.log_ns.tolist(), np.asarray(nameless.lifetime_ns).tolist(), strict=True)
     spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}

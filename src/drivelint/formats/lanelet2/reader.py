@@ -92,11 +92,11 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         yield lane
 
 
-def _beside(own: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
+def _beside(lanelet: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
     """Return the neighbour across a bound: `same` have it as their other bound, `against` as the same one, turned round."""
     for lanes, other_way in ((same, False), (against, True)):
         for x in lanes:
-            if x.id != own.id:
+            if x.id != lanelet.id:
                 return str(x.id), other_way
     return None, None
 

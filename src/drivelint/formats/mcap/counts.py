@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 MESSAGE_INDEX_HEAD: Final = struct.Struct("<HI")
 """Channel, and bytes of the entries behind it."""
 _ENTRY: Final = struct.Struct("<QQ")
-_NAMED: Final = 3
+_MOST_CONTRADICTIONS: Final = 3
 
 
 @dataclass
@@ -25,7 +25,7 @@ class MessageCounts:
     of_channels: Counter[int] = field(default_factory=Counter)
     unused: set[int] = field(default_factory=set)
     _open: dict[int, list[int]] | None = None  # channel -> log times of its messages in the chunk that is being read
-    _closed: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
+    _last_chunk: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
 
     def add(self, channel: int, log_ns: int) -> None:
         """Count a message."""
@@ -35,11 +35,11 @@ class MessageCounts:
 
     def begin_chunk(self) -> None:
         """Begin with the messages of a chunk."""
-        self._open, self._closed = {}, None
+        self._open, self._last_chunk = {}, None
 
     def end_chunk(self) -> None:
         """End with them: all were read."""
-        self._open, self._closed = None, self._open
+        self._open, self._last_chunk = None, self._open
 
     def missing_from_chunk(self, index: memoryview) -> list[int]:
         """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
@@ -47,7 +47,7 @@ class MessageCounts:
         They count as found: whoever asks says that they are lost.
         """
         channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
-        found = None if self._closed is None else self._closed.get(channel, [])
+        found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
         if found is None or length <= _ENTRY.size * len(found) or channel in self.unused:
             return []
         named = Counter(log_ns for log_ns, _ in _ENTRY.iter_unpack(index[MESSAGE_INDEX_HEAD.size :]))
@@ -72,4 +72,4 @@ class MessageCounts:
         ]
         if not told and not (counted and agrees) and index.message_count != total:
             told = [f"{index.message_count} messages, the file has {total}"]
-        return "; ".join(told[:_NAMED]) or None
+        return "; ".join(told[:_MOST_CONTRADICTIONS]) or None

@@ -155,8 +155,8 @@ def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) 
     return not (d.max() - d.min() < MIN_STOP_LINE_SHARE * 2.0 * half or across < np.sin(MIN_STOP_LINE_ANGLE_RAD))
 
 
-def _crossing_kind(placed: PlacedObject) -> str | None:
-    said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
+def _crossing_kind(crossing: PlacedObject) -> str | None:
+    said = f"{crossing.element.get('subtype', '')} {crossing.element.get('name', '')}".lower()
     return "zebra" if "zebra" in said else "signalled" if "signal" in said else None
 
 
@@ -166,14 +166,14 @@ def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuali
     for road in net.roads.values():
         for element in road.element.iterfind("objects/object"):
             try:
-                placed += _placed(road, element, offset)
+                placed += _placements(road, element, offset)
             except MalformedError as error:
                 message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
                 quality.add("invalid_object", "warning", road.road_id, message)
     return sorted(placed, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
 
 
-def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
+def _placements(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
     repeats = element.findall("repeat")
     if not repeats:
         s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])

@@ -92,7 +92,7 @@ class _Reader:
         }  # fmt: skip
         self.signals += [
             {**said, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
-            for lane in self._held(listing, lanes)
+            for lane in self._lanelets_of_signal(listing, lanes)
         ]
         if kind == "stop_line":
             self.stop_lines += [
@@ -100,7 +100,7 @@ class _Reader:
                 for lane in self._stopped(listing, signal, s, lanes)
             ]
 
-    def _held(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
+    def _lanelets_of_signal(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
         """Return the lanelets that a signal holds for.
 
         By direction (orientation + or -: traffic along or against the reference line) among the lanes of its validity,
@@ -127,7 +127,7 @@ class _Reader:
         and drawn beside it. A line that lies across lanes of the other direction only holds for those: its orientation
         is then the way that it faces.
         """
-        held = self._held(listing, lanes)
+        held = self._lanelets_of_signal(listing, lanes)
         width = number(signal, "width", 0.0)
         oriented = listing.get("orientation") in {"+", "-"}
         if listing.find("validity") is not None or (oriented and width < MIN_LINE_M):

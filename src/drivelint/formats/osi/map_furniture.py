@@ -72,14 +72,14 @@ class _Road:
         at = np.array([base.position.x + self.offset[0], base.position.y + self.offset[1], base.position.z])
         return at if base.HasField("position") and np.isfinite(at).all() else None
 
-    def assigned(self, said: Any, base: Any) -> list[BoundedLane]:
+    def assigned_lanes(self, classification: Any, base: Any) -> list[BoundedLane]:
         """Return the lanes that a sign, light or marking is assigned to; of the logical lanes on a physical one those beside it."""
         by_id = {lane.lanelet_id: lane for lane in self.lanes}
-        names = [str(each.assigned_lane_id.value) for each in said.logical_lane_assignment]
+        names = [str(each.assigned_lane_id.value) for each in classification.logical_lane_assignment]
         found = [by_id[name] for name in names if name in by_id]
         if found:
             return _once(found)
-        for ref in said.assigned_lane_id:
+        for ref in classification.assigned_lane_id:
             if ref.value in self.logical_by_physical:
                 held = [by_id[str(name)] for name in self.logical_by_physical[ref.value] if str(name) in by_id]
                 found += _facing(base, self._beside(held, self.place(base)))
@@ -128,8 +128,12 @@ def rotation(base: Any) -> Floats:
     )
 
 
-def _code(said: Any) -> str | None:
-    return kind_of(said.country, said.code, "") if said.country and said.code else None
+def _code(classification: Any) -> str | None:
+    return (
+        kind_of(classification.country, classification.code, "")
+        if classification.country and classification.code
+        else None
+    )
 
 
 def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
@@ -144,7 +148,9 @@ def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
         "unit": None if value is None else kinds.UNITS.get(said.value.value_unit),
         "dynamic": said.variability in kinds.VARIABLE_SIGN,
     }  # fmt: skip
-    return _placed(f"traffic sign {sign.id.value}", row, road.assigned(said, base), road.place(base), quality)
+    return _signal_rows(
+        f"traffic sign {sign.id.value}", row, road.assigned_lanes(said, base), road.place(base), quality
+    )
 
 
 def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
@@ -159,7 +165,7 @@ def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
 
 
 def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) -> Iterable[Row]:
-    lanes = _once([lane for bulb in bulbs for lane in road.assigned(bulb.classification, bulb.base)])
+    lanes = _once([lane for bulb in bulbs for lane in road.assigned_lanes(bulb.classification, bulb.base)])
     icons = {int(bulb.classification.icon) for bulb in bulbs}
     arrows = icons - {kinds.FULL_LIGHT_ICON}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
@@ -168,15 +174,15 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
         "country": "osi", "dynamic": True, "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
     place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
-    return _placed(f"traffic light {name}", row, lanes, place, quality)
+    return _signal_rows(f"traffic light {name}", row, lanes, place, quality)
 
 
-def _placed(
-    what: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
+def _signal_rows(
+    description: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
 ) -> Iterable[Row]:
     """Return the rows of a signal for its lanes; where it stands is the lane's end if the log does not say it."""
     if not lanes:
-        message = f"{what} is assigned to no lane of the map: nobody knows for whom it holds"
+        message = f"{description} is assigned to no lane of the map: nobody knows for whom it holds"
         quality.add("signal_without_lane", "warning", None, message)
     if place is None:
         return [signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row) for lane in lanes]
@@ -217,7 +223,7 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # the longer side of its outline
     reach = float(np.abs((corners - middle) @ way).max())
     line = shapely.LineString([middle - way * reach, middle + way * reach])
-    held = {lane.lanelet_id for lane in road.assigned(mark.classification, mark.base)}
+    held = {lane.lanelet_id for lane in road.assigned_lanes(mark.classification, mark.base)}
     upwards = rotation(mark.base)[:2, 2]
     across: list[tuple[BoundedLane, float, float]] = []
     for lane, s in _over(mark, line, road):

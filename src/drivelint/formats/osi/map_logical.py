@@ -82,7 +82,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
             junction_id=next((f"j{i}" for i in lane.physical_lane_ids if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
-            marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)), limit_source="lane",
+            marks=tuple(_marks(lane, bounds, types, log_has_markings=told)), limits=tuple(_limits(lane)), limit_source="lane",
         )  # fmt: skip
 
 
@@ -137,9 +137,9 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     return joined
 
 
-def _sides(lane: LogicalLane, what: str) -> tuple[Any, Any]:
+def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
     """Return what the message says on the driver's left and right."""
-    both = getattr(lane.message, f"left_{what}"), getattr(lane.message, f"right_{what}")
+    both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 
 
@@ -152,13 +152,13 @@ def _linked(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
         for other in getattr(lane.message, field)
         for pair in ((name, other.other_lane_id.value), (other.other_lane_id.value, name))
     }
-    return sorted((a, b) for a, b in said if a in lanes and b in lanes and a != b and _follows(lanes[a], lanes[b]))
+    return sorted((a, b) for a, b in said if a in lanes and b in lanes and a != b and _leads_into(lanes[a], lanes[b]))
 
 
-def _follows(lane: LogicalLane, other: LogicalLane) -> bool:
+def _leads_into(lane: LogicalLane, next_lane: LogicalLane) -> bool:
     """Say whether a lane ends where another begins and not, as two that run towards each other, where it ends."""
     end = lane.centre[-1, :2]
-    to_begin, to_end = (float(np.linalg.norm(end - other.centre[k, :2])) for k in (0, -1))
+    to_begin, to_end = (float(np.linalg.norm(end - next_lane.centre[k, :2])) for k in (0, -1))
     return to_begin < MAX_LINK_GAP_M and to_begin <= to_end
 
 
@@ -184,8 +184,10 @@ def _neighbour(
     return str(longest), against or other.message.move_direction == kinds.BOTH
 
 
-def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, told: bool) -> Iterator[Mark]:
-    """Yield the markings of both sides. `told`: the log says which markings the boundaries have, so that one without has none."""
+def _marks(
+    lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, log_has_markings: bool
+) -> Iterator[Mark]:
+    """Yield the markings of both sides. `log_has_markings`: the log says which boundaries have markings, so that one without has none."""
     sides = _sides(lane, "boundary_id")
     for word, ids, nearest_first in (("left", sides[0], lane.along > 0), ("right", sides[1], lane.along < 0)):
         for i in ids:
@@ -196,7 +198,11 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
                 continue
             # from right to left of the reference line
             physical = [types.get(p.value) for p in bound.physical_boundary_id]
-            marking = kinds.marking(physical if nearest_first else physical[::-1]) if physical or not told else "none"
+            marking = (
+                kinds.marking(physical if nearest_first else physical[::-1])
+                if physical or not log_has_markings
+                else "none"
+            )
             yield Mark(word, begin, end, marking, kinds.LANE_CHANGES.get(bound.passing_rule))
 
 

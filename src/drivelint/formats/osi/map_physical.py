@@ -63,13 +63,13 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     return found
 
 
-def _ascending(said: Any, *, drops: bool) -> bool:
+def _ascending(classification: Any, *, drops: bool) -> bool:
     """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
-    if said.HasField(_DIRECTION):
-        return bool(said.centerline_is_driving_direction)
+    if classification.HasField(_DIRECTION):
+        return bool(classification.centerline_is_driving_direction)
     if drops:
         return False
-    if _kind(said)[1]:
+    if _kind(classification)[1]:
         raise UnbuildableError(
             "nothing says in which direction it is driven (centerline_is_driving_direction is not set)"
         )
@@ -133,11 +133,11 @@ def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
-def _along(side: Floats, other: Floats) -> Floats:
+def _along(side: Floats, opposite_side: Floats) -> Floats:
     """Return the part of a boundary that another lies beside. Errors: `UnbuildableError` where there is none."""
     s = stations(side)
     line = shapely.LineString(side[:, :2])
-    begin, end = (float(line.project(shapely.Point(p))) for p in (other[0, :2], other[-1, :2]))
+    begin, end = (float(line.project(shapely.Point(p))) for p in (opposite_side[0, :2], opposite_side[-1, :2]))
     if end - begin < 1e-3:
         raise UnbuildableError("its two boundaries do not lie beside each other in the same order")
     at = np.unique(np.concatenate([[begin, end], s[(s > begin) & (s < end)]]))
@@ -182,12 +182,12 @@ def _nearest(points: Floats, to: Floats) -> Floats:
     return points[np.argsort(np.hypot(*(points - to).T), kind="stable")[:1]]
 
 
-def _kind(said: Any) -> tuple[str, bool]:
-    if said.type in {_DRIVING, kinds.INTERSECTION}:
-        kind = kinds.LANE_KINDS.get(said.subtype, "driving")
+def _kind(classification: Any) -> tuple[str, bool]:
+    if classification.type in {_DRIVING, kinds.INTERSECTION}:
+        kind = kinds.LANE_KINDS.get(classification.subtype, "driving")
         return (kind if kind in kinds.DRIVABLE else "driving"), True
-    kind = kinds.LANE_KINDS.get(said.subtype, "none")
-    return kind if said.type == _NONDRIVING and kind != "driving" else "none", False
+    kind = kinds.LANE_KINDS.get(classification.subtype, "none")
+    return kind if classification.type == _NONDRIVING and kind != "driving" else "none", False
 
 
 def lanelets(
@@ -229,7 +229,7 @@ def _linked(physical: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
                 pairs.add((getattr(pair, before).value, i))
             if pair.HasField(after):
                 pairs.add((i, getattr(pair, after).value))
-    return sorted((a, b) for a, b in pairs if a in physical and b in physical and _follows(physical[a], physical[b]))
+    return sorted((a, b) for a, b in pairs if a in physical and b in physical and _leads_into(physical[a], physical[b]))
 
 
 def _neighbour(
@@ -249,8 +249,8 @@ def _marking(ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
     return kinds.marking(sorted(found)) if len(found) == 1 else None
 
 
-def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
-    return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < MAX_LINK_GAP_M)
+def _leads_into(lane: PhysicalLane, next_lane: PhysicalLane) -> bool:
+    return bool(np.linalg.norm((lane.centre[-1] - next_lane.centre[0])[:2]) < MAX_LINK_GAP_M)
 
 
 def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:

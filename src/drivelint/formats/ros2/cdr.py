@@ -148,7 +148,7 @@ class _Compiler:
             subtree = tree[member.name] if tree is not None and wanted else None
             path = f"{prefix}{member.name}"
             if member.count == SEQUENCE:
-                self._sequence(member.kind, path, subtree, wanted=wanted)
+                self._sequence(member.kind, path, subtree, keep_items=wanted)
             elif member.kind in NUMPY_CODES:
                 self._primitive(NUMPY_CODES[member.kind], path if wanted else None, member.count)
             else:
@@ -173,12 +173,12 @@ class _Compiler:
         block.size += length
         self._rest = (self._rest + length) % self._modulus
 
-    def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, wanted: bool) -> None:
-        keep = path if wanted else None
+    def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, keep_items: bool) -> None:
+        keep = path if keep_items else None
         if kind in NUMPY_CODES:
             self._then(_Numbers(NUMPY_CODES[kind], 1, keep))
             return
-        sizes = [] if wanted or kind in TEXT_TYPES else self._sizes(kind)
+        sizes = [] if keep_items or kind in TEXT_TYPES else self._sizes(kind)
         if 0 not in sizes and len(set(sizes)) == 1:
             self._then(_Numbers(f"u{sizes[0]}", len(sizes), None))
         elif kind in TEXT_TYPES:
@@ -300,7 +300,7 @@ class _Batch:
         for i, step in enumerate(program):
             if isinstance(step, _Block):
                 for path, code, offset, count in step.keep:
-                    table.columns[path] = self._taken(code, walk.start[i] + offset, count)
+                    table.columns[path] = self._values_at(code, walk.start[i] + offset, count)
             elif isinstance(step, _Numbers) and step.keep is not None:
                 table.columns[step.keep] = self._numbers(step, walk.start[i], walk.length[i])
             elif isinstance(step, _Items) and step.keep is not None:
@@ -313,10 +313,10 @@ class _Batch:
         first = np.full((len(start), MAX_KEPT_NUMBERS), np.nan)
         for k in range(MAX_KEPT_NUMBERS):
             has = np.flatnonzero(length > k)
-            first[has, k] = self._taken(step.code, start[has] + k * step.size, None)
+            first[has, k] = self._values_at(step.code, start[has] + k * step.size, None)
         return first
 
-    def _taken(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
+    def _values_at(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
         view, index = self._views[code], at // int(code[1])
         return view[index] if count is None else view[index[:, None] + np.arange(count)]
 
@@ -324,7 +324,7 @@ class _Batch:
         """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
         cursor += -cursor & 3
         self._check(cursor + 4, end, message)
-        length = self._taken("u4", cursor, None).astype(np.int64)
+        length = self._values_at("u4", cursor, None).astype(np.int64)
         cursor += 4
         self._check(cursor + length * item_bytes, end, message)
         return length
@@ -342,8 +342,8 @@ class _Batch:
         if beyond.any():
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
-    def _misfit(self, i: int, what: str) -> TraceError:
-        return self._packets[i].error(self._path, f"the {self._name} {what}")
+    def _misfit(self, i: int, problem: str) -> TraceError:
+        return self._packets[i].error(self._path, f"the {self._name} {problem}")
 
 
 def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:

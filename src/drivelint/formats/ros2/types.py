@@ -66,8 +66,8 @@ def short_type_name(name: str) -> str:
 def parse(path: Path, name: str, text: bytes) -> Types:
     """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
 
-    def wrong(what: str) -> TraceError:
-        return TraceError(f"{path}: the definition of {name} in the log {what}")
+    def wrong(problem: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {problem}")
 
     sections = _sections(name, text, wrong)
     defined = {title for title, _ in sections}
@@ -81,8 +81,8 @@ def parse(path: Path, name: str, text: bytes) -> Types:
 def whole_number_constants(path: Path, name: str, text: bytes) -> dict[str, dict[str, int]]:
     """Return the constants of `name` and of all it uses that are whole numbers: full name of the message -> constant -> its value."""
 
-    def wrong(what: str) -> TraceError:
-        return TraceError(f"{path}: the definition of {name} in the log {what}")
+    def wrong(problem: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {problem}")
 
     found: dict[str, dict[str, int]] = {}
     for title, body in _sections(name, text, wrong):

@@ -207,19 +207,19 @@ def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float)
     lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
 
 
-def _of_parallel_lanes(lanes: Sequence[CentreLine], others: Sequence[CentreLine]) -> None:
+def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
     """Take the middle between two lanes that run beside each other, whichever way, for the bound of which nobody tells.
 
     Lanes that fork or join run beside each other, too, but share ground.
     """
-    tree = shapely.STRtree([shapely.LineString(lane.line) for lane in others])
+    tree = shapely.STRtree([shapely.LineString(lane.line) for lane in all_lanes])
     least, most = _LANES_APART_M
     for lane in lanes:
         for side in (0, 1):
             unknown = np.flatnonzero(np.isnan(lane.half[:, side]))
             rays = _rays(lane, side, most, lane.line)[unknown]
             for k, i in tree.query(rays, predicate="intersects").T:
-                other, at = others[i], int(unknown[k])
+                other, at = all_lanes[i], int(unknown[k])
                 if other is lane or not {*lane.before, *lane.after}.isdisjoint((*other.before, *other.after)):
                     continue
                 place = shapely.intersection(rays[k], tree.geometries[i])

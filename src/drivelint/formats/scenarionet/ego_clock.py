@@ -37,7 +37,7 @@ class EgoTrack(NamedTuple):
 
     place: Floats
     heading: Floats
-    lost: int
+    lost_messages: int
     shift_s: float
 
 

@@ -88,9 +88,9 @@ def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
     return place + offset if len(place) == 2 and bool((np.abs(place) < FARTHEST_M).all()) else None
 
 
-def _report_lost(names: list[str], what: str, quality: MapQuality) -> None:
+def _report_lost(names: list[str], kind: str, quality: MapQuality) -> None:
     if names:
-        message = f"{what} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
+        message = f"{kind} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
         quality.add("signal_without_lane", "warning", None, message, len(names))
 
 

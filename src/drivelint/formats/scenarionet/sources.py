@@ -25,7 +25,7 @@ _DISTINCT_MPS: Final = 0.05
 _SAME_MPS: Final = 0.02
 _SAME_SHARE: Final = 0.01
 """A velocity is a difference of the positions if it is this near to it: clocks that were rounded to a step change it by less than 0.1 %."""
-_MOST: Final = 0.9
+_LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
 _EVEN_M: Final = 1e-4
 _WIDER: Final = 1.2
@@ -67,7 +67,7 @@ def _difference(tracks: Tracks, group: Mask) -> str | None:
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
         same = off < _SAME_MPS + _SAME_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
-        if same[tells].mean() > _MOST:
+        if same[tells].mean() > _LEAST_SAME_SHARE:
             return when
     return None
 

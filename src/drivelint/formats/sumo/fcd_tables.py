@@ -32,7 +32,7 @@ _PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's where all of these are there."""
 _INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Read as numbers at once; what another element has in columns behind the slope may be a text."""
-_READ: Final = (*ATTRIBUTES, "lane", "edge")
+_READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
 _NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
 _LIGHTS_AND_MORE: Final = ("signals", "acceleration")
 """What vehicles alone have."""
@@ -45,11 +45,11 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     """
     there = set(names)
     if there >= _PLAIN:
-        return {"": {name: name for name in ("time", *_READ) if name in there}}
+        return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
     found = {}
     for kind in KINDS if _TIME in there else ():
         for prefix in (f"{kind}_", f"timestep_{kind}_"):
-            columns = {name: prefix + name for name in _READ if prefix + name in there}
+            columns = {name: prefix + name for name in _READ_COLUMNS if prefix + name in there}
             if {"id", "x", "y"} <= columns.keys():
                 found[kind] = {"time": _TIME, **columns}
     return found

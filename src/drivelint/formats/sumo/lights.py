@@ -88,7 +88,7 @@ def _read(file: Path, recording: Recording) -> None:
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{what}: {n}: they are left out", n))
         timed = np.abs(times_s) < _LONGEST_S
         t_ns = np.round(np.where(timed, times_s, 0.0) * 1e9).astype(np.int64)
-        recording.lost += times_of_lost_rows(t_ns, timed, unread, what)
+        recording.lost_times += times_of_lost_rows(t_ns, timed, unread, what)
 
 
 def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:

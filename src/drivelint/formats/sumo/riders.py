@@ -43,9 +43,9 @@ def riding(rows: Rows) -> Mask:
     return found
 
 
-def _first(place: np.ndarray, chosen: Mask) -> np.ndarray:
+def _first(place: np.ndarray, candidates: Mask) -> np.ndarray:
     """Return for each place the first of the chosen rows that is there, the number of rows where none is."""
     found = np.full(int(place.max(initial=-1)) + 1, len(place))
-    rows = np.flatnonzero(chosen)[::-1]
+    rows = np.flatnonzero(candidates)[::-1]
     found[place[rows]] = rows
     return found

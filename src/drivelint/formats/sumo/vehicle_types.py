@@ -62,15 +62,17 @@ def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -
     return UNKNOWN_TYPE, None
 
 
-def types_for(log: Path, given: str | None) -> tuple[dict[str, VehicleType], list[str]]:
-    """Return vType id -> what it says, and notes on where from: `given`, the user's file, else the files beside the log.
+def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
+    """Return vType id -> what it says, and notes on where from: `types_file`, the user's file, else the files beside the log.
 
     Errors: `UsageError` for a given file that has no vType.
     """
-    if given is not None:
-        found = _read(Path(given))
+    if types_file is not None:
+        found = _read(Path(types_file))
         if not found:
-            raise UsageError(f"--mapping {given}: has no vType: give the route or additional file of the simulation")
+            raise UsageError(
+                f"--mapping {types_file}: has no vType: give the route or additional file of the simulation"
+            )
         return found, []
     types: dict[str, VehicleType] = {}
     files: dict[str, str] = {}

@@ -184,7 +184,7 @@ def _states(path: Path) -> Recording:
     if lost.any():
         what, n_lost = f"{path.name}: rows without actor or time", int(lost.sum())
         recording.findings = [QualityFinding("dropped_row", "error", f"{what}: {n_lost}: they are not judged", n_lost)]
-        recording.lost = times_of_lost_rows(t_ns, timed, lost, what)
+        recording.lost_times = times_of_lost_rows(t_ns, timed, lost, what)
     return recording
 
 
