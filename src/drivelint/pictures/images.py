@@ -64,7 +64,7 @@ def _encoded(image: Image.Image, quality: int) -> bytes:
 def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
     if isinstance(image, RawImage):
         return _of_pixels(image)
-    return _opened(image) if isinstance(image, EncodedImage) else image
+    return _open_image(image) if isinstance(image, EncodedImage) else image
 
 
 def _times_too_large(image: Image.Image) -> int:
@@ -72,7 +72,7 @@ def _times_too_large(image: Image.Image) -> int:
     return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_PX, strict=True)))
 
 
-def _opened(image: EncodedImage) -> Image.Image:
+def _open_image(image: EncodedImage) -> Image.Image:
     try:
         opened = Image.open(io.BytesIO(image.data), formats=_FORMATS)
         if opened.width * opened.height > _MOST_PIXELS:

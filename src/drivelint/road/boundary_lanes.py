@@ -183,10 +183,10 @@ def map_from_bounds(
     return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo, nation=nation)
 
 
-def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:
+def signal_row(lane: BoundedLane, s_m: float, place: Floats, **columns: Any) -> dict[str, Any]:
     """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
     return {
-        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **said,
+        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **columns,
         "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else lane.line.length - s_m,
         "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
     }  # fmt: skip

@@ -82,15 +82,15 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 
-def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, side: float, reach_m: float) -> Floats:
+def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
     """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
-    x, y, z, half = ((pieces.begin + pieces.end) / 2)[chosen].T
-    ux, uy = pieces.ux[chosen], pieces.uy[chosen]
+    x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
+    ux, uy = pieces.ux[indices], pieces.uy[indices]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
     probe, other = tree.query(shapely.linestrings(*across), predicate="intersects")
     along = ux[probe] * pieces.ux[other] + uy[probe] * pieces.uy[other]
-    beside = (pieces.lane[other] != pieces.lane[chosen[probe]]) & (np.abs(along) > _ALONG)
+    beside = (pieces.lane[other] != pieces.lane[indices[probe]]) & (np.abs(along) > _ALONG)
     probe, other, along = probe[beside], other[beside], along[beside]
     # where the line across meets the other's middle
     other_x, other_y, other_z, other_half = pieces.begin[other].T
@@ -103,7 +103,7 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, si
     probe, gap, along = probe[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probe))
     nearest = order[np.r_[True, np.diff(probe[order]) > 0]] if len(order) else order
-    found = np.full(len(chosen), np.inf)
+    found = np.full(len(indices), np.inf)
     found[probe[nearest]] = np.where(along[nearest] < 0, gap[nearest], np.inf)
     return found
 

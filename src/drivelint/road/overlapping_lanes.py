@@ -63,14 +63,14 @@ def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> floa
     across = abs(float(first[0] * second[1] - first[1] * second[0]))
     angle = float(np.arcsin(min(across, 1.0)))  # two that run against each other on the same ground do not cross
     if set(a.successors) & set(b.successors):
-        angle = max(angle, _between(a.line.tangent[0], b.line.tangent[0]))
+        angle = max(angle, _angle_between(a.line.tangent[0], b.line.tangent[0]))
     if np.hypot(*(a.line.centre[0] - b.line.centre[0])) < 1.0:
-        angle = max(angle, _between(a.line.tangent[-1], b.line.tangent[-1]))
+        angle = max(angle, _angle_between(a.line.tangent[-1], b.line.tangent[-1]))
     return angle
 
 
-def _between(one: Floats, other: Floats) -> float:
-    return float(np.arccos(np.clip(one @ other, -1.0, 1.0)))
+def _angle_between(first: Floats, second: Floats) -> float:
+    return float(np.arccos(np.clip(first @ second, -1.0, 1.0)))
 
 
 def _at(lane: BoundedLane, area: shapely.Geometry, values: Floats) -> Floats:

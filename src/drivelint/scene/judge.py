@@ -27,19 +27,21 @@ if TYPE_CHECKING:
     from drivelint.scene.document import SceneText
     from drivelint.scene.scene import Scene
 
-REFUSED: Final = "refused"
+NOT_JUDGED: Final = "refused"
 """The verdict on a scene whose log could not be judged."""
 _MET: Final = {
     "fail": {"fail"},
     "pass": {"pass"},
     "unknown": {"unknown"},
     "not_applicable": {"not_applicable"},
-    "refused": {REFUSED},
-    "not fail": {"pass", "unknown", "not_applicable", REFUSED},
-    "not pass": {"fail", "unknown", "not_applicable", REFUSED},
+    "refused": {NOT_JUDGED},
+    "not fail": {"pass", "unknown", "not_applicable", NOT_JUDGED},
+    "not pass": {"fail", "unknown", "not_applicable", NOT_JUDGED},
 }
 """What may be expected -> the verdicts that meet it."""
-_EXPECTED: Final = re.compile(r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL)
+_EXPECTATION: Final = re.compile(
+    r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL
+)
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 _GRAVE: Final = {"critical", "major"}
 
@@ -64,7 +66,7 @@ class Verdicts(NamedTuple):
     def verdict(self, key: Key) -> str:
         """Return the verdict of a rule on a scene: its worst row's."""
         found = {row["verdict"] for row in self.rows.get(key, ())}
-        return next((verdict for verdict in _WORST if verdict in found), REFUSED)
+        return next((verdict for verdict in _WORST if verdict in found), NOT_JUDGED)
 
     def codes(self, key: Key) -> set[str]:
         """Return the reason codes of its rows with that verdict."""
@@ -87,14 +89,16 @@ def reason_codes(row: Row) -> set[str]:
 
 def expectation(text: str) -> Expectation:
     """Read an expectation: `fail: it touches the car`. Errors: `UsageError`."""
-    found = _EXPECTED.fullmatch(text.strip())
+    found = _EXPECTATION.fullmatch(text.strip())
     verdict = found["verdict"] if found else text.partition(":")[0]
     if found is None or verdict not in _MET:
         raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _MET)}")
     return Expectation(verdict, found["code"], found["why"] or "")
 
 
-def judged(scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()) -> Verdicts:
+def judge_scenes(
+    scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
+) -> Verdicts:
     """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
     for scene in scenes:
         at = folder / scene.name
@@ -167,7 +171,7 @@ def scene_test(
         if out is not None:
             _write(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judged(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
+        verdicts = judge_scenes(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
     gating = gating_rules(known) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
@@ -183,15 +187,15 @@ def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 
 
-def gating_rules(known: Mapping[str, Rule]) -> frozenset[str]:
+def gating_rules(rules: Mapping[str, Rule]) -> frozenset[str]:
     """Return the rules of which no fail goes unnoticed."""
-    return frozenset(rule.id for rule in known.values() if rule.status == "stable")
+    return frozenset(rule.id for rule in rules.values() if rule.status == "stable")
 
 
-def _refuse_wrong_expectations(scene: Scene, known: Mapping[str, Rule]) -> None:
+def _refuse_wrong_expectations(scene: Scene, rules: Mapping[str, Rule]) -> None:
     for rule, said in scene.text.expect.items():
-        if rule not in known:
-            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, known)}")
+        if rule not in rules:
+            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, rules)}")
         expectation(said)
 
 

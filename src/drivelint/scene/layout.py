@@ -10,7 +10,7 @@ import msgspec
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.road import DRIVEN, Lane, Piece, Pose, Road, Turn, joined
+from drivelint.scene.road import DRIVABLE_KINDS, Lane, Piece, Pose, Road, Turn, connecting_piece
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
 _THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
-_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
+_FORM_WITH_NAME: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
-    *DRIVEN,
+    *DRIVABLE_KINDS,
     "shoulder",
     "sidewalk",
     "median",
@@ -122,11 +122,11 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
 def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
     """Refuse words of things, lanes and marks that nobody would read. Errors: `UsageError`."""
     for thing in text.things:
-        what, _, rest = thing.what.partition(" ")
-        if what in _NAMED and not rest:
-            raise UsageError(f"road {name}: what: {thing.what!r}: write {_NAMED[what]}")
-        if what not in _NAMED and thing.what not in _THINGS:
-            raise UsageError(f"road {name}: what: {thing.what!r}: {hint(thing.what, _THINGS)}")
+        what, _, rest = thing.kind.partition(" ")
+        if what in _FORM_WITH_NAME and not rest:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORM_WITH_NAME[what]}")
+        if what not in _FORM_WITH_NAME and thing.kind not in _THINGS:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: {hint(thing.kind, _THINGS)}")
     for lane in lanes:
         if lane.kind not in _LANE_KINDS:
             raise UsageError(f"road {name}: lane {lane.number}: {lane.kind!r}: {hint(lane.kind, _LANE_KINDS)}")
@@ -139,7 +139,7 @@ def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
 
 def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[Lane]:
     texts = list(texts)
-    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVEN]
+    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVABLE_KINDS]
     found = []
     for n, text in enumerate(texts):
         usual = "broken" if n in driven and n != driven[-1] else "solid" if n in driven else "none"
@@ -202,7 +202,7 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
         )
         name = f"{a} {n} to {b} {m}"
         z0, z1 = before.heights[-1 if n > 0 else 0][1], behind.heights[0 if m > 0 else -1][1]
-        piece = joined(start, end)
+        piece = connecting_piece(start, end)
         found[name] = Road(
             name,
             start,

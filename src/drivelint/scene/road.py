@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STEP_M: Final = 0.1
 """Distance of the points of a way."""
-DRIVEN: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
+DRIVABLE_KINDS: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
 _STRAIGHT_RAD: Final = 1e-6
 
 
@@ -163,7 +163,7 @@ def end_of(pose: Pose, piece: Piece) -> Pose:
     return Pose(*(float(v) for v in _along(pose, piece, np.array(piece.length))))
 
 
-def joined(start: Pose, end: Pose) -> Piece:
+def connecting_piece(start: Pose, end: Pose) -> Piece:
     """Return a piece from one pose to another: a straight, an arc, or a cubic."""
     ahead, left = _in_frame(start, end.x, end.y)
     turn = float(wrapped(np.asarray(end.heading - start.heading)))

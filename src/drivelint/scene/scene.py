@@ -67,7 +67,7 @@ class Scene:
             name: np.concatenate([np.asarray(part[name], object) for part in parts]).tolist() for name in parts[0]
         }
         for name, lights in text.lights.items():
-            if all(thing.what != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
+            if all(thing.kind != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
                 raise UsageError(f"light {name}: no road has a thing of this name")
         return {
             "actor": _rows("actor", [recorder.actor_row(actor) for actor in actors]),
@@ -84,7 +84,7 @@ class Scene:
         return {**log, MAP_FILE: self.map_text.encode()}
 
     def _conditions(self) -> list[dict[str, Any]]:
-        given = {name: value for name, value in (USUAL | self.text.given).items() if value != NOT_GIVEN}
+        given = {name: value for name, value in (USUAL | self.text.conditions).items() if value != NOT_GIVEN}
         for condition, value in given.items():
             if problem := condition_problem(condition) or value_problem(condition, value):
                 raise UsageError(f"given: {problem}")
