@@ -84,15 +84,15 @@ def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
     """Return the absences of the egos that must be there (states as read): the recorder's own, or the one that the user picks."""
     states, own = recording.states, own_egos(recording)
     expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
-    found = []
+    absences_of_egos = []
     for name in expected:
         t_ns = _placed_times(states, name)
         of_track = name not in own and len(t_ns) > 0
         span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _span(recording)
         absence = _absence(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
         if len(absence.since_ns):
-            found.append(absence)
-    return found
+            absences_of_egos.append(absence)
+    return absences_of_egos
 
 
 def _span(recording: Recording) -> tuple[int, int]:
@@ -195,18 +195,23 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
     """Return a finding, an error, for each absence (states in order, those without values among them)."""
     start = int(states.t_ns.min())
     findings = []
-    for each in missed:
-        begins, ends = each.ends_ns
-        lost_ns, of_ns = int((ends - begins).sum()), each.last_ns - each.first_ns
-        when = f"from {(begins[0] - start) / 1e9:.3f} s to {'the end' if ends[0] == each.last_ns else f'{(ends[0] - start) / 1e9:.3f} s'}"
+    for absence in missed:
+        begins, ends = absence.ends_ns
+        lost_ns, of_ns = int((ends - begins).sum()), absence.last_ns - absence.first_ns
+        until = "the end" if ends[0] == absence.last_ns else f"{(ends[0] - start) / 1e9:.3f} s"
+        when = f"from {(begins[0] - start) / 1e9:.3f} s to {until}"
         if len(begins) > 1:
             when = f"in {len(begins)} stretches, the first {when}"
-        whole = f"{of_ns / 1e9:.1f} s{' of its track' if each.of_track else ''}"
+        whole = f"{of_ns / 1e9:.1f} s{' of its track' if absence.of_track else ''}"
         percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
-        message = f"the ego {each.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
-        mine = states.t_ns[states.actor == states.ids.index(each.ego_id)] if each.ego_id in states.ids else begins[:0]
-        n = int((each.stretch_of(mine) >= 0).sum())
-        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), each.ego_id))
+        message = f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
+        mine = (
+            states.t_ns[states.actor == states.ids.index(absence.ego_id)]
+            if absence.ego_id in states.ids
+            else begins[:0]
+        )
+        n = int((absence.stretch_of(mine) >= 0).sum())
+        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), absence.ego_id))
     return findings
 
 

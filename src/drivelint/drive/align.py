@@ -39,18 +39,18 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         return states, []
     period = float(np.median(np.diff(grid)))
     log_ns = int(states.t_ns.min()), int(states.t_ns.max())
-    kept, added, names, longest = np.ones(len(states), np.bool_), [], [], 0
+    kept_rows, aligned_tracks, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
-        own = _own_period(states.t_ns[span], grid, period)
-        if own is None:
+        track_period = _own_period(states.t_ns[span], grid, period)
+        if track_period is None:
             continue
         # a track with a shorter period keeps its own samples too; every track keeps those before and after the ego's steps
-        kept[span] = (own < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
-        track = _at_steps(states, span, grid, own, log_ns)
-        added.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if own < period else track)
+        kept_rows[span] = (track_period < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
+        track = _at_steps(states, span, grid, track_period, log_ns)
+        aligned_tracks.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if track_period < period else track)
         names.append(name)
-        longest = max(longest, own)
+        longest = max(longest, track_period)
     if not names:
         return states, []
     message = (
@@ -58,7 +58,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)
-    return sorted_states(States.concatenate([states.take(kept), *added])), [finding]
+    return sorted_states(States.concatenate([states.take(kept_rows), *aligned_tracks])), [finding]
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
@@ -69,14 +69,14 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
     first = int(np.searchsorted(grid, t_ns[0]))
     if first + n <= len(grid) and np.array_equal(t_ns, grid[first : first + n]):
         return None
-    own = int(np.median(np.diff(t_ns)))
-    if own > LONGEST_PERIOD_NS:
+    own_period = int(np.median(np.diff(t_ns)))
+    if own_period > LONGEST_PERIOD_NS:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
     if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step in that time
         return None
-    return own if own > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
+    return own_period if own_period > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 
 
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:

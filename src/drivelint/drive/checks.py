@@ -45,13 +45,13 @@ LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
     """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
-    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
+    unplaced = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     findings = []
     for rows, check, text in (
         (states.not_finite, "not_finite", "NaN or infinity in {n} of {of} states ({ids}): those values are unknown"),
-        (lost, "no_position", "no position in {n} of {of} states ({ids}): the actors are present but not placed"),
+        (unplaced, "no_position", "no position in {n} of {of} states ({ids}): the actors are present but not placed"),
         (
-            ~lost & np.isnan(states.numbers["yaw_rad"]),
+            ~unplaced & np.isnan(states.numbers["yaw_rad"]),
             "no_yaw",
             "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
         ),
@@ -175,10 +175,10 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
     known = known_motion(states, step) & ~jump[1:]
     went, led, usable, span_s = displacements(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-    told = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
+    speed = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
     went /= span_s
     led /= span_s
-    return np.hypot(*(went - led)), told, np.hypot(*went), usable
+    return np.hypot(*(went - led)), speed, np.hypot(*went), usable
 
 
 def _cause(ratio: float) -> str:

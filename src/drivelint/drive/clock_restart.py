@@ -22,12 +22,13 @@ HOLE_FACTOR: Final = 1.5
 """A step of more than so many usual ones is a hole, which late messages may fill."""
 
 
-def backward_steps(t_ns: Times, of_topic: str = "") -> list[QualityFinding]:
-    """Return a finding where the times of messages, in the order of the file, go back; `of_topic`: whose clock it is."""
+def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding]:
+    """Return a finding where the times of messages, in the order of the file, go back; `topic`: whose clock it is."""
     back = np.diff(t_ns) < 0
     if not back.any():
         return []
     n, first = int(back.sum()), int(t_ns[1:][back][0])
+    of_topic = "" if topic is None else f" of {topic}"
     message = (
         f"backward steps of the clock{of_topic}: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
     )
@@ -95,12 +96,12 @@ def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
 def _agreed(states: States, rows: Mask) -> Mask:
     """Say which of the chosen rows are there more than once for their actor and time, and say the same each time."""
     agreed = np.zeros(len(rows), np.bool_)
-    chosen = np.flatnonzero(rows)
-    chosen = chosen[np.lexsort((states.t_ns[chosen], states.actor[chosen]))]
-    ordered = states.take(chosen)
+    chosen_rows = np.flatnonzero(rows)
+    chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]
+    ordered = states.take(chosen_rows)
     again, of = repetitions(ordered)
     several = np.bincount(of) > 1
     other = again & np.any(list(changed_columns(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0
-    agreed[chosen] = (several & ~contradicted)[of]
+    agreed[chosen_rows] = (several & ~contradicted)[of]
     return agreed

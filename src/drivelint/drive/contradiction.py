@@ -113,25 +113,25 @@ def _upon_others(
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
     half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
     half_of = half[[index[name] for name in states.ids]][states.actor]
-    placed = np.flatnonzero(np.isfinite(states.place).all(axis=0))
-    placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
-    t_ns, beside = states.t_ns[placed], max(step.period_ns, 1)
+    placed_rows = np.flatnonzero(np.isfinite(states.place).all(axis=0))
+    placed_rows = placed_rows[np.argsort(states.t_ns[placed_rows], kind="stable")]
+    t_ns, beside = states.t_ns[placed_rows], max(step.period_ns, 1)
     first = np.searchsorted(t_ns, rejected_states.t_ns - beside)
     n = np.searchsorted(t_ns, rejected_states.t_ns + beside, side="right") - first
     place = np.repeat(np.arange(len(n)), n)
-    other = placed[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
-    away = np.hypot(*(rejected_states.place[:, place] - states.place[:, other]))
+    other_row = placed_rows[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
+    away = np.hypot(*(rejected_states.place[:, place] - states.place[:, other_row]))
     own_names = [rejected_states.ids[i] for i in rejected_states.actor]
     own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
     # the track that goes on after the jump is the same actor's in the log
     in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
     own_in_log = np.array([alias.get(name, name) for name in own_names], dtype=np.str_)
-    upon = (away <= own + half_of[other]) & (in_log[states.actor[other]] != own_in_log[place])
+    upon = (away <= own + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
     findings = []
     for number in np.unique(rejected_states.actor[place[upon]]):
         name = rejected_states.ids[number]
         rows = upon & (rejected_states.actor[place] == number)
-        others = sorted({states.ids[i] for i in states.actor[other[rows]]})
+        others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
         message = (
             f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
@@ -150,9 +150,11 @@ def _frozen(states: States, step: Steps) -> Mask:
     usable = known_motion(states, step)
     went, led, slack = _step_by_step(states, step, usable)
 
-    def contradict(position_way: Floats, velocity_way: Floats, slack_m: Floats) -> Mask:
-        fastest = np.maximum(np.hypot(*position_way), np.hypot(*velocity_way))
-        wrong: Mask = np.hypot(*(position_way - velocity_way)) > MISMATCH_M + MISMATCH_SHARE * fastest + slack_m
+    def contradict(displacement: Floats, velocity_displacement: Floats, slack_m: Floats) -> Mask:
+        fastest = np.maximum(np.hypot(*displacement), np.hypot(*velocity_displacement))
+        wrong: Mask = (
+            np.hypot(*(displacement - velocity_displacement)) > MISMATCH_M + MISMATCH_SHARE * fastest + slack_m
+        )
         return wrong
 
     alone = contradict(went, led, slack)
@@ -201,10 +203,10 @@ def _drifts(rest: Floats, step: Steps) -> bool:
 def _mismatched(states: States, step: Steps) -> Mask:
     """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
     n = len(states)
-    found = np.zeros(n, np.bool_)
+    mismatched = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
-        return found
+        return mismatched
     usable = known_motion(states, step)
     alone, slack = _apart(states, step, usable)
     went, led, whole, span = displacements(states, step, usable, k)
@@ -219,19 +221,19 @@ def _mismatched(states: States, step: Steps) -> Mask:
     allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
     wrong = whole & (off > allowed) & (_sliding_max(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
-        return found
+        return mismatched
     sigma = sample_noise(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
     wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
     np.add.at(edges, rows + k + 1, -1)
-    found = np.cumsum(edges[:-1]) > 0
+    mismatched = np.cumsum(edges[:-1]) > 0
     wrong_by_actor, all_by_actor = (
-        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[found], states.actor)
+        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[mismatched], states.actor)
     )
     many = wrong_by_actor > WHOLE_TRACK_SHARE * all_by_actor
-    return found & ~many[states.actor]
+    return mismatched & ~many[states.actor]
 
 
 def _sliding_max(values: Floats, k: int) -> Floats:
@@ -252,13 +254,13 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 def _leads(states: States, rows: Mask) -> Mask:
     """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
-    found = np.flatnonzero(rows)
-    first, last = _around(states, states.actor, found)
-    place, speed = states.place, np.hypot(*states.velocity[:, found])
+    marked_rows = np.flatnonzero(rows)
+    first, last = _around(states, states.actor, marked_rows)
+    place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
     way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
     kept = rows.copy()
-    kept[found] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
+    kept[marked_rows] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
     return kept
 
 

@@ -98,15 +98,15 @@ def jumps(states: States, step: Steps) -> Mask:
     rows = np.flatnonzero(far)
     if not len(rows):
         return far
-    told, against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
+    n_neighbours, n_against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
     for side in (-1, 1):
         beside = np.clip(rows + side, 0, len(dt) - 1)
         known = (beside == rows + side) & step.continuous[beside] & np.isfinite(way[0, beside])
         scale = dt[rows] / dt[beside]
         off = np.hypot(*(way[:, rows] - scale * way[:, beside])) > limit[rows]
-        told += known
-        against += known & off
-    far[rows] = (told > 0) & (against == told)
+        n_neighbours += known
+        n_against += known & off
+    far[rows] = (n_neighbours > 0) & (n_against == n_neighbours)
     return far
 
 

@@ -30,14 +30,14 @@ def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) ->
     That is the time of the row, where it has one (`timed`), else any between the rows before and after it; without rows in the order of
     their times, any of the whole drive. Stretches without a whole time between them are one.
     """
-    rows, known = np.flatnonzero(lost_rows), np.flatnonzero(timed)
+    rows, timed_rows = np.flatnonzero(lost_rows), np.flatnonzero(timed)
     if not len(rows):
         return []
-    times = t_ns[known]
+    times = t_ns[timed_rows]
     unknown = ~timed[rows]
-    if not len(known) or (unknown.any() and (np.diff(times) < 0).any()):
+    if not len(timed_rows) or (unknown.any() and (np.diff(times) < 0).any()):
         return [LostTime(None, None, f"{cause}: {len(rows)}")]
-    place = np.searchsorted(known, rows)
+    place = np.searchsorted(timed_rows, rows)
     begin, end = np.iinfo(np.int64).min, np.iinfo(np.int64).max
     since = np.where(unknown, np.r_[begin, times][place], t_ns[rows])
     until = np.where(unknown, np.r_[times, end][place], t_ns[rows])

@@ -47,19 +47,19 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     repeated, of = repetitions(states)
     if not repeated.any():
         return states, []
-    kept = states.take(~repeated)
+    unique_states = states.take(~repeated)
     differ = {
-        name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
+        name: np.bincount(of[repeated & rows], minlength=len(unique_states)) > 0
         for name, rows in changed_columns(states).items()
     }
     moved = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
-    for name, values in kept.numbers.items():
+    for name, values in unique_states.numbers.items():
         values[differ[name] | moved if name in STATE_COLUMNS else differ[name]] = np.nan
-    for name, codes in kept.codes.items():
+    for name, codes in unique_states.codes.items():
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & np.logical_or.reduce(list(differ.values()))[of]
     text = "an actor appears again at the same time in {n} states ({ids}), which "
-    return kept, [
+    return unique_states, [
         *states.findings(
             differing, "duplicate_state", "error", text + "differ: what they do not agree on is unknown there"
         ),
@@ -76,13 +76,13 @@ def repetitions(states: States) -> tuple[Mask, Indices]:
 
 def changed_columns(states: States) -> dict[str, Mask]:
     """Return for each column the rows whose value differ from the row before; unknown counts as a value."""
-    found = {}
+    changes = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():
         unknown = np.isnan(values)
-        found[name] = np.zeros(len(values), np.bool_)
-        found[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
-    return found
+        changes[name] = np.zeros(len(values), np.bool_)
+        changes[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
+    return changes
 
 
 @dataclass(frozen=True)

@@ -57,32 +57,32 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     way. Where no velocity is recorded, a step that both of its neighbours contradict alike makes its two ends such samples.
     """
     n = len(states)
-    nothing = np.zeros(n, np.bool_)
+    no_samples = np.zeros(n, np.bool_)
     if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
-        return nothing
+        return no_samples
     place = states.place
-    told = _has_recorded_velocity(states, place)
+    has_velocity = _has_recorded_velocity(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
     # noise is costly to estimate: skip it if no sample is off even with zero noise
-    if not _outliers(place, dt_s, told, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
-        return nothing
+    if not _outliers(place, dt_s, has_velocity, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
+        return no_samples
     runs = Tracklets.from_samples(states.t_ns, place, step)
     sigma = sample_noise(place, runs, states.actor)
-    return _outliers(place, dt_s, told, sigma, sigma)
+    return _outliers(place, dt_s, has_velocity, sigma, sigma)
 
 
 def _outliers(place: Floats, dt_s: Floats, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the outliers. Pieces are looked at one by one, because each needs some thirty arrays of its length."""
     n = len(has_velocity)
-    found = np.zeros(n, np.bool_)
+    outliers = np.zeros(n, np.bool_)
     for first in range(0, n, PIECE_ROWS):
         begin, end = max(0, first - _REACH), min(n, first + PIECE_ROWS + _REACH)
         rows, dt = slice(begin, end), dt_s[begin : end - 1]
         moves = np.diff(place[:, rows], axis=1) / dt, dt
         beside = _beside(place[:, rows], moves, has_velocity[rows], sigma[rows], error[rows])
         piece = beside | _stepped(moves, has_velocity[rows], sigma[rows], error[rows], beside)
-        found[first : first + PIECE_ROWS] = piece[first - begin :][:PIECE_ROWS]
-    return found
+        outliers[first : first + PIECE_ROWS] = piece[first - begin :][:PIECE_ROWS]
+    return outliers
 
 
 def _has_recorded_velocity(states: States, place: Floats) -> Mask:
@@ -98,7 +98,7 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
 def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
     n = place.shape[1]
-    found = np.zeros(n, np.bool_)
+    outliers = np.zeros(n, np.bool_)
     v, dt = moves
     before, to, away, after = (v[:, i : n - 4 + i] for i in range(4))
     dt_before, dt_to, dt_away, dt_after = (dt[i : n - 4 + i] for i in range(4))
@@ -115,14 +115,14 @@ def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, err
     goes_on = _can_change_velocity(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can_change_velocity(
         without, after, (dt_after + across) / 2, 1.9 * e / dt_away
     )
-    found[2:-2] = (size > limit) & there & back & goes_on
-    return found
+    outliers[2:-2] = (size > limit) & there & back & goes_on
+    return outliers
 
 
 def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
     """Return the two samples of each step that differs alike from the motion before and after it, where no velocity is recorded."""
     n = len(has_velocity)
-    found = np.zeros(n, np.bool_)
+    outliers = np.zeros(n, np.bool_)
     v, dt = moves
     before, here, after = (v[:, i : n - 3 + i] for i in range(3))
     dt_before, dt_here, dt_after = (dt[i : n - 3 + i] for i in range(3))
@@ -137,8 +137,8 @@ def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, be
     # an impact changes an actor's speed
     goes_on &= np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
-    found[rows] = found[rows + 1] = True
-    return found
+    outliers[rows] = outliers[rows + 1] = True
+    return outliers
 
 
 def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Floats, error_mps: Floats) -> Mask:

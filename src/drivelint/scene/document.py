@@ -224,21 +224,21 @@ class SceneFile(_Part, frozen=True):
 
 def read(path: Path) -> SceneFile:
     """Read a file of scenes, and the roads of the files that it names. Errors: `UsageError` with file and line."""
-    found = _parsed(path)
+    scene_file = _parsed(path)
     roads: dict[str, Layout] = {}
-    for name in found.roads_from:
+    for name in scene_file.roads_from:
         roads |= _parsed(path.parent / name).roads
-    found = msgspec.structs.replace(found, roads=roads | found.roads)
+    scene_file = msgspec.structs.replace(scene_file, roads=roads | scene_file.roads)
     names: dict[str, int] = {}
-    for scene in found.scenes:
+    for scene in scene_file.scenes:
         if scene.name in names:
             raise UsageError(
                 f"{path}:{scene.line}: scene {scene.name!r} has the name of that in line {names[scene.name]}"
             )
-        if scene.roads not in found.roads:
-            raise UsageError(f"{path}:{scene.line}: no roads {scene.roads!r}: {hint(scene.roads, found.roads)}")
+        if scene.roads not in scene_file.roads:
+            raise UsageError(f"{path}:{scene.line}: no roads {scene.roads!r}: {hint(scene.roads, scene_file.roads)}")
         names[scene.name] = scene.line
-    return found
+    return scene_file
 
 
 def _parsed(path: Path) -> SceneFile:

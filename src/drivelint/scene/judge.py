@@ -116,27 +116,28 @@ def judge_scenes(
         rows = check(options, Silent()).verdicts.to_pylist()
     except TraceError:  # not one of them could be judged
         rows = []
-    found: dict[Key, list[Row]] = defaultdict(list)
+    rows_by_key: dict[Key, list[Row]] = defaultdict(list)
     names = {scene.name for scene in scenes}
     for row in rows:
         drive = row["drive_id"]
-        found[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
-    return Verdicts(found)
+        rows_by_key[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
+    return Verdicts(rows_by_key)
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
     """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
-    expected = {rule: expectation(text) for rule, text in scene.text.expect.items()}
-    for rule, wanted in expected.items():
+    expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
+    for rule, expected_verdict in expectations.items():
         key = scene.name, rule
         got = verdicts.verdict(key)
-        if got not in _MET[wanted.verdict]:
-            why = f" ({wanted.why})" if wanted.why else ""
-            yield f"{rule}: expected {wanted.verdict}{why}, got {got}: {verdicts.reasons(key)}"
-        elif wanted.code and wanted.code not in verdicts.codes(key):
-            yield f"{rule}: expected {got} for {wanted.code}, got {', '.join(sorted(verdicts.codes(key)))}: {verdicts.reasons(key)}"
+        if got not in _MET[expected_verdict.verdict]:
+            why = f" ({expected_verdict.why})" if expected_verdict.why else ""
+            yield f"{rule}: expected {expected_verdict.verdict}{why}, got {got}: {verdicts.reasons(key)}"
+        elif expected_verdict.code and expected_verdict.code not in verdicts.codes(key):
+            codes = ", ".join(sorted(verdicts.codes(key)))
+            yield f"{rule}: expected {got} for {expected_verdict.code}, got {codes}: {verdicts.reasons(key)}"
     for (name, rule), rows in sorted(verdicts.rows.items()):
-        if name != scene.name or rule in expected or rule not in gating:
+        if name != scene.name or rule in expectations or rule not in gating:
             continue
         if any(row["verdict"] in {"fail", "error"} and row["severity"] in _GRAVE for row in rows):
             yield f"{rule}: not expected to fail: {verdicts.reasons((name, rule))}"
@@ -157,22 +158,22 @@ def scene_test(
     Errors: `UsageError` for what the file says, `OutputError`.
     """
     file = document.read(path)
-    chosen = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
-    if not chosen:
+    texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
+    if not texts:
         raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
-    known = catalogue.load_rules(tuple(rules_dirs))
-    scenes = scenes_of(chosen, file.roads)
+    rules = catalogue.load_rules(tuple(rules_dirs))
+    scenes = scenes_of(texts, file.roads)
     for scene in scenes:
         try:
-            _refuse_wrong_expectations(scene, known)
+            _refuse_wrong_expectations(scene, rules)
             files = scene.files()
         except DriveLintError as error:
             raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
         if out is not None:
             _write(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judge_scenes(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
-    gating = gating_rules(known) if file.all_fails else frozenset()
+        verdicts = judge_scenes(scenes, rules_for(texts, all_fails=file.all_fails), Path(folder), rules_dirs)
+    gating = gating_rules(rules) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
         wrong = list(differences(scene, verdicts, gating))

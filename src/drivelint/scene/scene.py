@@ -91,28 +91,28 @@ class Scene:
         return [{"condition": name, "value": value} for name, value in given.items()]
 
     def _events(self) -> list[dict[str, Any]]:
-        found = []
-        for said in self.text.says:
-            if len(said) not in {2, 3} or not isinstance(said[0], int | float):
-                raise UsageError(f"says {said}: write [second, event] or [second, event, value]")
-            value = said[2] if len(said) == 3 else None
-            if self.left and said[1] == "blind_spot_check":
+        events = []
+        for declaration in self.text.says:
+            if len(declaration) not in {2, 3} or not isinstance(declaration[0], int | float):
+                raise UsageError(f"says {declaration}: write [second, event] or [second, event, value]")
+            value = declaration[2] if len(declaration) == 3 else None
+            if self.left and declaration[1] == "blind_spot_check":
                 value = {"left": "right", "right": "left"}.get(str(value), value)
-            row = {"actor_id": "ego", "t_ns": round(float(said[0]) * 1e9), "event": str(said[1])}
-            found.append(row | {"value": None if value is None else str(value)})
-        return found
+            row = {"actor_id": "ego", "t_ns": round(float(declaration[0]) * 1e9), "event": str(declaration[1])}
+            events.append(row | {"value": None if value is None else str(value)})
+        return events
 
 
 def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list[Scene]:
     """Return each scene, for both sides of the road where it or its layout asks for both."""
-    found = []
+    scenes = []
     for text in texts:
         layout = layouts[text.roads]
         side = text.traffic or layout.traffic
         for one in ("right", "left") if side == "both" else (side,):
             name = f"{text.name}-{one}" if side == "both" else text.name
-            found.append(Scene(text, layout, one == "left", name))
-    return found
+            scenes.append(Scene(text, layout, one == "left", name))
+    return scenes
 
 
 def _table(name: str, columns: Mapping[str, Sequence[Any]]) -> pa.Table:

@@ -83,15 +83,15 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     for a, b in _begin_upon(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _common(states, track_a, track_b)
-        one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
-        deep = _deep(one, other)
+        first, second = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
+        deep = _deep(first, second)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
-            if not _coupled(one, other):
-                together = _overlap_at_begin(one, other)
+            if not _coupled(first, second):
+                together = _overlap_at_begin(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
-        if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
+        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_MPS:
             continue
         length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
@@ -144,15 +144,15 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
             < 0.0
         )
         speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
-        others = order[after:end]
-        others = others[motor[states.actor[others]]]
-        were = np.array([speed.get(number, np.nan) for number in states.actor[others].tolist()])
-        others = others[speeds[others] > np.maximum(were - HIT_MPS, SPIN_MPS)]
-        if not len(others):
+        other_rows = order[after:end]
+        other_rows = other_rows[motor[states.actor[other_rows]]]
+        were = np.array([speed.get(number, np.nan) for number in states.actor[other_rows].tolist()])
+        other_rows = other_rows[speeds[other_rows] > np.maximum(were - HIT_MPS, SPIN_MPS)]
+        if not len(other_rows):
             continue
-        since_s = (states.t_ns[others] - states.t_ns[last]) * 1e-9
-        mine = _boxes(states, actors, np.full(len(others), last))
-        depth = _overlap(mine, _boxes(states, actors, others))[0].min(axis=0)
+        since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
+        mine = _boxes(states, actors, np.full(len(other_rows), last))
+        depth = _overlap(mine, _boxes(states, actors, other_rows))[0].min(axis=0)
         if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
     text = (
@@ -166,13 +166,13 @@ def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     starts = track_starts(states.actor)
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
-    for first, other in _neighbours(states, actors, starts):
+    for first, second in _neighbours(states, actors, starts):
         # of two that begin together each is met once
-        once = (states.actor[first] != states.actor[other]) & ((number[other] < 0) | (number[other] > number[first]))
-        first, other = first[once], other[once]  # noqa: PLW2901  the rest is of no use
-        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, other)
+        once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
+        first, second = first[once], second[once]  # noqa: PLW2901  the rest is of no use
+        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, second)
         near = _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
-        yield from zip(states.actor[first[near]].tolist(), states.actor[other[near]].tolist(), strict=True)
+        yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
 def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:

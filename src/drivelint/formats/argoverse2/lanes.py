@@ -110,16 +110,16 @@ def _archive(source: MapSource) -> dict[str, Any]:
 
 def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
     """Return the lane segments by their ids; those that cannot be understood are reported."""
-    found: dict[str, _Segment] = {}
+    segments: dict[str, _Segment] = {}
     for key, segment in records.items():
         try:
             name = _name(segment["id"])
-            if name in found:
+            if name in segments:
                 raise ValueError("another one has its id")
-            found[name] = _segment(segment)
+            segments[name] = _segment(segment)
         except _UNREADABLE as error:
             quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
-    return found
+    return segments
 
 
 def _why(error: Exception) -> str:
@@ -252,13 +252,13 @@ def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
         return []
     areas = [lane.line.polygon for lane in lanes]
     pairs = shapely.STRtree(areas).query(areas, predicate="intersects").T
-    found = []
+    overlaps = []
     for i, j in pairs[pairs[:, 0] < pairs[:, 1]].tolist():
         a, b = lanes[i], lanes[j]
         apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
         if apart <= _LEVEL_M and shapely.area(shapely.intersection(areas[i], areas[j])) > _COMMON_GROUND_M2:
-            found.append([a.lanelet_id, b.lanelet_id])
-    return found
+            overlaps.append([a.lanelet_id, b.lanelet_id])
+    return overlaps
 
 
 def _have_heights(*lanes: BoundedLane) -> bool:
@@ -267,7 +267,7 @@ def _have_heights(*lanes: BoundedLane) -> bool:
 
 def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     """Return the pedestrian crossings, the two edges as the bounds of a lane for people on foot."""
-    found = []
+    crossings = []
     for key, crossing in records.items():
         try:
             first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
@@ -277,5 +277,5 @@ def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]
             continue
         if float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
             second = second[::-1]
-        found.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
-    return found
+        crossings.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
+    return crossings

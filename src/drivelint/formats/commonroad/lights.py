@@ -37,18 +37,18 @@ def signal_states(
     for light in root.findall("trafficLight"):
         name = light.get("id", "")
         try:
-            steps, shown = _unrolled(light, first, last)
+            steps, light_states = _unrolled(light, first, last)
         except _UnreadError as error:
             message = f"the states of traffic light {name} are not known: {error}"
             findings.append(QualityFinding("signal_cycle", "warning", message))
             continue
-        if None in shown:
+        if None in light_states:
             words = sorted({w for w in _colours(light) if w not in _STATES})
             message = f"traffic light {name} has colours that are not known: {', '.join(words)}"
             findings.append(QualityFinding("signal_cycle", "warning", message, len(words)))
         ids += [name] * len(steps)
         times.append(np.round(steps * step_s * 1e9).astype(np.int64))
-        states += shown
+        states += light_states
     if not ids:
         return None, findings
     return pa.table({"signal_id": ids, "t_ns": np.concatenate(times), "state": pa.array(states, pa.string())}), findings

@@ -80,15 +80,15 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
     """Return the lanes with their bounds as arrays, (n, 2) or (n, 3), in the order of the map."""
-    found = {}
+    lanes = {}
     for name, lane in layers.features("LANE", Lane, quality).items():
         try:
             lane.left_boundary, lane.right_boundary = points_of(lane.left_boundary), points_of(lane.right_boundary)
         except ValueError as error:
             quality.add("invalid_lane", "error", str(name), f"lanelet {name} is left out: {error}")
             continue
-        found[name] = lane
-    return found
+        lanes[name] = lane
+    return lanes
 
 
 def _junctions(

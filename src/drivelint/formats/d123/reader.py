@@ -75,22 +75,22 @@ def read(probe: Probe) -> Recording:
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))
         t_ns = time.nanoseconds(integers(sync["timestamp_us"]))
         recording.lost_times += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
-    others: list[States] = []
+    box_states: list[States] = []
     if boxes is None:
         recording.findings.append(_NO_ROAD_USERS)
     else:
         t_ns = time.nanoseconds(integers(boxes.columns["timestamp_us"])[frames.box_rows])
         states, findings, notes = box_file.box_states(boxes, frames.box_rows, t_ns, about)
-        others.append(states)
+        box_states.append(states)
         recording.findings += findings
         recording.notes += notes
-    name = ego_file.ego_id(others[0].ids if others else ())
+    name = ego_file.ego_id(box_states[0].ids if box_states else ())
     forward_m = 0.0 if probe.options.ego_size is None else probe.options.ego_size.forward_m
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
     t_ns = time.nanoseconds(frames.ego_us)
     own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
-    recording.states, recording.ego_ids = _ego_with_boxes(own, others), [name]
+    recording.states, recording.ego_ids = _ego_with_boxes(own, box_states), [name]
     light_lanes: tuple[int, ...] = ()
     if lights is not None:
         shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))

@@ -77,13 +77,13 @@ def _persisted(
     same = actor[1:] == actor[:-1]
     follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
     # a lifetime of centuries would overflow
-    gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
-    gone = np.minimum(gone, _deleted(actor, t_ns, deletions))
-    replaced = (follows <= gone) & (follows < _NEVER)
+    gone_ns = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
+    gone_ns = np.minimum(gone_ns, _deleted(actor, t_ns, deletions))
+    replaced = (follows <= gone_ns) & (follows < _NEVER)
     # between two places the entity moved: the samples themselves say so, and nothing is put between them
     still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
     first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
-    last = np.searchsorted(grid_ns, np.minimum(follows, gone), side="left")
+    last = np.searchsorted(grid_ns, np.minimum(follows, gone_ns), side="left")
     count = np.where(still | ~replaced, np.maximum(last - first, 0), 0)
     total = int(count.sum())
     if total > MAX_PERSISTED:

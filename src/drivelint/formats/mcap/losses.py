@@ -100,28 +100,28 @@ class Losses:
 
     def times(self, path: Path) -> list[LostTime]:
         """Return what was lost as stretches of log time, each with the sentence that tells it."""
-        found = []
-        for each in self.lost_bytes:
-            since, until = each.since_ns, each.until_ns
-            if self._backward and not each.timed:
+        lost_times = []
+        for loss in self.lost_bytes:
+            since, until = loss.since_ns, loss.until_ns
+            if self._backward and not loss.timed:
                 since = until = None
             elif since is not None and until is not None and until < since:
                 since, until = until, since
-            what = each.cause.removeprefix(f"{path}: ")
+            what = loss.cause.removeprefix(f"{path}: ")
             what = what.partition(": the log is damaged")[0].partition(": record or copy")[0]
-            if each.end > each.start:
-                what = f"{each.end - each.start} bytes from byte {each.start} on cannot be read ({what})"
-            found.append(LostTime(since, until, f"{path.name}: {what}"))
-        return found
+            if loss.end > loss.start:
+                what = f"{loss.end - loss.start} bytes from byte {loss.start} on cannot be read ({what})"
+            lost_times.append(LostTime(since, until, f"{path.name}: {what}"))
+        return lost_times
 
 
 def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
     """Return what was lost of a log in several files, in their order: what its neighbours have bounds a file's beginning and end."""
-    found = []
+    lost_times = []
     for k, (path, losses) in enumerate(parts):
         before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)
         after = min((each.first_ns for _, each in parts[k + 1 :] if each.first_ns is not None), default=None)
         for lost in losses.times(path):
             since = before if lost.since_ns is None else lost.since_ns
-            found.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
-    return found
+            lost_times.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
+    return lost_times

@@ -70,7 +70,7 @@ class DrivingSideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
-        found = [
+        candidates = [
             ("option", request.side, "--handedness says", False),
             ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
             ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
@@ -78,7 +78,7 @@ class DrivingSideStatements:
             ("traces", request.voted_handedness, "the traces fit", True),
         ]
         said = tuple(
-            DrivingSideStatement(source, side, text, of) for source, side, text, of in found if side is not None
+            DrivingSideStatement(source, side, text, of) for source, side, text, of in candidates if side is not None
         )
         return cls(said, roads, _winner(travel))
 
@@ -97,39 +97,40 @@ class DrivingSideStatements:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
             message = f"roads of both rules in one map ({counts}): one is taken for all"
             quality.add("handedness_mixed", "warning", None, message)
-        found = (
+        direction = (
             self._without_opposing(quality)
             if side_by_lanes is None
             else self._with_side_by_lanes(side_by_lanes, quality)
         )
-        if found.source == "default":
+        if direction.source == "default":
             message = (
                 "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
             )
-            if side_by_lanes is None and found.forward_source != "default":
+            if side_by_lanes is None and direction.forward_source != "default":
                 message = (
-                    f"which way the lanes run is known by {found.forward_source}, but none has one of the other direction beside it: "
+                    f"which way the lanes run is known by {direction.forward_source}, but none has one of the other direction beside it: "
                     "that right-hand traffic drives on them is a guess; give --handedness"
                 )
             quality.add("handedness_default", "warning", None, message)
-        return found
+        return direction
 
     def _with_side_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> Direction:
-        said = list(self.statements)
+        statements = list(self.statements)
         if side_by_lanes == "lht" and (
-            rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)
+            rule := next((w for w in statements if w.source == "attribute" and not w.of_lanes), None)
         ):
-            said.remove(rule)  # by it, the lanes run so that the other side is driven on
+            statements.remove(rule)  # by it, the lanes run so that the other side is driven on
             message = (
                 f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
                 "not counted; give --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
-        said = [
-            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side)) for w in said
+        statements = [
+            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side))
+            for w in statements
         ]
-        _disagreements(said, quality, "every direction")
-        return self._direction(side_by_lanes, said[0] if said else None)
+        _disagreements(statements, quality, "every direction")
+        return self._direction(side_by_lanes, statements[0] if statements else None)
 
     def _without_opposing(self, quality: MapQuality) -> Direction:
         side = next((w for w in self.statements if not w.of_lanes), None)

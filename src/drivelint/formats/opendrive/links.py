@@ -38,19 +38,19 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
             touching.add((min(a, b), max(a, b)))
         else:
             _report_missing_link(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
-    found: dict[tuple[str, str], Link] = {}
+    link_by_ids: dict[tuple[str, str], Link] = {}
     for a, b in sorted(_through_short(touching, lanes.short)):
         link = _directed(a, b, lanes, quality)
         if link is not None:
-            found[link[0].lanelet_id, link[1].lanelet_id] = link
-    result = [found[key] for key in sorted(found)]
+            link_by_ids[link[0].lanelet_id, link[1].lanelet_id] = link
+    result = [link_by_ids[key] for key in sorted(link_by_ids)]
     for source, target in result:
         gap = float(np.hypot(*(source.line.centre[-1] - target.line.centre[0])))
         if gap > GAP_M:
             name = source.lanelet_id
             message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
             quality.add("link_gap", "warning" if source.drivable else "info", name, message)
-    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
+    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
     return result
 
 
@@ -80,11 +80,11 @@ def _contacts_at(
     join = road.joins.get(end)
     if join is None or join.is_junction or not targets:
         return
-    other = net.roads.get(join.element_id)
-    if other is None:
+    other_road = net.roads.get(join.element_id)
+    if other_road is None:
         yield from (((key, end), ((join.element_id, 0, target), START)) for target in targets)
         return
-    back = [e for e, link in other.joins.items() if not link.is_junction and link.element_id == road.road_id]
+    back = [e for e, link in other_road.joins.items() if not link.is_junction and link.element_id == road.road_id]
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
@@ -92,7 +92,7 @@ def _contacts_at(
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:
-        yield (key, end), (_lane_at(other, contact, target), contact)
+        yield (key, end), (_lane_at(other_road, contact, target), contact)
 
 
 def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:

@@ -51,16 +51,16 @@ def speed_limits(
         signed.setdefault(row["lanelet_id"], []).append(row)
     rows: Rows = []
     contradicted = []
-    for name, own in records.items():
+    for name, own_rows in records.items():
         of_signs = signed.get(name, [])
-        known = [row for row in of_signs if row["source"] == "sign"]
-        of_lane = [row for row in own if row["source"] == "lane"]
+        sign_rows = [row for row in of_signs if row["source"] == "sign"]
+        of_lane = [row for row in own_rows if row["source"] == "lane"]
         unread = [row for row in of_signs if row["source"] != "sign"]
-        rows += known
+        rows += sign_rows
         rows += [part for row in unread for part in _outside(row, of_lane)]
-        rows += [part for row in of_lane for part in _outside(row, known)]
-        rows += [part for row in own if row["source"] != "lane" for part in _outside(row, of_signs)]
-        if any(_contradict(sign, lane) for sign in known for lane in of_lane):
+        rows += [part for row in of_lane for part in _outside(row, sign_rows)]
+        rows += [part for row in own_rows if row["source"] != "lane" for part in _outside(row, of_signs)]
+        if any(_contradict(sign, lane) for sign in sign_rows for lane in of_lane):
             contradicted.append(name)
     if contradicted:
         message = f"signs give other limits than the lanes that they hold for, the first {contradicted[0]}: those of the signs count"

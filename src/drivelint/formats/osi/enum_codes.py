@@ -140,14 +140,14 @@ def signal_states(bulbs: pa.Table, t_ns: NDArray[np.int64]) -> pa.Table | None:
     if not bulbs.num_rows:
         return None
     different = bulbs.group_by(["frame", "signal_id", "bits"]).aggregate([])
-    shown = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
+    shown_bits = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
     states = [
         None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(value) for value in range(2 * UNKNOWN)
     ]
     return pa.table(
         {
-            "signal_id": shown["signal_id"],
-            "t_ns": pa.array(t_ns[shown["frame"].to_numpy()]),
-            "state": pa.array(states, pa.string()).take(shown["bits_sum"]),
+            "signal_id": shown_bits["signal_id"],
+            "t_ns": pa.array(t_ns[shown_bits["frame"].to_numpy()]),
+            "state": pa.array(states, pa.string()).take(shown_bits["bits_sum"]),
         }
     )

@@ -79,7 +79,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
     """Return the metadata records of a trace; `numbers`: actor id -> OSI id, `as_recorded`: its states are those that were recorded."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
-    said: dict[str, Any] = {
+    trace_facts: dict[str, Any] = {
         "source": log["file_name"],
         "source_sha256": log["sha256"],
         "source_format": log["format"],
@@ -93,10 +93,10 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
         "geo_reference": trace.geo_reference, "geo_offset": trace.geo_offset if trace.geo_reference else None,
         "as_recorded": as_recorded or None, "nobody_ns": trace.nobody_ns.tolist() or None,
     }  # fmt: skip
-    said |= {name: value for name, value in optional.items() if value is not None}
+    trace_facts |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
     return {
-        TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
+        TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in trace_facts.items()},
         ACTORS_RECORD: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
     }
 
@@ -136,16 +136,16 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
 
     Errors: `TraceError` for what is not understood.
     """
-    found: dict[str, str] = {}
+    condition_words: dict[str, str] = {}
     for given in rows:
         if given[0] is None or given[1] is None:
             raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
         name, word = conditions.canonical_spelling(given[0], given[1])
         if wrong := conditions.condition_problem(name) or conditions.value_problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")
-        if found.setdefault(name, word) != word:
-            raise TraceError(f"{path}: the drive's {name} is both {found[name]!r} and {word!r}: give one")
-    return found
+        if condition_words.setdefault(name, word) != word:
+            raise TraceError(f"{path}: the drive's {name} is both {condition_words[name]!r} and {word!r}: give one")
+    return condition_words
 
 
 def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:

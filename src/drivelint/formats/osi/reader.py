@@ -66,7 +66,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     log_ns: list[int] = []
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
-    lost: list[QualityFinding] = []
+    lost_findings: list[QualityFinding] = []
     unread = UnreadTopics()
     for kind, packets in message_batches(container, partial(_kind, truths, topic, unread)):
         if kind in FIELD_TREES:
@@ -87,7 +87,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
                 if isinstance(text, bytes):
                     maps.setdefault(text, packet.channel.topic)
                 else:
-                    lost.append(text)
+                    lost_findings.append(text)
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
@@ -99,7 +99,12 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     own, several = single_map(maps)
     if maps:
         recording.embedded_map = own
-    recording.findings += [*container.findings, *unread.findings(), *lost[:1], *(several if maps else head.findings)]
+    recording.findings += [
+        *container.findings,
+        *unread.findings(),
+        *lost_findings[:1],
+        *(several if maps else head.findings),
+    ]
     recording.lost_times += container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
@@ -255,7 +260,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
     if len(nameless):
         message = f"moving objects without an id: {len(nameless)}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
-    lost = times_of_lost_rows(
+    lost_times = times_of_lost_rows(
         log_ns.astype(np.int64) if name == "osi-mcap" else t_ns,
         np.ones(len(t_ns), np.bool_),
         np.isin(np.arange(len(t_ns)), nameless),
@@ -267,7 +272,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
-        lost_times=lost,
+        lost_times=lost_times,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         frames_ns=t_ns,
@@ -307,18 +312,18 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
 
 def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
     """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
-    said = Counter(host for host in hosts if host is not None)
-    if not said:
+    host_counts = Counter(host for host in hosts if host is not None)
+    if not host_counts:
         return []
     first: dict[int, int] = {}
     for host, at in zip(hosts, t_ns.tolist(), strict=True):
         if host is not None:
             first[host] = min(first.get(host, at), at)
-    ego = min(said, key=lambda host: (-said[host], first[host], host))
-    if len(said) > 1:
-        frames, n = said.total(), said.total() - said[ego]
-        names = listed(sorted(map(str, said)))
-        message = f"the log names {len(said)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
+    ego = min(host_counts, key=lambda host: (-host_counts[host], first[host], host))
+    if len(host_counts) > 1:
+        frames, n = host_counts.total(), host_counts.total() - host_counts[ego]
+        names = listed(sorted(map(str, host_counts)))
+        message = f"the log names {len(host_counts)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
         since = min(at for host, at in first.items() if host != ego)
         findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]

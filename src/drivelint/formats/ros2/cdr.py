@@ -144,17 +144,17 @@ class _Compiler:
         if not members:  # an empty message is sent as one byte
             self._primitive("u1", None, None)
         for member in members:
-            wanted = tree is not None and member.name in tree
-            subtree = tree[member.name] if tree is not None and wanted else None
+            keep_member = tree is not None and member.name in tree
+            subtree = tree[member.name] if tree is not None and keep_member else None
             path = f"{prefix}{member.name}"
             if member.count == SEQUENCE:
-                self._sequence(member.kind, path, subtree, keep_items=wanted)
+                self._sequence(member.kind, path, subtree, keep_items=keep_member)
             elif member.kind in NUMPY_CODES:
-                self._primitive(NUMPY_CODES[member.kind], path if wanted else None, member.count)
+                self._primitive(NUMPY_CODES[member.kind], path if keep_member else None, member.count)
             else:
                 for _ in range(1 if member.count is None else member.count):
                     if member.kind in TEXT_TYPES:
-                        self._then(_Numbers(_TEXT, 1, path if wanted and member.count is None else None))
+                        self._then(_Numbers(_TEXT, 1, path if keep_member and member.count is None else None))
                     else:
                         self._members(member.kind, subtree if member.count is None else None, f"{path}.")
 
@@ -188,14 +188,14 @@ class _Compiler:
 
     def _sizes(self, kind: str) -> list[int]:
         """Return the sizes of all primitives of a type, 0 for texts and sequences."""
-        found: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
+        sizes: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
         for member in self._types[kind]:
             if member.count == SEQUENCE:
-                found.append(0)
+                sizes.append(0)
                 continue
             inner = [_SIZES[member.kind]] if member.kind in _SIZES else self._sizes(member.kind)
-            found += inner * (1 if member.count is None else member.count)
-        return found
+            sizes += inner * (1 if member.count is None else member.count)
+        return sizes
 
     def _then(self, step: Any) -> None:
         """Add a step behind which nothing is known of the alignment."""
@@ -353,13 +353,13 @@ def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]
     """
     parent = place[np.concatenate([part.parent + offset for part, offset in zip(parts, offsets, strict=False)])]
     order = np.argsort(parent, kind="stable")
-    moved = np.empty_like(order)
-    moved[order] = np.arange(len(order))
+    new_index = np.empty_like(order)
+    new_index[order] = np.arange(len(order))
     below = np.cumsum([0, *(part.n for part in parts)]).tolist()
     return _Walk(
         len(parent),
         parent[order],
         {i: np.concatenate([part.start[i] for part in parts])[order] for i in parts[0].start},
         {i: np.concatenate([part.length[i] for part in parts])[order] for i in parts[0].length},
-        {i: _stacked([part.children[i] for part in parts], below, moved) for i in parts[0].children},
+        {i: _stacked([part.children[i] for part in parts], below, new_index) for i in parts[0].children},
     )

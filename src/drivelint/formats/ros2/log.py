@@ -100,16 +100,16 @@ class Log:
 
     def refuse_unknown_topics(self) -> None:
         """Refuse what was chosen and is not read. Errors: `TraceError`."""
-        known = {topic for topics in self.topics.values() for topic in topics}
+        read_topics = {topic for topics in self.topics.values() for topic in topics}
         for topic in self.requested_topics:
             if topic in self.detections:
                 raise TraceError(
                     f"{self.path}: the detections on topic {topic!r} have no ids, so they are nobody's track: choose a topic of "
                     f"{' or '.join(SAME_BODIES)}"
                 )
-            if topic not in known:
+            if topic not in read_topics:
                 raise TraceError(
-                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
+                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(read_topics)) or 'nothing'}"
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
@@ -137,18 +137,18 @@ class Log:
         bodies. Errors: `TraceError` where more than one is left.
         """
         of_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
-        found = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
-        chosen = [topic for topic in self.requested_topics if topic in found]
-        if not chosen:
-            chosen = [usual] if (usual := _usual(of_kind)) else sorted(found)
-            if usual and len(found) > 1:
-                left = listed(sorted(found.keys() - {usual}))
+        candidates = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
+        selection = [topic for topic in self.requested_topics if topic in candidates]
+        if not selection:
+            selection = [usual] if (usual := _usual(of_kind)) else sorted(candidates)
+            if usual and len(candidates) > 1:
+                left = listed(sorted(candidates.keys() - {usual}))
                 self.notes.append(f"{content}: topic {usual} is read, {left} is left out: --topic chooses another")
-        if len(chosen) > 1:
+        if len(selection) > 1:
             raise TraceError(
-                f"{self.path}: {content} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
+                f"{self.path}: {content} on {len(selection)} topics ({', '.join(selection)}): choose with --topic (several: A,B)"
             )
-        return {topic: found[topic] for topic in chosen}
+        return {topic: candidates[topic] for topic in selection}
 
 
 def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:

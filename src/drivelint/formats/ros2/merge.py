@@ -39,13 +39,13 @@ def merge_ego(
         assert objects is not None  # noqa: S101 (the reader refuses a log with neither)
         return Recording(FORMAT, objects[1], ego_ids=names, findings=findings)
     ego = odometry[1]
-    found: list[str] = []
+    ids_in_objects: list[str] = []
     if objects is None:
         ego.ids = names[:1] or [DEFAULT_EGO_ID]
     else:
-        others = objects[1]
-        found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
-        ego.ids = found[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, others.ids)]
+        object_states = objects[1]
+        ids_in_objects = [name for name in names if name in object_states.ids] or ids_at_ego(ego, object_states)
+        ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
             f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
@@ -53,7 +53,7 @@ def merge_ego(
         )
         first = int(ego.t_ns.min())
         findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
-    if objects is not None and found:
+    if objects is not None and ids_in_objects:
         return _with_one_ego_track(ego, objects[1], objects[0], findings)
     states = ego if objects is None else concatenate_states(ego, objects[1])
     return Recording(FORMAT, states, ego_ids=list(ego.ids), findings=findings)
@@ -64,9 +64,9 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
     (name,) = ego.ids
     twin = object_states.actor == object_states.ids.index(name)
     n = int(twin.sum())
-    both = f"the ego is {name!r} on {topic} too"
+    message_start = f"the ego is {name!r} on {topic} too"
     if n >= len(ego):
-        message = f"{both}: its {n} states there count, not the odometry's"
+        message = f"{message_start}: its {n} states there count, not the odometry's"
         findings.append(QualityFinding("ego_twice", "info", message, len(ego)))
         return Recording(FORMAT, object_states, ego_ids=[name], findings=findings)
     for size in SIZE_COLUMNS:
@@ -77,7 +77,7 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
     kinds = object_states.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
-    message = f"{both}: its size there counts, its {len(ego)} states are the odometry's"
+    message = f"{message_start}: its size there counts, its {len(ego)} states are the odometry's"
     findings.append(QualityFinding("ego_twice", "info", message, n))
     return Recording(FORMAT, concatenate_states(ego, object_states.take(~twin)), ego_ids=[name], findings=findings)
 

@@ -136,15 +136,17 @@ def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
         return
     points = items.items("shape.footprint.points")
     of_polygon = np.flatnonzero(rows.outlined[points.parent])
-    which, first = np.unique(points.parent[of_polygon], return_index=True)
-    if not len(which):
+    polygon_rows, first = np.unique(points.parent[of_polygon], return_index=True)
+    if not len(polygon_rows):
         return
     corners = vectors(points, "", "xy")[of_polygon]
     low, high = np.minimum.reduceat(corners, first), np.maximum.reduceat(corners, first)
-    rows.size[which, :2] = np.where(high > low, high - low, np.nan)
-    middle = np.column_stack([0.5 * (low + high), np.zeros(len(which))])
-    shift = rotated(unit_quaternions(rows.turn[which]), middle)
-    rows.place[which] += np.where(np.isfinite(shift), shift, 0.0)  # a body without any orientation stays where it is
+    rows.size[polygon_rows, :2] = np.where(high > low, high - low, np.nan)
+    middle = np.column_stack([0.5 * (low + high), np.zeros(len(polygon_rows))])
+    shift = rotated(unit_quaternions(rows.turn[polygon_rows]), middle)
+    rows.place[polygon_rows] += np.where(
+        np.isfinite(shift), shift, 0.0
+    )  # a body without any orientation stays where it is
 
 
 def _detections(top: Table) -> RecordedPoses:

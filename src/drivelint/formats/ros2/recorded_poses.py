@@ -213,26 +213,26 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
     """
     why = None
     ranges = []
-    for what, rows in parts.items():
+    for topic, rows in parts.items():
         if not len(rows):
             continue
         # 0 is a time where a simulation's clock starts, and none where the others count from 1970
         missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= LEAST_UTC_NS))
         if missing.any():
-            why = f"{what}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
+            why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
-            why = f"the time stamps of {what} stand still"
+            why = f"the time stamps of {topic} stand still"
         else:
-            ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), what))
+            ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), topic))
     if why is None and len(ranges) > 1:
         latest, earliest = max(ranges), min(ranges, key=lambda item: item[1])
         if latest[0] > earliest[1]:
             why = f"the time stamps of {latest[2]} and {earliest[2]} have no moment in common: two clocks"
-    for what, rows in parts.items():
+    for topic, rows in parts.items():
         rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
         if len(rows):
             messages = np.r_[0, np.flatnonzero(np.diff(rows.log_ns)) + 1]
-            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), f" of {what}")
+            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), topic)
     if why is not None:
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)

@@ -138,15 +138,15 @@ def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) ->
 
 
 def _refuse_loops(name: str, types: Types, wrong: MakeError) -> None:
-    done: set[str] = set()
+    checked_kinds: set[str] = set()
 
     def visit(kind: str, inside: tuple[str, ...]) -> None:
         if kind in inside:
             raise wrong(f"contains itself ({kind}): record it again")
-        if kind in done:
+        if kind in checked_kinds:
             return
         for field in types.get(kind, []):
             visit(field.kind, (*inside, kind))
-        done.add(kind)
+        checked_kinds.add(kind)
 
     visit(name, ())

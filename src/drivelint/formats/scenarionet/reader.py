@@ -146,7 +146,7 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
     """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
     scenario.refuse_more(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
-    seen: set[Any] = set()
+    known_words: set[Any] = set()
     for name, light in scenario.lights.items():
         state = light.get("state")
         words = state.get("object_state") if isinstance(state, dict) else None
@@ -156,8 +156,8 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
             raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
         ids.append(name)
         codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
-        seen.update(words)
-    unread = {word[:100] for word in seen - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
+        known_words.update(words)
+    unread = {word[:100] for word in known_words - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
     if not ids:
         return None, []
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))

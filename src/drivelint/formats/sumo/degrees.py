@@ -68,10 +68,10 @@ def net_positions(
 
 
 def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
-    placed = xy[np.isfinite(xy).all(axis=1)]
-    if not len(placed):
+    points = xy[np.isfinite(xy).all(axis=1)]
+    if not len(points):
         return False
-    may_be = bool((np.abs(placed) <= _FARTHEST).all())
+    may_be = bool((np.abs(points) <= _FARTHEST).all())
     moves = _moves_in_degrees(rows, xy, actor) if may_be else False
     if moves is False and rows.geo_option:
         raise TraceError(
@@ -85,7 +85,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():
         return False
-    return bool(location.surrounds(frame.unproject(transform(placed, WGS84, frame.reference))).all())
+    return bool(location.surrounds(frame.unproject(transform(points, WGS84, frame.reference))).all())
 
 
 def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:

@@ -62,7 +62,7 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
         other_lines.append((row.number, row.text.strip()))
         return "skip"
 
-    wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in ATTRIBUTES]
+    read_columns = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in ATTRIBUTES]
     try:
         table = pa_csv.read_csv(
             pa.BufferReader(memoryview(content)[begin:]),
@@ -72,7 +72,9 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
                 delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=keep_other_line
             ),
             pa_csv.ConvertOptions(
-                column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
+                column_types=dict.fromkeys(read_columns, pa.string()),
+                include_columns=read_columns,
+                strings_can_be_null=False,
             ),
         )
         times = _times(other_lines, len(table))

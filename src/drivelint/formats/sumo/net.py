@@ -131,14 +131,14 @@ def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool,
         name, function = edge.get("id", ""), edge.get("function", "normal")
         if function in {"walkingarea", "connector"}:
             continue
-        made = []
+        lanes_by_index = []
         for element in edge.iterfind("lane"):
             try:
-                made.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
+                lanes_by_index.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
             except (ValueError, KeyError) as error:
                 lane = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
-        lanes = [lane for _, lane in sorted(made, key=lambda item: item[0])]
+        lanes = [lane for _, lane in sorted(lanes_by_index, key=lambda item: item[0])]
         if function == "crossing":
             net.walks += lanes
             continue

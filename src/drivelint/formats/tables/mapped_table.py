@@ -63,16 +63,16 @@ def read(probe: Probe) -> Recording:
     path, name = probe.path, probe.options.mapping
     if name is None:
         name, mapping, sheet = _fitting(path)
-        said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
+        notes = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
     else:
         name, mapping = mappings.load(name)
         sheet = open_sheet(path, mapping)
-        said = []
+        notes = []
     recording = _Body(path, mapping, sheet, _groups(path, name, mapping, sheet)).read()
     _refuse_misread(path, name, recording)
     recording.format = name
     recording.findings += _assumptions(name, mapping)
-    recording.notes = said
+    recording.notes = notes
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
         recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
@@ -81,15 +81,15 @@ def read(probe: Probe) -> Recording:
 
 def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
     """Return what the mapping says in place of the log: sizes, and that the log's frame is left-handed."""
-    found = []
+    findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
-        found.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
+        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
         message = f"{' and '.join(turned)} turned, as the mapping {name!r} says: the log's frame is left-handed"
-        found.append(QualityFinding(TURNED_FRAME, "info", message))
-    return found
+        findings.append(QualityFinding(TURNED_FRAME, "info", message))
+    return findings
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
@@ -174,14 +174,14 @@ class _Body:
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
         parts, texts = [], []
-        lost = bad_time & ~blank
+        lost_rows = bad_time & ~blank
         for k in self.groups:
             ids = self._ids(k, n)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
             # in a wide table, an actor that is absent has neither a name nor a place
             nameless = absent & ~bad_time & ~blank & (True if k == "" else self._has_place(k, n))
             self._report_rows(nameless, "the actor id is missing", "dropped_row")
-            lost |= nameless
+            lost_rows |= nameless
             keep = ~(absent | bad_time)
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._rows(k, n, t_ns, keep))
@@ -194,7 +194,7 @@ class _Body:
             states=states,
             ego_ids=self._egos(states),
             findings=self.findings,
-            lost_times=self._lost_times(t_ns, ~bad_time, lost),
+            lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
             # a row of a wide table is a frame, whoever is in it
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
@@ -212,16 +212,16 @@ class _Body:
 
     def _lost_times(self, t_ns: Times, timed: Mask, lost_rows: Mask) -> list[LostTime]:
         """Return when the lost rows were recorded, and the lines that are no rows: what the cells of these mean is not known."""
-        what = f"{self.path.name}: rows that cannot be read"
+        cause = f"{self.path.name}: rows that cannot be read"
         if self.sheet.has_zeros_within:
-            return [LostTime(None, None, f"{what}, for zero bytes stand there")]
+            return [LostTime(None, None, f"{cause}, for zero bytes stand there")]
         places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
         t_ns, timed, lost_rows = (
             np.insert(t_ns, places, 0),
             np.insert(timed, places, False),
             np.insert(lost_rows, places, True),
         )
-        return times_of_lost_rows(t_ns, timed, lost_rows, what)
+        return times_of_lost_rows(t_ns, timed, lost_rows, cause)
 
     def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)

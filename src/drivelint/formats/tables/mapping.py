@@ -281,7 +281,7 @@ def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[boo
     """List what cannot go together, each with whether it is so here. `names`: the fields that the mapping gives."""
     point = mapping.reference.point
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
-    grouped = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
+    has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
     return [
         (("vx" in names) != ("vy" in names) or ("ax" in names) != ("ay" in names), "vx and vy, and ax and ay, go in pairs"),
         ("vx" in names and "speed" in names, "give vx and vy or speed, not both"),
@@ -292,7 +292,7 @@ def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[boo
          "reference.point = 'front_bumper' needs columns.length and takes no reference.forward"),
         (point == "centre" and not names.isdisjoint({"forward", "left", "up"}),
          "reference.forward, left and up need reference.point = 'rear_axle'"),
-        (mapping.ego.otherwise is not None and not grouped,
+        (mapping.ego.otherwise is not None and not has_groups,
          "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor"),
     ]  # fmt: skip
 

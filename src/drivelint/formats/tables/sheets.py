@@ -87,7 +87,7 @@ class CsvSheet:
 
         self._check_text()
         width = len(self.names) + self._spare
-        wanted = {str(self.names.index(name)): name for name in names}
+        column_names = {str(self.names.index(name)): name for name in names}
         options = (
             arrow_csv.ReadOptions(
                 skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
@@ -96,7 +96,9 @@ class CsvSheet:
                 delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
             ),
             arrow_csv.ConvertOptions(
-                include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.string()), strings_can_be_null=False
+                include_columns=list(column_names),
+                column_types=dict.fromkeys(column_names, pa.string()),
+                strings_can_be_null=False,
             ),
         )
         try:
@@ -106,7 +108,9 @@ class CsvSheet:
             if "Empty CSV" in str(error):
                 raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
             raise TraceError(f"{self._path}: not a CSV table: {' '.join(str(error).split())}") from error
-        self._columns = {name: _trimmed(table.column(key), self._layout.null_values) for key, name in wanted.items()}
+        self._columns = {
+            name: _trimmed(table.column(key), self._layout.null_values) for key, name in column_names.items()
+        }
         return int(table.num_rows)
 
     def rows_before_bad_lines(self) -> list[int]:
