@@ -15,7 +15,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.scene import document
-from drivelint.scene.judge import Verdicts, judged
+from drivelint.scene.judge import Verdicts, judge_scenes
 from drivelint.scene.scene import Scene, scenes_of
 from tests.drawn import SCENES, TOPICS
 
@@ -187,7 +187,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> Callable[[tuple[str, ...]
     @cache
     def judge(topics: tuple[str, ...], most: int) -> tuple[list[Scene], Verdicts]:
         chosen = [scene for topic in topics for scene in scenes(topic, most)]
-        return chosen, judged(chosen, ["status:stable"], tmp_path_factory.mktemp("clean") / "scenes")
+        return chosen, judge_scenes(chosen, ["status:stable"], tmp_path_factory.mktemp("clean") / "scenes")
 
     return judge
 
@@ -209,7 +209,7 @@ def test_no_verdict_rests_on_a_fault_of_the_recorder(
 ) -> None:
     chosen, before = clean(topics, most)
     faulty = [Attacked(scene.text, scene.layout, scene.left, scene.name, attack) for scene in chosen]
-    after = judged(faulty, ["status:stable"], tmp_path / "scenes")
+    after = judge_scenes(faulty, ["status:stable"], tmp_path / "scenes")
     decided = [key for key in after.rows if after.verdict(key) in {"pass", "fail"}]
     assert len(decided) > len(chosen), "a log that is refused shows nothing"
     assert not worse(before, after)

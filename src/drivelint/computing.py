@@ -17,17 +17,17 @@ class Work:
     def __init__(self, thread: int) -> None:
         self._thread = thread
         self._seconds = 0.0
-        self._process_s, self._others_s = process_time(), self._others()
+        self._process_s, self._others_s = process_time(), self._cpu_s_of_other_threads()
 
     def seconds(self) -> float:
         """Return the seconds of work until now."""
-        process_s, others_s = process_time(), self._others()
+        process_s, others_s = process_time(), self._cpu_s_of_other_threads()
         by_others = sum(now - self._others_s.get(thread, 0.0) for thread, now in others_s.items())
         self._seconds += max(0.0, process_s - self._process_s - by_others)
         self._process_s, self._others_s = process_s, others_s
         return self._seconds
 
-    def _others(self) -> dict[int, float]:
+    def _cpu_s_of_other_threads(self) -> dict[int, float]:
         """Return how long each other Python thread has computed; nothing where the system does not tell."""
         found: dict[int, float] = {}
         for thread in threading.enumerate():

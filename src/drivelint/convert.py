@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import pyarrow as pa
 
-from drivelint.drive.cut import cut_trace
 from drivelint.drive.finish import with_quality_finding
+from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import DriveInput, QualityFinding
 from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import MapError, UsageError
@@ -242,16 +242,16 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded:
     return {name: len(content) for name, content in contents.items()}
 
 
-def summary_text(written: ConvertedTrace) -> str:
+def summary_text(trace: ConvertedTrace) -> str:
     """Return what was written, and the command that checks it."""
-    size = sum(written.files.values())
+    size = sum(trace.files.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
-    files = f"{len(written.files)} files, " if len(written.files) > 1 else ""
-    road = f", the map {written.map_name} with it" if written.map_name else ", no map"
-    ego = "" if written.has_ego else " --ego ID"
+    files = f"{len(trace.files)} files, " if len(trace.files) > 1 else ""
+    road = f", the map {trace.map_name} with it" if trace.map_name else ", no map"
+    ego = "" if trace.has_ego else " --ego ID"
     command = (
-        f"drivelint check {shlex.quote(str(written.path))}{ego}{'' if written.map_name else ' --map MAP'}"
-        f"{''.join(f' {shlex.quote(word)}' for word in written.check_options)} --out results"
+        f"drivelint check {shlex.quote(str(trace.path))}{ego}{'' if trace.map_name else ' --map MAP'}"
+        f"{''.join(f' {shlex.quote(word)}' for word in trace.check_options)} --out results"
     )
-    said = f"{written.path}: {files}{amount}, {written.n_states} states of {written.n_actors} actors{road}"
+    said = f"{trace.path}: {files}{amount}, {trace.n_states} states of {trace.n_actors} actors{road}"
     return f"{one_line(said)}\n{one_line(f'check it, without a mapping, with: {command}')}"

@@ -56,8 +56,10 @@ def _is_ours(path: Path) -> None:
         raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder")
 
 
-def check_command(out: Path, called: str = "drivelint") -> str:
-    """Return the command that checks what was written, to be copied into a shell; `called` is how drivelint was started."""
+def check_command(out: Path, executable: str = "drivelint") -> str:
+    """Return the command that checks what was written, to be copied into a shell; `executable` is how drivelint was started."""
     there = shlex.quote(str(out))
-    program = shlex.quote(called) if PurePath(called).name == "drivelint" and not which("drivelint") else "drivelint"
+    program = (
+        shlex.quote(executable) if PurePath(executable).name == "drivelint" and not which("drivelint") else "drivelint"
+    )
     return f"{program} check {there}/*.mcap --map {there}/{ROAD_FILE} --out {there}/results"

@@ -15,7 +15,7 @@ import pytest
 
 from drivelint import cli, demo
 from drivelint.convert import ConvertRequest, summary_text
-from drivelint.drive.cut import cut_trace
+from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import ASSUMED_SIZE, IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace

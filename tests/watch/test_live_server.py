@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from drivelint.annotate import measures
-from drivelint.drive.cut import cut_trace
+from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace

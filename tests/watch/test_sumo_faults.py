@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import pytest
 
 from drivelint import run
-from drivelint.drive.cut import cut_trace
+from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.interruption import Interruption
 from drivelint.formats import read_trace

@@ -64,11 +64,11 @@ class Absence(NamedTuple):
         return np.where((of >= 0) & (t_ns < self.until_ns[of]), of, -1)
 
 
-def asked_ego(recording: Recording, asked: str | None) -> str | None:
+def asked_ego(recording: Recording, ego_option: str | None) -> str | None:
     """Return whom the user asks for as the ego, now or when the log was converted; None: whom the log names."""
-    if asked is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
+    if ego_option is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
         return ALL_EGOS
-    return asked
+    return ego_option
 
 
 def own_egos(recording: Recording) -> list[str]:
@@ -80,19 +80,19 @@ def own_egos(recording: Recording) -> list[str]:
     return [name for name in dict.fromkeys(recording.ego_ids) if name not in picked]
 
 
-def absences(recording: Recording, asked: str | None) -> list[Absence]:
+def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
     """Return the absences of the egos that must be there (states as read): the recorder's own, or the one that the user picks."""
     states, own = recording.states, own_egos(recording)
-    expected = own if asked is None or asks_for_all(asked, states.ids) else [asked]
-    found = []
+    expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
+    absences_of_egos = []
     for name in expected:
         t_ns = _placed_times(states, name)
         of_track = name not in own and len(t_ns) > 0
         span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _span(recording)
         absence = _absence(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
         if len(absence.since_ns):
-            found.append(absence)
-    return found
+            absences_of_egos.append(absence)
+    return absences_of_egos
 
 
 def _span(recording: Recording) -> tuple[int, int]:
@@ -149,7 +149,7 @@ def with_absent_states(states: States, missed: Sequence[Absence], frames_ns: Tim
     if not any(map(len, more)):
         return states
     states.ids = ids
-    return sorted_states(States.joined([states, *more]))
+    return sorted_states(States.concatenate([states, *more]))
 
 
 def _absent_states(states: States, ids: list[str], absence: Absence, frames_ns: Times | None) -> States:
@@ -195,18 +195,23 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
     """Return a finding, an error, for each absence (states in order, those without values among them)."""
     start = int(states.t_ns.min())
     findings = []
-    for each in missed:
-        begins, ends = each.ends_ns
-        lost_ns, of_ns = int((ends - begins).sum()), each.last_ns - each.first_ns
-        when = f"from {(begins[0] - start) / 1e9:.3f} s to {'the end' if ends[0] == each.last_ns else f'{(ends[0] - start) / 1e9:.3f} s'}"
+    for absence in missed:
+        begins, ends = absence.ends_ns
+        lost_ns, of_ns = int((ends - begins).sum()), absence.last_ns - absence.first_ns
+        until = "the end" if ends[0] == absence.last_ns else f"{(ends[0] - start) / 1e9:.3f} s"
+        when = f"from {(begins[0] - start) / 1e9:.3f} s to {until}"
         if len(begins) > 1:
             when = f"in {len(begins)} stretches, the first {when}"
-        whole = f"{of_ns / 1e9:.1f} s{' of its track' if each.of_track else ''}"
+        whole = f"{of_ns / 1e9:.1f} s{' of its track' if absence.of_track else ''}"
         percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
-        message = f"the ego {each.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
-        mine = states.t_ns[states.actor == states.ids.index(each.ego_id)] if each.ego_id in states.ids else begins[:0]
-        n = int((each.stretch_of(mine) >= 0).sum())
-        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), each.ego_id))
+        message = f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
+        mine = (
+            states.t_ns[states.actor == states.ids.index(absence.ego_id)]
+            if absence.ego_id in states.ids
+            else begins[:0]
+        )
+        n = int((absence.stretch_of(mine) >= 0).sum())
+        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), absence.ego_id))
     return findings
 
 
@@ -215,16 +220,16 @@ def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
     return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
 
 
-def chosen_findings(recording: Recording, asked: str | None) -> list[QualityFinding]:
+def chosen_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
     """Return that the user picks an ego that is not the recorder's own, and how long that one is in the log (states as read)."""
     own, states = own_egos(recording), recording.states
-    if asked is None or asked in own:
+    if ego_option is None or ego_option in own:
         return []
-    if asks_for_all(asked, states.ids):
+    if asks_for_all(ego_option, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
         names: list[str | None] = [*own] if own else [None]
         return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in names]
-    t_ns, (first, last) = _placed_times(states, asked), _span(recording)
+    t_ns, (first, last) = _placed_times(states, ego_option), _span(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
-    message = f"the ego {asked} is chosen with --ego: it is judged for the time of its track, {there}"
-    return [QualityFinding(EGO_CHOSEN, "info", message, actor_id=asked)]
+    message = f"the ego {ego_option} is chosen with --ego: it is judged for the time of its track, {there}"
+    return [QualityFinding(EGO_CHOSEN, "info", message, actor_id=ego_option)]

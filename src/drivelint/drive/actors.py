@@ -114,15 +114,15 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     wide = long_kind & (width > WIDER_SHARE * length)
     along = np.isin(actors.ids, _moving_along(states)) if wide.any() else wide
-    turned, lost = wide & along, wide & ~along
-    actors.sizes["length_m"] = np.where(turned, width, np.where(lost, np.nan, length))
-    actors.sizes["width_m"] = np.where(turned, length, np.where(lost, np.nan, width))
+    turned, dropped_sizes = wide & along, wide & ~along
+    actors.sizes["length_m"] = np.where(turned, width, np.where(dropped_sizes, np.nan, length))
+    actors.sizes["width_m"] = np.where(turned, length, np.where(dropped_sizes, np.nan, width))
     findings = []
     for check, rows, text in (
         ("size_turned", turned, "wider than long, and moving along the short side: {}: length and width are exchanged"),
         (
             "size_unknown",
-            lost,
+            dropped_sizes,
             "wider than long, and nothing tells which side is the front: {}: length and width are unknown",
         ),
     ):

@@ -25,7 +25,7 @@ DIFFERENT_RATE_FACTOR: Final = 1.5
 """A period longer than the ego's by more than this factor is another rate; a smaller difference is a missing sample now and then."""
 COVERED_SHARE: Final = 0.75
 """A track that has a sample at so many of the ego's steps needs no others."""
-_MOVED: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
+_PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
 def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
@@ -39,18 +39,18 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         return states, []
     period = float(np.median(np.diff(grid)))
     log_ns = int(states.t_ns.min()), int(states.t_ns.max())
-    kept, added, names, longest = np.ones(len(states), np.bool_), [], [], 0
+    kept_rows, aligned_tracks, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
-        own = _own_period(states.t_ns[span], grid, period)
-        if own is None:
+        track_period = _own_period(states.t_ns[span], grid, period)
+        if track_period is None:
             continue
         # a track with a shorter period keeps its own samples too; every track keeps those before and after the ego's steps
-        kept[span] = (own < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
-        track = _at_steps(states, span, grid, own, log_ns)
-        added.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if own < period else track)
+        kept_rows[span] = (track_period < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
+        track = _at_steps(states, span, grid, track_period, log_ns)
+        aligned_tracks.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if track_period < period else track)
         names.append(name)
-        longest = max(longest, own)
+        longest = max(longest, track_period)
     if not names:
         return states, []
     message = (
@@ -58,7 +58,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)
-    return sorted_states(States.joined([states.take(kept), *added])), [finding]
+    return sorted_states(States.concatenate([states.take(kept_rows), *aligned_tracks])), [finding]
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
@@ -69,14 +69,14 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
     first = int(np.searchsorted(grid, t_ns[0]))
     if first + n <= len(grid) and np.array_equal(t_ns, grid[first : first + n]):
         return None
-    own = int(np.median(np.diff(t_ns)))
-    if own > LONGEST_PERIOD_NS:
+    own_period = int(np.median(np.diff(t_ns)))
+    if own_period > LONGEST_PERIOD_NS:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
     if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step in that time
         return None
-    return own if own > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
+    return own_period if own_period > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 
 
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
@@ -101,7 +101,7 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
         numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])
     numbers["yaw_rad"] = wrapped(numbers["yaw_rad"])
     age_s = np.where(inside, 0.0, (steps - t_ns[before]) / 1e9)
-    for place, velocity in _MOVED:
+    for place, velocity in _PLACE_AND_VELOCITY:
         numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])
     codes = {name: values[rows] for name, values in states.codes.items()}
     return States(states.ids, states.actor[rows], steps, numbers, codes, states.not_finite[rows])

@@ -45,13 +45,13 @@ LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
     """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
-    lost = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
+    unplaced = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     findings = []
     for rows, check, text in (
         (states.not_finite, "not_finite", "NaN or infinity in {n} of {of} states ({ids}): those values are unknown"),
-        (lost, "no_position", "no position in {n} of {of} states ({ids}): the actors are present but not placed"),
+        (unplaced, "no_position", "no position in {n} of {of} states ({ids}): the actors are present but not placed"),
         (
-            ~lost & np.isnan(states.numbers["yaw_rad"]),
+            ~unplaced & np.isnan(states.numbers["yaw_rad"]),
             "no_yaw",
             "no heading in {n} of {of} states ({ids}): their boxes cannot be placed",
         ),
@@ -144,14 +144,14 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     wrong[1:] = _disagree(*_against_positions(states, step, jump, 1))
     second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
     for n_steps in {second: None, 1: None}:
-        error, told, moved, usable = _against_positions(states, step, jump, n_steps)
-        moving = usable & (np.maximum(moved, told) > YAW_CHECK_LEAST_MPS)
-        off = moving & _disagree(error, told, moved, usable)
+        error, speed, step_speed, usable = _against_positions(states, step, jump, n_steps)
+        moving = usable & (np.maximum(step_speed, speed) > YAW_CHECK_LEAST_MPS)
+        off = moving & _disagree(error, speed, step_speed, usable)
         n, n_moving = int(off.sum()), int(moving.sum())
         if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
         if n > WRONG_UNITS_SHARE * n_moving:
-            ratio = float(np.nanmedian((told / moved)[moving]))
+            ratio = float(np.nanmedian((speed / step_speed)[moving]))
             text = (
                 f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
                 f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
@@ -162,9 +162,9 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
-def _disagree(error: Floats, told: Floats, moved: Floats, usable: Mask) -> Mask:
+def _disagree(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
     """Say which of the steps that `_against_positions` compared are further apart than the two ways of measuring explain."""
-    return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(moved, told))
+    return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(step_speed, speed))
 
 
 def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
@@ -175,10 +175,10 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
     known = known_motion(states, step) & ~jump[1:]
     went, led, usable, span_s = displacements(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-    told = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
+    speed = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
     went /= span_s
     led /= span_s
-    return np.hypot(*(went - led)), told, np.hypot(*went), usable
+    return np.hypot(*(went - led)), speed, np.hypot(*went), usable
 
 
 def _cause(ratio: float) -> str:

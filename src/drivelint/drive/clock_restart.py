@@ -22,14 +22,15 @@ HOLE_FACTOR: Final = 1.5
 """A step of more than so many usual ones is a hole, which late messages may fill."""
 
 
-def backward_steps(t_ns: Times, what: str = "") -> list[QualityFinding]:
-    """Return a finding where the times of messages, in the order of the file, go back; `what`: whose clock it is."""
+def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding]:
+    """Return a finding where the times of messages, in the order of the file, go back; `topic`: whose clock it is."""
     back = np.diff(t_ns) < 0
     if not back.any():
         return []
     n, first = int(back.sum()), int(t_ns[1:][back][0])
+    of_topic = "" if topic is None else f" of {topic}"
     message = (
-        f"backward steps of the clock{what}: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
+        f"backward steps of the clock{of_topic}: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
     )
     return [QualityFinding("clock_jump", "warning", message, n, first)]
 
@@ -74,7 +75,7 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
     for own in tracks.values():
         for one, other in combinations(own, 2):
             times, others = states.t_ns[one], states.t_ns[other]
-            if _among(times, others) >= LEAST_INTERLEAVED_STATES:
+            if _interleaved_count(times, others) >= LEAST_INTERLEAVED_STATES:
                 pair = int(run[one[0]]), int(run[other[0]])
                 since, until = max(int(times[0]), int(others[0])), min(int(times[-1]), int(others[-1]))
                 known = spans.get(pair, (since, until))
@@ -82,23 +83,25 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
     return spans
 
 
-def _among(one: Times, other: Times) -> int:
+def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
     """Count the times of a run that lie between those of another, and not in its holes (both rise)."""
-    steps = np.diff(one)
-    before = np.clip(np.searchsorted(one, other), 1, len(one) - 1) - 1
-    inside = (other >= one[0]) & (other <= one[-1]) & (steps[before] <= HOLE_FACTOR * np.median(steps))
+    steps = np.diff(run_ns)
+    before = np.clip(np.searchsorted(run_ns, other_run_ns), 1, len(run_ns) - 1) - 1
+    inside = (
+        (other_run_ns >= run_ns[0]) & (other_run_ns <= run_ns[-1]) & (steps[before] <= HOLE_FACTOR * np.median(steps))
+    )
     return int(inside.sum())
 
 
 def _agreed(states: States, rows: Mask) -> Mask:
     """Say which of the chosen rows are there more than once for their actor and time, and say the same each time."""
     agreed = np.zeros(len(rows), np.bool_)
-    chosen = np.flatnonzero(rows)
-    chosen = chosen[np.lexsort((states.t_ns[chosen], states.actor[chosen]))]
-    ordered = states.take(chosen)
+    chosen_rows = np.flatnonzero(rows)
+    chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]
+    ordered = states.take(chosen_rows)
     again, of = repetitions(ordered)
     several = np.bincount(of) > 1
     other = again & np.any(list(changed_columns(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0
-    agreed[chosen] = (several & ~contradicted)[of]
+    agreed[chosen_rows] = (several & ~contradicted)[of]
     return agreed

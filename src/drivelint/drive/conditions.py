@@ -59,7 +59,7 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
 
     Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest one), or two words for one key.
     """
-    found: dict[str, str] = {}
+    words: dict[str, str] = {}
     for setting in settings:
         key, equals, word = (part.strip() for part in setting.partition("="))
         if not equals:
@@ -67,9 +67,9 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
         key, word = canonical_spelling(key, word)
         if wrong := condition_problem(key) or value_problem(key, word):
             raise UsageError(f"--env {setting!r}: {wrong}")
-        if found.setdefault(key, word) != word:
-            raise UsageError(f"--env {setting!r}: {key} is {found[key]!r} already: a drive has one {key}")
-    return tuple(sorted(found.items()))
+        if words.setdefault(key, word) != word:
+            raise UsageError(f"--env {setting!r}: {key} is {words[key]!r} already: a drive has one {key}")
+    return tuple(sorted(words.items()))
 
 
 def condition_problem(condition: str) -> str | None:

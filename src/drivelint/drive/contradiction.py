@@ -71,16 +71,16 @@ LARGEST_HALF_BOX_M: Final = 6.0
 
 
 def resolve(
-    states: States, step: Steps, actors: Actors, *, derived: bool, split: SplitTracks = NO_SPLIT
+    states: States, step: Steps, actors: Actors, *, derived: bool, split_tracks: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
     """Make what contradicts the motion unknown, in place (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nobody. `split`: what was not believed before.
+    `derived`: velocities come from the positions, and contradict nobody. `split_tracks`: what was not believed before.
     """
     if len(states) < 3:
         return []
     findings: list[QualityFinding] = []
-    places = [split.refused] if split.refused else []
+    places = [split_tracks.rejected_states] if split_tracks.rejected_states else []
     if not derived:
         frozen = _frozen(states, step)
         if frozen.any():
@@ -93,7 +93,7 @@ def resolve(
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
-        findings += _upon_others(states, step, actors, each, split.alias)
+        findings += _upon_others(states, step, actors, each, split_tracks.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     text = COUNT_PREFIX + "the heading is turned round, the motion is not: the motion counts"
@@ -106,33 +106,33 @@ def resolve(
 
 
 def _upon_others(
-    states: States, step: Steps, actors: Actors, refused: States, alias: Mapping[str, str]
+    states: States, step: Steps, actors: Actors, rejected_states: States, alias: Mapping[str, str]
 ) -> list[QualityFinding]:
     """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
     index = {name: i for i, name in enumerate(actors.ids)}
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
     half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
     half_of = half[[index[name] for name in states.ids]][states.actor]
-    placed = np.flatnonzero(np.isfinite(states.place).all(axis=0))
-    placed = placed[np.argsort(states.t_ns[placed], kind="stable")]
-    t_ns, beside = states.t_ns[placed], max(step.period_ns, 1)
-    first = np.searchsorted(t_ns, refused.t_ns - beside)
-    n = np.searchsorted(t_ns, refused.t_ns + beside, side="right") - first
+    placed_rows = np.flatnonzero(np.isfinite(states.place).all(axis=0))
+    placed_rows = placed_rows[np.argsort(states.t_ns[placed_rows], kind="stable")]
+    t_ns, beside = states.t_ns[placed_rows], max(step.period_ns, 1)
+    first = np.searchsorted(t_ns, rejected_states.t_ns - beside)
+    n = np.searchsorted(t_ns, rejected_states.t_ns + beside, side="right") - first
     place = np.repeat(np.arange(len(n)), n)
-    other = placed[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
-    away = np.hypot(*(refused.place[:, place] - states.place[:, other]))
-    own_names = [refused.ids[i] for i in refused.actor]
+    other_row = placed_rows[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
+    away = np.hypot(*(rejected_states.place[:, place] - states.place[:, other_row]))
+    own_names = [rejected_states.ids[i] for i in rejected_states.actor]
     own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
     # the track that goes on after the jump is the same actor's in the log
     in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
     own_in_log = np.array([alias.get(name, name) for name in own_names], dtype=np.str_)
-    upon = (away <= own + half_of[other]) & (in_log[states.actor[other]] != own_in_log[place])
+    upon = (away <= own + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
     findings = []
-    for number in np.unique(refused.actor[place[upon]]):
-        name = refused.ids[number]
-        rows = upon & (refused.actor[place] == number)
-        others = sorted({states.ids[i] for i in states.actor[other[rows]]})
-        times = np.unique(refused.t_ns[place[rows]])
+    for number in np.unique(rejected_states.actor[place[upon]]):
+        name = rejected_states.ids[number]
+        rows = upon & (rejected_states.actor[place] == number)
+        others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
+        times = np.unique(rejected_states.t_ns[place[rows]])
         message = (
             f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
         )
@@ -150,9 +150,11 @@ def _frozen(states: States, step: Steps) -> Mask:
     usable = known_motion(states, step)
     went, led, slack = _step_by_step(states, step, usable)
 
-    def contradict(way: Floats, told: Floats, either: Floats) -> Mask:
-        fastest = np.maximum(np.hypot(*way), np.hypot(*told))
-        wrong: Mask = np.hypot(*(way - told)) > MISMATCH_M + MISMATCH_SHARE * fastest + either
+    def contradict(displacement: Floats, velocity_displacement: Floats, slack_m: Floats) -> Mask:
+        fastest = np.maximum(np.hypot(*displacement), np.hypot(*velocity_displacement))
+        wrong: Mask = (
+            np.hypot(*(displacement - velocity_displacement)) > MISMATCH_M + MISMATCH_SHARE * fastest + slack_m
+        )
         return wrong
 
     alone = contradict(went, led, slack)
@@ -201,10 +203,10 @@ def _drifts(rest: Floats, step: Steps) -> bool:
 def _mismatched(states: States, step: Steps) -> Mask:
     """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
     n = len(states)
-    found = np.zeros(n, np.bool_)
+    mismatched = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
-        return found
+        return mismatched
     usable = known_motion(states, step)
     alone, slack = _apart(states, step, usable)
     went, led, whole, span = displacements(states, step, usable, k)
@@ -216,25 +218,25 @@ def _mismatched(states: States, step: Steps) -> Mask:
     np.maximum(np.abs(went, out=went), np.abs(led, out=led), out=went)
     fastest = np.hypot(*went)
     del went, led
-    allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _most(slack, k) / span
-    wrong = whole & (off > allowed) & (_most(alone, k) < SINGLE_STEP_SHARE * off * span)
+    allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
+    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
-        return found
+        return mismatched
     sigma = sample_noise(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
     wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
     np.add.at(edges, rows + k + 1, -1)
-    found = np.cumsum(edges[:-1]) > 0
+    mismatched = np.cumsum(edges[:-1]) > 0
     wrong_by_actor, all_by_actor = (
-        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[found], states.actor)
+        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[mismatched], states.actor)
     )
     many = wrong_by_actor > WHOLE_TRACK_SHARE * all_by_actor
-    return found & ~many[states.actor]
+    return mismatched & ~many[states.actor]
 
 
-def _most(values: Floats, k: int) -> Floats:
+def _sliding_max(values: Floats, k: int) -> Floats:
     """Return the largest of every k neighbouring values (m - k + 1 of m)."""
     most: Floats = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
     return most
@@ -252,13 +254,13 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 def _leads(states: States, rows: Mask) -> Mask:
     """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
-    found = np.flatnonzero(rows)
-    first, last = _around(states, states.actor, found)
-    place, speed = states.place, np.hypot(*states.velocity[:, found])
+    marked_rows = np.flatnonzero(rows)
+    first, last = _around(states, states.actor, marked_rows)
+    place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
     way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
     kept = rows.copy()
-    kept[found] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
+    kept[marked_rows] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
     return kept
 
 
@@ -291,7 +293,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
     turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]
 
-    def shown(end: int, forth: int) -> bool:
+    def is_reversing_start(end: int, forth: int) -> bool:
         return bool(
             0 <= forth < n
             and states.actor[forth] == states.actor[end]
@@ -306,7 +308,11 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
             broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])
             beside = (seam[0] and forwards[first - 1]) or (seam[1] and forwards[last + 1])
             if out is turned:
-                fastest = FAST_REVERSING_MPS if shown(first, went[first]) or shown(last, goes[last]) else REVERSING_MPS
+                fastest = (
+                    FAST_REVERSING_MPS
+                    if is_reversing_start(first, went[first]) or is_reversing_start(last, goes[last])
+                    else REVERSING_MPS
+                )
                 real = speed[first : last + 1].max() < fastest and not broken and not beside
             else:
                 real = beside and not broken and not turns[first:last].any()

@@ -21,34 +21,34 @@ SIZE_DIFFERENCE_M: Final = 0.05
 """Sizes that differ by more are two sizes."""
 
 
-def asks_for_all(asked: str | None, ids: Collection[str]) -> bool:
+def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
     """Say whether the user asks for every motor vehicle: by `all`, if no actor is called so."""
-    return asked == ALL_EGOS and ALL_EGOS not in ids
+    return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
 
 def choose(
-    path: Path, actors: Actors, asked: str | None, named: list[str], *, needed: bool = True
+    path: Path, actors: Actors, ego_option: str | None, named_egos: list[str], *, ego_required: bool = True
 ) -> tuple[list[str], list[QualityFinding]]:
     """Return the ids of the egos and the findings about the choice.
 
-    `asked` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
-    `named` are the log's or mapping's. Where nobody names one and none is `needed`, there is none and a finding says so.
+    `ego_option` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
+    `named_egos` are the log's or mapping's. Where nobody names one and `ego_required` is false, there is none and a finding says so.
     Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
-    if asks_for_all(asked, ids):
+    if asks_for_all(ego_option, ids):
         return _every(path, actors)
-    if asked is not None:
-        if asked not in ids:
-            raise TraceError(f"{path}: no actor {asked!r} in this log: use --ego ID (ids: {listed(actors.ids)})")
-        return [asked], []
-    egos = sorted(ids.intersection(named))
+    if ego_option is not None:
+        if ego_option not in ids:
+            raise TraceError(f"{path}: no actor {ego_option!r} in this log: use --ego ID (ids: {listed(actors.ids)})")
+        return [ego_option], []
+    egos = sorted(ids.intersection(named_egos))
     if not egos:
         absent = "the log does not say which actor is the ego"
-        if named:
-            absent = f"the log's ego {listed([repr(each) for each in named])} has no states"
+        if named_egos:
+            absent = f"the log's ego {listed([repr(each) for each in named_egos])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
-        if not needed:
+        if not ego_required:
             return [], [QualityFinding("no_ego", "warning", message)]
         raise TraceError(f"{path}: {message}")
     if len(egos) > 1:

@@ -55,9 +55,9 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
     _refuse_no_drive(path, recording.states)
     pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
-    lost = lost_time_findings(recording.lost, recording.frame_times, recording.states.t_ns)
-    asked = absence.asked_ego(recording, options.ego)
-    missed, picked = absence.absences(recording, asked), absence.chosen_findings(recording, asked)
+    lost_findings = lost_time_findings(recording.lost_times, recording.frame_times, recording.states.t_ns)
+    ego_option = absence.asked_ego(recording, options.ego)
+    missed, picked = absence.absences(recording, ego_option), absence.chosen_findings(recording, ego_option)
     nobody_ns = absence.frames_without_states(recording, missed)
     as_read = recording.hand_over_states()
     states, restarts = unknown_at_restarts(as_read)
@@ -66,10 +66,12 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     recorded = None if not options.as_recorded else as_read if restarts else states.copy()
     del as_read
     states, repeated = without_duplicates(states)
-    told = recording.findings if asked is None else absence.without_choices(recording.findings)
-    findings = [*told, *picked, *lost, *restarts, *repeated]
+    recorded_findings = recording.findings if ego_option is None else absence.without_choices(recording.findings)
+    findings = [*recorded_findings, *picked, *lost_findings, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
-    states, step, split, jumped = _tracks(states, recording.ego_ids if asked is None else [asked], assumed=assumed)
+    states, step, split, jumped = _tracks(
+        states, recording.ego_ids if ego_option is None else [ego_option], assumed=assumed
+    )
     findings += jumped
     # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
@@ -80,14 +82,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, split.alias)
-    egos, chosen = ego.choose(path, actors, asked, recording.ego_ids, needed=options.need_ego)
+    egos, chosen = ego.choose(path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     findings += actor_rows.resolve_sizes(states, actors)
     checked = checks.run(states, step, actors, derived=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
-        findings += contradiction.resolve(states, step, actors, derived=derived, split=split)
+        findings += contradiction.resolve(states, step, actors, derived=derived, split_tracks=split)
         findings += implausible_motion(states, step, actors, derived=derived)
         findings += [*same_bodies(states, actors, egos), *false_entries(states, step), *held_tracks(states, actors)]
     findings += _lights(states, egos)
@@ -115,14 +117,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
 
 
 def _tracks(
-    states: States, named: list[str], *, assumed: bool
+    states: States, named_egos: list[str], *, assumed: bool
 ) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
     """Return the states with their tracks parted where they jump, but for the egos that are named, and the steps of these."""
     step, split, findings = steps(states), jumps.NO_SPLIT, []
     if not assumed:
-        states, gone = jumps.without_removed_actors(states, step, kept=named)
+        states, gone = jumps.without_removed_actors(states, step, kept_ids=named_egos)
         step = steps(states) if gone else step
-        split = jumps.split_tracks(states, step, kept=named)
+        split = jumps.split_tracks(states, step, kept_ids=named_egos)
         findings = [*gone, *split.findings]
     if split.alias:
         states = sorted_states(states)
@@ -144,7 +146,7 @@ def _tables(
     """Return the tables of a trace but for `quality` and `doubt`."""
     is_ego = _is_ego(states, egos)
     unknown = np.full(len(states), UNKNOWN_CODE)
-    given = dict(options.conditions)  # what the user gives counts more than what the log says
+    user_conditions = dict(options.conditions)  # what the user gives counts more than what the log says
     content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
         "data_log": [_log_row(identity, recording, states, is_ego, options)],
         "actor": {
@@ -165,8 +167,8 @@ def _tables(
             with_headlight_events(recording.events, states), "t_ns", "actor_id", "event", "value"
         ),
         "drive_condition": [
-            {"condition": name, "value": value, "source": "env" if name in given else "trace"}
-            for name, value in sorted({**recording.conditions, **given}.items())
+            {"condition": name, "value": value, "source": "env" if name in user_conditions else "trace"}
+            for name, value in sorted({**recording.conditions, **user_conditions}.items())
         ],
     }
     return {name: owned_table(name, identity.drive_id, rows, recording.format) for name, rows in content.items()}
@@ -227,15 +229,13 @@ def _is_ego(states: States, egos: list[str]) -> Mask:
 def _lights(states: States, egos: list[str]) -> list[QualityFinding]:
     is_ego = _is_ego(states, egos)
     findings = []
-    for column, what in (("indicator", "indicator"), ("brake_light", "brake light")):
+    for column, light_name in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)
         unknown = is_ego & (codes < 0) if codes is not None else is_ego
         n, of = int(unknown.sum()), int(is_ego.sum())
         if n == 0:
             continue
-        message = (
-            f"the {what} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
-        )
+        message = f"the {light_name} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
         only = egos[0] if len(egos) == 1 else None
         findings.append(QualityFinding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
     return findings
@@ -246,7 +246,9 @@ def _log_row(
 ) -> dict[str, Any]:
     start = int(states.t_ns.min())
     offset = recording.map_offset or (None, None)
-    known = {c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")}
+    has_lights = {
+        c: c in states.codes and bool((states.codes[c][is_ego] >= 0).any()) for c in ("indicator", "brake_light")
+    }
     return {
         **dict.fromkeys(arrow_schemas()["data_log"].names),
         "file_name": identity.file_name, "sha256": identity.sha256, "format": recording.format, "n_states": len(states),
@@ -254,8 +256,8 @@ def _log_row(
         "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "map_offset_x_m": offset[0], "map_offset_y_m": offset[1],
-        "has_indicator": known["indicator"], "names_indicator": recording.names_indicator,
-        "has_brake_light": known["brake_light"],
+        "has_indicator": has_lights["indicator"], "names_indicator": recording.names_indicator,
+        "has_brake_light": has_lights["brake_light"],
         "has_acceleration": not bool(np.isnan(states.numbers["ax_mps2"][is_ego]).all()),
         "in_sight": options.in_sight,
     }  # fmt: skip

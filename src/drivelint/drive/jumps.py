@@ -53,23 +53,23 @@ class SplitTracks:
 
     findings: list[QualityFinding]
     alias: dict[str, str]
-    refused: States | None = None
+    rejected_states: States | None = None
 
 
 NO_SPLIT: Final = SplitTracks([], {})
 
 
-def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> SplitTracks:
+def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> SplitTracks:
     """Make states at jumps unknown, and give a track that continues elsewhere a new id, in place (states in order).
 
-    `kept`: actors that keep their id (the egos that are named).
+    `kept_ids`: actors that keep their id (the egos that are named).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
     unknown, pieces = _around_jumps(states, jumps(states, step))
     text = COUNT_PREFIX + "the position jumps: they are unknown around it"
     findings = states.findings(unknown, "teleport", "warning", text)
-    alias = _renamed(states, pieces, kept, findings)
+    alias = _renamed(states, pieces, kept_ids, findings)
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
@@ -79,10 +79,10 @@ def split_tracks(states: States, step: Steps, *, kept: Collection[str]) -> Split
     return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
 
 
-def set_unknown(states: States, rows: Mask, what: tuple[str, ...] = STATE_COLUMNS) -> None:
+def set_unknown(states: States, rows: Mask, columns: tuple[str, ...] = STATE_COLUMNS) -> None:
     """Make these numbers of these rows unknown, in place."""
     if rows.any():
-        for name in set(what) & states.numbers.keys():
+        for name in set(columns) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
@@ -98,15 +98,15 @@ def jumps(states: States, step: Steps) -> Mask:
     rows = np.flatnonzero(far)
     if not len(rows):
         return far
-    told, against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
+    n_neighbours, n_against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
     for side in (-1, 1):
         beside = np.clip(rows + side, 0, len(dt) - 1)
         known = (beside == rows + side) & step.continuous[beside] & np.isfinite(way[0, beside])
         scale = dt[rows] / dt[beside]
         off = np.hypot(*(way[:, rows] - scale * way[:, beside])) > limit[rows]
-        told += known
-        against += known & off
-    far[rows] = (told > 0) & (against == told)
+        n_neighbours += known
+        n_against += known & off
+    far[rows] = (n_neighbours > 0) & (n_against == n_neighbours)
     return far
 
 
@@ -155,13 +155,13 @@ def _goes_on(states: States, last: int, first: int) -> bool:
 
 
 def _renamed(
-    states: States, pieces: NDArray[np.int32], named: Collection[str], findings: list[QualityFinding]
+    states: States, pieces: NDArray[np.int32], kept_ids: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
     """Give each later piece of a track that jumped an id of its own, in place; return new id -> old id."""
     alias: dict[str, str] = {}
     if not pieces.any():
         return alias
-    kept = {i for i, name in enumerate(states.ids) if name in named}
+    kept = {i for i, name in enumerate(states.ids) if name in kept_ids}
     keys = np.where(np.isin(states.actor, list(kept)), 0, pieces)
     ids, actor = list(states.ids), states.actor.copy()
     for i in np.unique(states.actor[keys > 0]):
@@ -182,18 +182,18 @@ def _renamed(
 
 
 def without_removed_actors(
-    states: States, step: Steps, *, kept: Collection[str]
+    states: States, step: Steps, *, kept_ids: Collection[str]
 ) -> tuple[States, list[QualityFinding]]:
     """Leave out the states of actors that jump to one place and stand there until their tracks end (states in order).
 
-    One that is alone there stays. `kept`: actors that are kept (the egos that are named).
+    One that is alone there stays. `kept_ids`: actors that are kept (the egos that are named).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return states, []
     jump = np.flatnonzero(jumps(states, step))
     place = states.place
     # an actor's last jump, and where its track ends
-    last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept}
+    last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept_ids}
     parked = []
     for actor, first in last.items():
         end = int(np.searchsorted(states.actor, actor, side="right"))
@@ -210,9 +210,9 @@ def without_removed_actors(
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 
-def _together(states: States, place: Floats, one: tuple[int, int], other: tuple[int, int]) -> bool:
+def _together(states: States, place: Floats, first_stretch: tuple[int, int], second_stretch: tuple[int, int]) -> bool:
     """Say whether two parked stretches (first row, end row) are at the same place and overlap in time."""
-    (a, a_end), (b, b_end) = one, other
+    (a, a_end), (b, b_end) = first_stretch, second_stretch
     apart = np.hypot(*(place[:, a] - place[:, b]))
     return bool(
         apart <= SAME_PLACE_M and states.t_ns[a] <= states.t_ns[b_end - 1] and states.t_ns[b] <= states.t_ns[a_end - 1]

@@ -24,20 +24,20 @@ _BESIDE: Final = 50
 """So many frames before and after a stretch tell how its clock and the log's differ there."""
 
 
-def times_of_lost_rows(t_ns: Times, timed: Mask, lost: Mask, what: str) -> list[LostTime]:
-    """Return when rows were recorded that cannot be used: `lost`, by row in the order of the file. `what` they are, without their number.
+def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) -> list[LostTime]:
+    """Return when rows were recorded that cannot be used: `lost_rows`, in the order of the file. `cause`: the text without their number.
 
     That is the time of the row, where it has one (`timed`), else any between the rows before and after it; without rows in the order of
     their times, any of the whole drive. Stretches without a whole time between them are one.
     """
-    rows, known = np.flatnonzero(lost), np.flatnonzero(timed)
+    rows, timed_rows = np.flatnonzero(lost_rows), np.flatnonzero(timed)
     if not len(rows):
         return []
-    times = t_ns[known]
+    times = t_ns[timed_rows]
     unknown = ~timed[rows]
-    if not len(known) or (unknown.any() and (np.diff(times) < 0).any()):
-        return [LostTime(None, None, f"{what}: {len(rows)}")]
-    place = np.searchsorted(known, rows)
+    if not len(timed_rows) or (unknown.any() and (np.diff(times) < 0).any()):
+        return [LostTime(None, None, f"{cause}: {len(rows)}")]
+    place = np.searchsorted(timed_rows, rows)
     begin, end = np.iinfo(np.int64).min, np.iinfo(np.int64).max
     since = np.where(unknown, np.r_[begin, times][place], t_ns[rows])
     until = np.where(unknown, np.r_[times, end][place], t_ns[rows])
@@ -51,24 +51,26 @@ def times_of_lost_rows(t_ns: Times, timed: Mask, lost: Mask, what: str) -> list[
         LostTime(
             None if since[k] == begin else int(since[k]) - 1,
             None if until[k + n - 1] == end else int(until[k + n - 1]) + 1,
-            f"{what}: {n}",
+            f"{cause}: {n}",
         )
         for k, n in zip(firsts.tolist(), counts.tolist(), strict=True)
     ]
 
 
-def lost_time_findings(lost: Sequence[LostTime], frames: FrameTimes | None, t_ns: Times) -> list[QualityFinding]:
+def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None, t_ns: Times) -> list[QualityFinding]:
     """Return one finding per stretch, its times in the clock of the states (`t_ns`: theirs)."""
-    if len(lost) > MOST_STRETCHES:
-        begins, ends = ([ns for ns in column if ns is not None] for column in list(zip(*lost, strict=True))[:2])
-        first = min(begins) if len(begins) == len(lost) else None
-        last = max(ends) if len(ends) == len(lost) else None
-        lost = [LostTime(first, last, f"{len(lost)} places cannot be read, the first: {lost[0].what}")]
+    if len(lost_times) > MOST_STRETCHES:
+        begins, ends = ([ns for ns in column if ns is not None] for column in list(zip(*lost_times, strict=True))[:2])
+        first = min(begins) if len(begins) == len(lost_times) else None
+        last = max(ends) if len(ends) == len(lost_times) else None
+        lost_times = [
+            LostTime(first, last, f"{len(lost_times)} places cannot be read, the first: {lost_times[0].cause}")
+        ]
     start = int(t_ns.min())
     findings = []
-    for each in lost:
+    for each in lost_times:
         since, until = _in_clock_of_states(each, frames)
-        message = f"{each.what}: what was recorded {_words(since, until, start)} is lost: nothing is judged across it"
+        message = f"{each.cause}: what was recorded {_words(since, until, start)} is lost: nothing is judged across it"
         findings.append(QualityFinding(LOST_TIME, "error", message, 1, since, None, until))
     return findings
 
@@ -85,9 +87,9 @@ def _seconds(ns: int) -> str:
     return f"{round(ns / 1e9, 3) + 0.0:.3f} s"  # + 0.0: without the sign of -0.0
 
 
-def _in_clock_of_states(lost: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
+def _in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
     """Return a stretch in the states' clock: as wide as the frames beside it, which come more or less late, can make it."""
-    since, until = lost.since_ns, lost.until_ns
+    since, until = lost_time.since_ns, lost_time.until_ns
     times = [ns for ns in (since, until) if ns is not None]
     if frames is not None and len(frames.t_ns):
         times += [int(frames.log_ns.max()), int(frames.t_ns.max()), -int(frames.t_ns.min())]

@@ -57,17 +57,17 @@ def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFind
     inner = np.r_[starts[long] + 1, ends[long] - 1]
     first = np.minimum(end, inner)
     v, dt_s = states.velocity, np.where(step.continuous[first], step.dt_s[first], np.nan)
-    moved = (states.place[:, first + 1] - states.place[:, first]) / np.where(dt_s > 0.0, dt_s, np.nan)
+    step_velocity = (states.place[:, first + 1] - states.place[:, first]) / np.where(dt_s > 0.0, dt_s, np.nan)
     zero = (
         (v[:, end] == 0.0).all(axis=0)
         & (np.hypot(*v[:, inner]) > END_ZERO_LEAST_MPS)
-        & (np.hypot(*moved) > END_ZERO_LEAST_MPS)
+        & (np.hypot(*step_velocity) > END_ZERO_LEAST_MPS)
     )
     rows = np.zeros(n, np.bool_)
     rows[end[zero]] = True
     for axis, name in enumerate(("vx_mps", "vy_mps")):
         states.numbers[name] = states.numbers[name].copy()
-        states.numbers[name][end[zero]] = moved[axis, zero]
+        states.numbers[name][end[zero]] = step_velocity[axis, zero]
     text = "velocity 0 in the first or last sample of {n} tracks that move there ({ids}): it is derived from positions"
     return states.findings(rows, "velocity_end_derived", "warning", text)
 
@@ -82,7 +82,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         return []
     false_zero = still & (np.nan_to_num(extent(states.place, starts)).max(axis=0) > MOVED_M)
     findings = []
-    for which, why in (
+    for tracks, why in (
         (absent, "no velocity in the log"),
         (false_zero, "velocity 0 throughout although the positions move"),
         (astray & ~still, "velocity that is not the motion of the positions"),
@@ -91,9 +91,9 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
             "velocity that is too high or too low by a constant share, against the way of the positions",
         ),
     ):
-        if not which.any():
+        if not tracks.any():
             continue
-        rows = np.repeat(which, np.diff(np.r_[starts, len(states)]))
+        rows = np.repeat(tracks, np.diff(np.r_[starts, len(states)]))
         lacking = states.take(rows)
         of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns)
         motion = derive_velocities(lacking.t_ns, lacking.actor, lacking.place, of_lacking)
@@ -184,13 +184,13 @@ def _suspicious(states: States, k: int) -> bool:
 def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
     """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
-    known = ~(np.isnan(ax) & np.isnan(ay))
-    if not known.any() or (ax[known] != 0.0).any() or (ay[known] != 0.0).any():
+    has_acceleration = ~(np.isnan(ax) & np.isnan(ay))
+    if not has_acceleration.any() or (ax[has_acceleration] != 0.0).any() or (ay[has_acceleration] != 0.0).any():
         return []
     if not any((extent(states.numbers[name], starts) > 0.5).any() for name in ("vx_mps", "vy_mps")):
         return []
     states.numbers["ax_mps2"] = np.full(len(states), np.nan)
     states.numbers["ay_mps2"] = np.full(len(states), np.nan)
-    n = int(known.sum())
+    n = int(has_acceleration.sum())
     message = f"acceleration is 0 in all {n} states although speeds change: it counts as not recorded"
-    return [QualityFinding("acceleration_not_recorded", "info", message, n, int(states.t_ns[known].min()))]
+    return [QualityFinding("acceleration_not_recorded", "info", message, n, int(states.t_ns[has_acceleration].min()))]

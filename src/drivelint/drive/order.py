@@ -47,19 +47,19 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     repeated, of = repetitions(states)
     if not repeated.any():
         return states, []
-    kept = states.take(~repeated)
+    unique_states = states.take(~repeated)
     differ = {
-        name: np.bincount(of[repeated & rows], minlength=len(kept)) > 0
+        name: np.bincount(of[repeated & rows], minlength=len(unique_states)) > 0
         for name, rows in changed_columns(states).items()
     }
     moved = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
-    for name, values in kept.numbers.items():
+    for name, values in unique_states.numbers.items():
         values[differ[name] | moved if name in STATE_COLUMNS else differ[name]] = np.nan
-    for name, codes in kept.codes.items():
+    for name, codes in unique_states.codes.items():
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & np.logical_or.reduce(list(differ.values()))[of]
     text = "an actor appears again at the same time in {n} states ({ids}), which "
-    return kept, [
+    return unique_states, [
         *states.findings(
             differing, "duplicate_state", "error", text + "differ: what they do not agree on is unknown there"
         ),
@@ -76,13 +76,13 @@ def repetitions(states: States) -> tuple[Mask, Indices]:
 
 def changed_columns(states: States) -> dict[str, Mask]:
     """Return for each column the rows whose value differ from the row before; unknown counts as a value."""
-    found = {}
+    changes = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():
         unknown = np.isnan(values)
-        found[name] = np.zeros(len(values), np.bool_)
-        found[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
-    return found
+        changes[name] = np.zeros(len(values), np.bool_)
+        changes[name][1:] = (values[1:] != values[:-1]) & ~(unknown[1:] & unknown[:-1])
+    return changes
 
 
 @dataclass(frozen=True)
@@ -134,25 +134,25 @@ def known_motion(states: States, step: Steps) -> Mask:
     return step.continuous & known[1:] & known[:-1]
 
 
-def integral_per_step(rate: Floats, step: Steps, known: Mask) -> Floats:
-    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not `known`."""
+def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:
+    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not one of `known_steps`."""
     led: Floats = rate[..., 1:] + rate[..., :-1]
     led *= 0.5
     led *= step.dt_s
-    np.copyto(led, 0.0, where=~known)
+    np.copyto(led, 0.0, where=~known_steps)
     return led
 
 
-def displacements(states: States, step: Steps, known: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
+def displacements(states: States, step: Steps, known_steps: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
     """Compare how far positions go and velocities lead over every `k` steps of a track.
 
-    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are `known`, and the time in seconds.
+    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are known, and the time in seconds.
     """
     went, led = np.empty((2, 2, max(0, len(states) - k)))
     for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         np.subtract(states.numbers[place][k:], states.numbers[place][:-k], out=went[axis])
-        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known), k)
-    whole: Mask = sums_over(~known, k) == 0
+        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known_steps), k)
+    whole: Mask = sums_over(~known_steps, k) == 0
     return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
 
 

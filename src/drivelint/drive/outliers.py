@@ -57,35 +57,35 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     way. Where no velocity is recorded, a step that both of its neighbours contradict alike makes its two ends such samples.
     """
     n = len(states)
-    nothing = np.zeros(n, np.bool_)
+    no_samples = np.zeros(n, np.bool_)
     if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
-        return nothing
+        return no_samples
     place = states.place
-    told = _told(states, place)
+    has_velocity = _has_recorded_velocity(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
     # noise is costly to estimate: skip it if no sample is off even with zero noise
-    if not _found(place, dt_s, told, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
-        return nothing
+    if not _outliers(place, dt_s, has_velocity, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
+        return no_samples
     runs = Tracklets.from_samples(states.t_ns, place, step)
     sigma = sample_noise(place, runs, states.actor)
-    return _found(place, dt_s, told, sigma, sigma)
+    return _outliers(place, dt_s, has_velocity, sigma, sigma)
 
 
-def _found(place: Floats, dt_s: Floats, told: Mask, sigma: Floats, error: Floats) -> Mask:
+def _outliers(place: Floats, dt_s: Floats, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the outliers. Pieces are looked at one by one, because each needs some thirty arrays of its length."""
-    n = len(told)
-    found = np.zeros(n, np.bool_)
+    n = len(has_velocity)
+    outliers = np.zeros(n, np.bool_)
     for first in range(0, n, PIECE_ROWS):
         begin, end = max(0, first - _REACH), min(n, first + PIECE_ROWS + _REACH)
         rows, dt = slice(begin, end), dt_s[begin : end - 1]
         moves = np.diff(place[:, rows], axis=1) / dt, dt
-        beside = _beside(place[:, rows], moves, told[rows], sigma[rows], error[rows])
-        piece = beside | _stepped(moves, told[rows], sigma[rows], error[rows], beside)
-        found[first : first + PIECE_ROWS] = piece[first - begin :][:PIECE_ROWS]
-    return found
+        beside = _beside(place[:, rows], moves, has_velocity[rows], sigma[rows], error[rows])
+        piece = beside | _stepped(moves, has_velocity[rows], sigma[rows], error[rows], beside)
+        outliers[first : first + PIECE_ROWS] = piece[first - begin :][:PIECE_ROWS]
+    return outliers
 
 
-def _told(states: States, place: Floats) -> Mask:
+def _has_recorded_velocity(states: States, place: Floats) -> Mask:
     """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
@@ -95,10 +95,10 @@ def _told(states: States, place: Floats) -> Mask:
     return told
 
 
-def _beside(place: Floats, moves: _Moves, told: Mask, sigma: Floats, error: Floats) -> Mask:
+def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
     n = place.shape[1]
-    found = np.zeros(n, np.bool_)
+    outliers = np.zeros(n, np.bool_)
     v, dt = moves
     before, to, away, after = (v[:, i : n - 4 + i] for i in range(4))
     dt_before, dt_to, dt_away, dt_after = (dt[i : n - 4 + i] for i in range(4))
@@ -107,43 +107,43 @@ def _beside(place: Floats, moves: _Moves, told: Mask, sigma: Floats, error: Floa
     off = (to - without) * dt_to
     size = np.hypot(*off)
     s, e = sigma[2:-2], error[2:-2]
-    least = np.where(told[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
+    least = np.where(has_velocity[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
     limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
     # there and back: both neighbours bend the other way
     there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
     back = np.sum((after - away) * off, axis=0) * dt_away > size**2 / 2
-    goes_on = _can(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can(
+    goes_on = _can_change_velocity(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can_change_velocity(
         without, after, (dt_after + across) / 2, 1.9 * e / dt_away
     )
-    found[2:-2] = (size > limit) & there & back & goes_on
-    return found
+    outliers[2:-2] = (size > limit) & there & back & goes_on
+    return outliers
 
 
-def _stepped(moves: _Moves, told: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
+def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
     """Return the two samples of each step that differs alike from the motion before and after it, where no velocity is recorded."""
-    n = len(told)
-    found = np.zeros(n, np.bool_)
+    n = len(has_velocity)
+    outliers = np.zeros(n, np.bool_)
     v, dt = moves
     before, here, after = (v[:, i : n - 3 + i] for i in range(3))
     dt_before, dt_here, dt_after = (dt[i : n - 3 + i] for i in range(3))
-    whole = ~np.any([told[i : n - 3 + i] | beside[i : n - 3 + i] for i in range(4)], axis=0)
+    whole = ~np.any([has_velocity[i : n - 3 + i] | beside[i : n - 3 + i] for i in range(4)], axis=0)
     s, e = sigma[1:-2], error[1:-2]
     from_before, from_after = (here - before) * dt_here, (here - after) * dt_here
     near, far = np.hypot(*from_before), np.hypot(*from_after)
     limit = np.maximum(_least_m(dt_here), np.maximum(TYRE_MPS2 * dt_here**2, SIGMAS * 2.45 * s))
     same = np.sum(from_before * from_after, axis=0) > near * far / 2
     error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
-    goes_on = _can(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
+    goes_on = _can_change_velocity(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
     # an impact changes an actor's speed
     goes_on &= np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
-    found[rows] = found[rows + 1] = True
-    return found
+    outliers[rows] = outliers[rows + 1] = True
+    return outliers
 
 
-def _can(one: Floats, other: Floats, time_s: Floats, error_mps: Floats) -> Mask:
+def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Floats, error_mps: Floats) -> Mask:
     """Say whether somebody can have gone from one velocity to the other in that time."""
-    can: Mask = np.hypot(*(one - other)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
+    can: Mask = np.hypot(*(velocity - later_velocity)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
 
 

@@ -259,7 +259,7 @@ class States:
         )
 
     @classmethod
-    def joined(cls, parts: Sequence[States]) -> States:
+    def concatenate(cls, parts: Sequence[States]) -> States:
         """Return the rows of all parts, which have the same ids and columns."""
         first = parts[0]
         if len(parts) == 1:
@@ -319,7 +319,7 @@ class LostTime(NamedTuple):
 
     since_ns: int | None
     until_ns: int | None
-    what: str
+    cause: str
 
 
 @dataclass
@@ -342,7 +342,7 @@ class Recording:
     conditions: dict[str, str] = field(default_factory=dict)
     ego_ids: list[str] = field(default_factory=list)
     findings: list[QualityFinding] = field(default_factory=list)
-    lost: list[LostTime] = field(default_factory=list)
+    lost_times: list[LostTime] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     embedded_map: bytes | None = None
     map_offset: tuple[float, float] | None = None

@@ -57,18 +57,18 @@ def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps,
     """Return the velocities (2, n) of samples that all have a place; `central`: those by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
     sigma = sample_noise(place, runs, actor, unknown=0.0)
-    known = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
-    v, filtered = np.where(known, central, np.nan), np.zeros(len(t_ns), np.bool_)
+    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
+    v, filtered = np.where(has_velocity, central, np.nan), np.zeros(len(t_ns), np.bool_)
     for width in HALF_WIDTHS_S:
-        if known.all():
+        if has_velocity.all():
             break
         wide, error = runs.slopes(place, width, sigma)
-        now = ~known & (error <= LARGEST_ERROR_MPS)
-        v, known, filtered = np.where(now, wide, v), known | now, filtered | now
+        now = ~has_velocity & (error <= LARGEST_ERROR_MPS)
+        v, has_velocity, filtered = np.where(now, wide, v), has_velocity | now, filtered | now
     # the widest filter decides who stands still; at the ends of a track it is one-sided
     wide, error = runs.slopes(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
     stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
-    return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~known & ~stands))
+    return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~has_velocity & ~stands))
 
 
 class Tracklets(NamedTuple):
@@ -126,7 +126,7 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     a steady acceleration, and has five times the variance of the noise.
     """
     n_actors = int(actor.max(initial=-1)) + 1
-    found = np.zeros(n_actors)
+    noise_m = np.zeros(n_actors)
     t = runs.t_s
     inner = np.arange(1, len(values) - 1)
     share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
@@ -136,5 +136,5 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))
     for number in np.flatnonzero(np.diff(edges) >= LEAST_NOISE_SAMPLES):
-        found[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
-    return found
+        noise_m[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
+    return noise_m

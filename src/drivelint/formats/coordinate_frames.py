@@ -64,28 +64,28 @@ class TransformTree:
 
     def add(self, child: str, parent: str, t_ns: Times, poses: Poses, *, static: bool) -> None:
         """Add all transforms of a frame. A second parent makes the frame ambiguous; of static transforms the last holds."""
-        known = self.edges.get(child)
-        if known is not None and known.parent != parent:
+        known_edge = self.edges.get(child)
+        if known_edge is not None and known_edge.parent != parent:
             self.ambiguous.add(child)
             return
-        if known is not None:
-            t_ns = np.concatenate([known.t_ns, t_ns])
-            poses = Poses(*map(np.concatenate, zip(known.poses, poses, strict=True)))
-            static = static and known.static
+        if known_edge is not None:
+            t_ns = np.concatenate([known_edge.t_ns, t_ns])
+            poses = Poses(*map(np.concatenate, zip(known_edge.poses, poses, strict=True)))
+            static = static and known_edge.static
         t_ns, last = np.unique(t_ns[::-1], return_index=True)
         last = len(poses.place) - 1 - last
         self.edges[child] = _Edge(parent, static, t_ns, Poses(*(column[last] for column in poses)))
 
     def chain(self, frame: str, fixed: str) -> list[_Edge] | None:
         """Return the transforms from a frame up to the fixed one; None where there is no way."""
-        found: list[_Edge] = []
+        edges: list[_Edge] = []
         while frame != fixed:
             edge = self.edges.get(frame)
-            if edge is None or frame in self.ambiguous or len(found) > len(self.edges):
+            if edge is None or frame in self.ambiguous or len(edges) > len(self.edges):
                 return None
-            found.append(edge)
+            edges.append(edge)
             frame = edge.parent
-        return found
+        return edges
 
     def root(self, frame: str) -> str:
         """Return the topmost frame above a frame."""

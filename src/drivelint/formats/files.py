@@ -54,15 +54,15 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
     """
-    found: dict[Path, Path] = {}
+    trace_by_key: dict[Path, Path] = {}
     for text in traces:
         for path in _matches(text):
-            found.setdefault(path.resolve(), path)
-    if but is not None and but.suffix.lower() in MAP_SUFFIXES and len(found) > 1:
-        found.pop(but.resolve(), None)
-    if not SCENARIO_LISTS.issuperset(path.name for path in found.values()):
-        found = {key: path for key, path in found.items() if path.name not in SCENARIO_LISTS}
-    return [found[key] for key in sorted(found, key=str)]
+            trace_by_key.setdefault(path.resolve(), path)
+    if but is not None and but.suffix.lower() in MAP_SUFFIXES and len(trace_by_key) > 1:
+        trace_by_key.pop(but.resolve(), None)
+    if not SCENARIO_LISTS.issuperset(path.name for path in trace_by_key.values()):
+        trace_by_key = {key: path for key, path in trace_by_key.items() if path.name not in SCENARIO_LISTS}
+    return [trace_by_key[key] for key in sorted(trace_by_key, key=str)]
 
 
 def _matches(text: str) -> list[Path]:
@@ -91,18 +91,18 @@ def _inside(path: Path) -> list[Path]:
     """Return the logs of a folder, and what may hold some but cannot be looked at, which whoever reads it refuses with the reason."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
-    found = tree(path, _SEARCHED_SUFFIXES)
-    drives = drive_folders([*found.folders, *found.links])
+    content = tree(path, _SEARCHED_SUFFIXES)
+    drives = drive_folders([*content.folders, *content.links])
     inside = frozenset(drives)
     files = [
         file
-        for file in found.files
+        for file in content.files
         if file.suffix.lower() in _SEARCHED_SUFFIXES
         and inside.isdisjoint(file.parents)
         and not _is_result(file, path)
         and (is_log_name(file.name) or (file.suffix.lower() == ".xml" and _is_xml_log(file)))
     ]
-    missed = [each for each in (*found.links, *found.unreadable) if inside.isdisjoint((each, *each.parents))]
+    missed = [each for each in (*content.links, *content.unreadable) if inside.isdisjoint((each, *each.parents))]
     if not (drives or files or missed):
         raise TraceError(
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, SUMO and CommonRoad .xml): check the path"
@@ -137,12 +137,12 @@ def _is_result(file: Path, searched: Path) -> bool:
     Who names the folder of annotated logs itself, means them.
     """
     if file.name in RESULT_FILES:
-        return _checked(file.parent)
+        return _is_result_folder(file.parent)
     folder = file.parent.parent
-    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _checked(folder)
+    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _is_result_folder(folder)
 
 
-def _checked(folder: Path) -> bool:
+def _is_result_folder(folder: Path) -> bool:
     return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 

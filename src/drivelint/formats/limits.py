@@ -79,13 +79,13 @@ def _noticed() -> None:
     """Do nothing: Python looks for an interrupt where a function begins."""
 
 
-def bounded(read: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return what `read` does of a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
+def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
+    """Return what `read_file` does of a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
     watch = _Watch(n_bytes)
     try:
         try:
             watch.begin()
-            return read()
+            return read_file()
         finally:
             watch.end()
     except _BeyondError as error:

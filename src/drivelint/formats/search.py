@@ -29,7 +29,7 @@ class Tree(NamedTuple):
 
 def tree(root: Path, suffixes: Collection[str]) -> Tree:
     """Look through a folder. `suffixes`: those of logs; of what is not here only they count, and names without a suffix, as of folders."""
-    found = Tree([], [], [], [])
+    content = Tree([], [], [], [])
     waiting = [root]
     inside = root.resolve()
     while waiting:
@@ -38,7 +38,7 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
             with os.scandir(folder) as entries:
                 names = sorted(entries, key=lambda entry: entry.name)
         except OSError:
-            found.unreadable.append(folder)
+            content.unreadable.append(folder)
             continue
         below = []
         for entry in names:
@@ -47,16 +47,16 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
                 below.append(path)
             elif entry.is_symlink() and path.is_dir():
                 if not path.resolve().is_relative_to(inside):
-                    found.links.append(path)
+                    content.links.append(path)
             elif path.is_file():
-                found.files.append(path)
+                content.files.append(path)
                 if _is_pointer(path) and _may_be_log(path.with_suffix(""), suffixes):
-                    found.unreadable.append(path)
+                    content.unreadable.append(path)
             elif entry.is_symlink() and not path.exists() and _may_be_log(path, suffixes):
-                found.unreadable.append(path)
-        found.folders.extend(below)
+                content.unreadable.append(path)
+        content.folders.extend(below)
         waiting += reversed(below)
-    return found
+    return content
 
 
 def why_not_here(path: Path) -> str | None:

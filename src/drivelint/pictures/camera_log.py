@@ -73,7 +73,7 @@ class CameraLog:
 
     def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
         """Return where the frames of a camera with log times from `since_ns` to `until_ns` are, in the order of these."""
-        found: list[Place] = []
+        frame_places: list[Place] = []
         for no, summary in enumerate(self._summaries):
             mine = [number for number, channel in summary.channels.items() if channel.topic == topic]
             for chunk, (_, first_ns, last_ns) in summary.chunks.items():
@@ -82,8 +82,8 @@ class CameraLog:
                 for number in mine:
                     for log_ns, at in self._index(no, chunk, number):
                         if since_ns <= log_ns <= until_ns:
-                            found.append(Place(log_ns, no, number, chunk, at))
-        return sorted(found)
+                            frame_places.append(Place(log_ns, no, number, chunk, at))
+        return sorted(frame_places)
 
     def frame(self, place: Place) -> Frame:
         """Return what the message at a place says."""

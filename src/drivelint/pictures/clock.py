@@ -53,20 +53,20 @@ def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> t
     places = log.places(topic, wanted_ns - SEARCHED_NS, wanted_ns + SEARCHED_NS)
     if not places:
         return None
-    known: dict[int, int] = {}
+    times_by_index: dict[int, int] = {}
 
     def off_ns(i: int) -> int:
         """Return how far a frame is from the time, 0 being best."""
-        if i not in known:
-            known[i] = _time_of(log, places[i], clock, ahead_ns)
-        return abs(known[i] - t_ns)
+        if i not in times_by_index:
+            times_by_index[i] = _time_of(log, places[i], clock, ahead_ns)
+        return abs(times_by_index[i] - t_ns)
 
     best = min(range(len(places)), key=lambda i: abs(places[i].log_ns - wanted_ns))
     # messages are logged in the order in which frames are taken: from the nearest by log time it can only be one way
     for way in (-1, 1):
         while 0 <= best + way < len(places) and off_ns(best + way) < off_ns(best):
             best += way
-    return (places[best], known[best]) if off_ns(best) <= NEAR_NS else None
+    return (places[best], times_by_index[best]) if off_ns(best) <= NEAR_NS else None
 
 
 def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> int:

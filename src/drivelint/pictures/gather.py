@@ -93,18 +93,18 @@ def _picture_rows(
 
     topic = drive.topics[shots[0].camera_no]
     rows: list[dict[str, Any]] = []
-    shown: set[Place] = set()
+    shown_places: set[Place] = set()
     for shot in sorted(shots, key=lambda shot: (shot.shot != "at", SHOTS_NS[shot.shot])):
         try:
-            found = nearest_frame(log, topic, drive.clock, shot.t_ns + SHOTS_NS[shot.shot])
-            if found is None or found[0] in shown:
+            frame = nearest_frame(log, topic, drive.clock, shot.t_ns + SHOTS_NS[shot.shot])
+            if frame is None or frame[0] in shown_places:
                 continue
-            shown.add(found[0])
-            image = log.frame(found[0]).image
+            shown_places.add(frame[0])
+            image = log.frame(frame[0]).image
             if isinstance(image, VideoFrame):
                 from drivelint.pictures.video import video_image
 
-                picture = small_jpeg(video_image(log, topic, found[0]))
+                picture = small_jpeg(video_image(log, topic, frame[0]))
             else:
                 picture = small_jpeg(image)
         except FrameError as error:
@@ -114,7 +114,7 @@ def _picture_rows(
             {
                 **shot._asdict(),
                 "camera": topic,
-                "t_frame_ns": found[1],
+                "t_frame_ns": frame[1],
                 "width_px": picture.width_px,
                 "height_px": picture.height_px,
             }

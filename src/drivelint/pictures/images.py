@@ -64,7 +64,7 @@ def _encoded(image: Image.Image, quality: int) -> bytes:
 def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
     if isinstance(image, RawImage):
         return _of_pixels(image)
-    return _opened(image) if isinstance(image, EncodedImage) else image
+    return _open_image(image) if isinstance(image, EncodedImage) else image
 
 
 def _times_too_large(image: Image.Image) -> int:
@@ -72,20 +72,20 @@ def _times_too_large(image: Image.Image) -> int:
     return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_PX, strict=True)))
 
 
-def _opened(image: EncodedImage) -> Image.Image:
+def _open_image(image: EncodedImage) -> Image.Image:
     try:
-        opened = Image.open(io.BytesIO(image.data), formats=_FORMATS)
-        if opened.width * opened.height > _MOST_PIXELS:
-            raise FrameError(f"an image of {opened.width} x {opened.height} pixels")
-        times = _times_too_large(opened)
-        opened.draft(
-            "RGB", (opened.width // times, opened.height // times)
+        picture = Image.open(io.BytesIO(image.data), formats=_FORMATS)
+        if picture.width * picture.height > _MOST_PIXELS:
+            raise FrameError(f"an image of {picture.width} x {picture.height} pixels")
+        times = _times_too_large(picture)
+        picture.draft(
+            "RGB", (picture.width // times, picture.height // times)
         )  # a JPEG is decoded no larger than it has to be
     except UnidentifiedImageError as error:
         raise FrameError("an image that is no JPEG, PNG or WebP") from error
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
-    return opened
+    return picture
 
 
 def _of_pixels(image: RawImage) -> Image.Image:

@@ -45,13 +45,13 @@ def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, S
     """Return the pictures to take of moments (drive and time), the worst first, which all are of drives with cameras."""
     moments = moments[:MOST_MOMENTS]
     first = [Shot(*moment, 0, shot) for shot in _IN_ORDER for moment in moments]
-    others = [
+    later_shots = [
         Shot(drive_id, t_ns, no, shot)
         for drive_id, t_ns in moments
         for no in range(1, min(len(cameras[drive_id]), MOST_CAMERAS))
         for shot in _IN_ORDER
     ]
-    return [*first, *others][:MOST_SHOTS]
+    return [*first, *later_shots][:MOST_SHOTS]
 
 
 def chosen_rows(pictures: pa.Table, planned: Sequence[Shot]) -> pa.Table:

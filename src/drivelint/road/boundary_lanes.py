@@ -124,17 +124,17 @@ def _roads(lanes: Mapping[str, BoundedLane]) -> None:
 
 def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
     """Return the lanes side by side from left to right, seen along the first; -1: driven the other way."""
-    row, seen = [(first, 1)], {first.lanelet_id}
+    row, lane_ids = [(first, 1)], {first.lanelet_id}
     for step in (1, -1):
         lane, along = first, 1
         while True:
             to_left = (step < 0) == (along > 0)
             name = lane.left_id if to_left else lane.right_id
             against = lane.left_against if to_left else lane.right_against
-            if name is None or name in seen or name not in lanes or lanes[name].road_id:
+            if name is None or name in lane_ids or name not in lanes or lanes[name].road_id:
                 break
             lane, along = lanes[name], -along if against else along
-            seen.add(name)
+            lane_ids.add(name)
             row.insert(0, (lane, along)) if step < 0 else row.append((lane, along))
     return row
 
@@ -183,10 +183,10 @@ def map_from_bounds(
     return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo, nation=nation)
 
 
-def signal_row(lane: BoundedLane, s_m: float, place: Floats, **said: Any) -> dict[str, Any]:
+def signal_row(lane: BoundedLane, s_m: float, place: Floats, **columns: Any) -> dict[str, Any]:
     """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
     return {
-        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **said,
+        "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **columns,
         "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else lane.line.length - s_m,
         "lanelet_id": lane.lanelet_id, "lane_s_m": s_m, "x_m": float(place[0]), "y_m": float(place[1]),
     }  # fmt: skip
@@ -250,8 +250,8 @@ def crossings(
 
     Report in `quality` a lane that lies across none, or of which the shape is not known.
     """
-    driven = [lane for lane in lanes if lane.drivable]
-    lines = [shapely.LineString(lane.line.centre) for lane in driven]
+    drivable_lanes = [lane for lane in lanes if lane.drivable]
+    lines = [shapely.LineString(lane.line.centre) for lane in drivable_lanes]
     tree = shapely.STRtree(lines)
     rows = []
     for walk in walks:
@@ -270,5 +270,5 @@ def crossings(
         for i in crossed:
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))
-            rows.append(crossing_row(walk.lanelet_id, driven[i].lanelet_id, s, kind))
+            rows.append(crossing_row(walk.lanelet_id, drivable_lanes[i].lanelet_id, s, kind))
     return sorted(rows, key=lambda r: (r["crossing_id"], r["lanelet_id"]))

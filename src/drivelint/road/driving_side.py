@@ -82,20 +82,20 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 
-def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, side: float, reach_m: float) -> Floats:
+def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
     """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
-    x, y, z, half = ((pieces.begin + pieces.end) / 2)[chosen].T
-    ux, uy = pieces.ux[chosen], pieces.uy[chosen]
+    x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
+    ux, uy = pieces.ux[indices], pieces.uy[indices]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
-    probe, other = tree.query(shapely.linestrings(*across), predicate="intersects")
-    along = ux[probe] * pieces.ux[other] + uy[probe] * pieces.uy[other]
-    beside = (pieces.lane[other] != pieces.lane[chosen[probe]]) & (np.abs(along) > _ALONG)
-    probe, other, along = probe[beside], other[beside], along[beside]
+    probe, other_piece = tree.query(shapely.linestrings(*across), predicate="intersects")
+    along = ux[probe] * pieces.ux[other_piece] + uy[probe] * pieces.uy[other_piece]
+    beside = (pieces.lane[other_piece] != pieces.lane[indices[probe]]) & (np.abs(along) > _ALONG)
+    probe, other_piece, along = probe[beside], other_piece[beside], along[beside]
     # where the line across meets the other's middle
-    other_x, other_y, other_z, other_half = pieces.begin[other].T
+    other_x, other_y, other_z, other_half = pieces.begin[other_piece].T
     dx, dy = other_x - x[probe], other_y - y[probe]
-    cross = ux[probe] * pieces.uy[other] - uy[probe] * pieces.ux[other]
+    cross = ux[probe] * pieces.uy[other_piece] - uy[probe] * pieces.ux[other_piece]
     off = dy * ux[probe] - dx * uy[probe] - (dx * ux[probe] + dy * uy[probe]) * cross / along
     gap = side * off - half[probe] - other_half
     on_level = ~(np.abs(z[probe] - other_z) >= _LEVEL_M)  # a height that is not known is any
@@ -103,9 +103,9 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, chosen: Indices, si
     probe, gap, along = probe[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probe))
     nearest = order[np.r_[True, np.diff(probe[order]) > 0]] if len(order) else order
-    found = np.full(len(chosen), np.inf)
-    found[probe[nearest]] = np.where(along[nearest] < 0, gap[nearest], np.inf)
-    return found
+    gaps = np.full(len(indices), np.inf)
+    gaps[probe[nearest]] = np.where(along[nearest] < 0, gap[nearest], np.inf)
+    return gaps
 
 
 def opposite_side(side: str) -> str:
@@ -126,14 +126,14 @@ def choose_side(
     statements: Iterable[tuple[str, str | None]], quality: MapQuality, where: str = "the map"
 ) -> tuple[str, str]:
     """Return the side driven on and what says so: the first of (source, side) that has a side; report that others disagree."""
-    said = [(source, side) for source, side in statements if side is not None]
-    if not said:
+    stated_sides = [(source, side) for source, side in statements if side is not None]
+    if not stated_sides:
         message = f"nothing in {where} says which side is driven on: right-hand traffic is a guess; give --handedness"
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
-    source, side = said[0]
-    if len({side for _, side in said}) > 1:
-        opinions = ", ".join(f"{source}: {side}" for source, side in said)
+    source, side = stated_sides[0]
+    if len({side for _, side in stated_sides}) > 1:
+        opinions = ", ".join(f"{source}: {side}" for source, side in stated_sides)
         message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
         quality.add("handedness_disagrees", "warning", None, message)
     return side, source

@@ -134,15 +134,15 @@ def reference_of(source: MapSource) -> str | None:
     return (inner[1] if inner else text).strip() or None
 
 
-def same_reference(one: str, other: str) -> bool:
+def same_reference(first: str, second: str) -> bool:
     """Say whether two references mean the same: PROJ strings parameter by parameter, other texts word by word."""
-    return _parsed(one) == _parsed(other)
+    return _parsed(first) == _parsed(second)
 
 
-def different_places(one: str, other: str) -> bool:
+def different_places(first: str, second: str) -> bool:
     """Return whether two references mean different places: they are unequal PROJ strings, each with a projection."""
-    return not same_reference(one, other) and all(
-        "proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (one, other)
+    return not same_reference(first, second) and all(
+        "proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (first, second)
     )
 
 

@@ -24,10 +24,10 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
     `least_share`: of the smaller one's area; less of it is the inaccuracy of bounds. `least_angle_rad`: between two lanes where they
     cross, or where they have parted or not yet joined; lanes at a smaller one split or merge. Lanes at different heights do not meet.
     """
-    driven = [lane for lane in lanes if lane.drivable]
-    areas = [lane.line.polygon for lane in driven]
+    drivable_lanes = [lane for lane in lanes if lane.drivable]
+    areas = [lane.line.polygon for lane in drivable_lanes]
     tree = shapely.STRtree(areas)
-    parent = list(range(len(driven)))
+    parent = list(range(len(drivable_lanes)))
 
     def root(i: int) -> int:
         while parent[i] != i:
@@ -38,7 +38,7 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
     for i, j in sorted(
         {(int(min(a, b)), int(max(a, b))) for a, b in tree.query(areas, predicate="intersects").T if a != b}
     ):
-        a, b = driven[i], driven[j]
+        a, b = drivable_lanes[i], drivable_lanes[j]
         if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
             continue
         common = shapely.intersection(areas[i], areas[j])
@@ -49,7 +49,7 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
         overlaps |= {i, j}
         parent[max(root(i), root(j))] = min(root(i), root(j))
     for i in sorted(overlaps):
-        driven[i].junction_id = f"j{driven[root(i)].lanelet_id}"
+        drivable_lanes[i].junction_id = f"j{drivable_lanes[root(i)].lanelet_id}"
 
 
 def _apart_m(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
@@ -63,14 +63,14 @@ def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> floa
     across = abs(float(first[0] * second[1] - first[1] * second[0]))
     angle = float(np.arcsin(min(across, 1.0)))  # two that run against each other on the same ground do not cross
     if set(a.successors) & set(b.successors):
-        angle = max(angle, _between(a.line.tangent[0], b.line.tangent[0]))
+        angle = max(angle, _angle_between(a.line.tangent[0], b.line.tangent[0]))
     if np.hypot(*(a.line.centre[0] - b.line.centre[0])) < 1.0:
-        angle = max(angle, _between(a.line.tangent[-1], b.line.tangent[-1]))
+        angle = max(angle, _angle_between(a.line.tangent[-1], b.line.tangent[-1]))
     return angle
 
 
-def _between(one: Floats, other: Floats) -> float:
-    return float(np.arccos(np.clip(one @ other, -1.0, 1.0)))
+def _angle_between(first: Floats, second: Floats) -> float:
+    return float(np.arccos(np.clip(first @ second, -1.0, 1.0)))
 
 
 def _at(lane: BoundedLane, area: shapely.Geometry, values: Floats) -> Floats:

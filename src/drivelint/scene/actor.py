@@ -202,20 +202,20 @@ def _smooth(times: Floats, values: Floats, t: Floats) -> Floats:
 
 
 def light_states(
-    given: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], who: str
+    word_or_changes: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], light: str
 ) -> list[str | None]:
     """Return the word that holds at each time; None where it is unknown. Errors: `UsageError`."""
-    changes = [(0.0, given)] if isinstance(given, str) else list(given)
+    changes = [(0.0, word_or_changes)] if isinstance(word_or_changes, str) else list(word_or_changes)
     for _, word in changes:
         if word not in {*words, "unknown"}:
-            raise UsageError(f"{who}: {word!r}: {hint(word, [*words, 'unknown'])}")
+            raise UsageError(f"{light}: {word!r}: {hint(word, [*words, 'unknown'])}")
     begins = np.array([begin for begin, _ in changes])
     numbers = np.clip(np.searchsorted(begins, t + 1e-6) - 1, 0, None)
     return [None if changes[n][1] == "unknown" else changes[n][1] for n in numbers]
 
 
-def _as_knots(given: Knots) -> list[list[float]]:
-    return [[0.0, float(given)]] if isinstance(given, int | float) else [list(map(float, knot)) for knot in given]
+def _as_knots(value: Knots) -> list[list[float]]:
+    return [[0.0, float(value)]] if isinstance(value, int | float) else [list(map(float, knot)) for knot in value]
 
 
 def _columns(knots: Sequence[Sequence[float]]) -> tuple[Floats, Floats]:

@@ -51,7 +51,7 @@ class LaneText(_Part, frozen=True):
 class Thing(_Part, frozen=True):
     """What stands at or lies on a road: a light, a stop line, a crossing, or a sign."""
 
-    what: str
+    kind: str = msgspec.field(name="what")
     """light NAME, stop line, zebra, signalled crossing, crossing, sign COUNTRY CODE, or sign NAME."""
     at: float
     off: float = 0.0
@@ -139,7 +139,7 @@ class Faults(_Part, frozen=True):
 
     jitter: float = 0.0
     """Standard deviation of places, and of speeds in m/s; always the same draw."""
-    lost: Spans = []
+    lost_spans: Spans = msgspec.field(default_factory=list, name="lost")
     turned: Spans = []
     """The heading is the wrong way round."""
     frozen: Spans = []
@@ -193,13 +193,13 @@ class SceneText(_Part, frozen=True, kw_only=True):
     """What happens, and what a careful examiner says of it."""
 
     name: str
-    what: str
+    summary: str = msgspec.field(name="what")
     roads: str
     traffic: Side | None = None
     """Instead of what the layout says."""
     seconds: float = 20.0
     rate: float = 10.0
-    given: dict[str, str] = {}
+    conditions: dict[str, str] = msgspec.field(default_factory=dict, name="given")
     """Conditions; dry weather and daylight are given unless it says otherwise, or `unknown`."""
     lights: dict[str, list[tuple[float, str]]] = {}
     says: list[list[float | str | None]] = []
@@ -224,21 +224,21 @@ class SceneFile(_Part, frozen=True):
 
 def read(path: Path) -> SceneFile:
     """Read a file of scenes, and the roads of the files that it names. Errors: `UsageError` with file and line."""
-    found = _parsed(path)
+    scene_file = _parsed(path)
     roads: dict[str, Layout] = {}
-    for name in found.roads_from:
+    for name in scene_file.roads_from:
         roads |= _parsed(path.parent / name).roads
-    found = msgspec.structs.replace(found, roads=roads | found.roads)
+    scene_file = msgspec.structs.replace(scene_file, roads=roads | scene_file.roads)
     names: dict[str, int] = {}
-    for scene in found.scenes:
+    for scene in scene_file.scenes:
         if scene.name in names:
             raise UsageError(
                 f"{path}:{scene.line}: scene {scene.name!r} has the name of that in line {names[scene.name]}"
             )
-        if scene.roads not in found.roads:
-            raise UsageError(f"{path}:{scene.line}: no roads {scene.roads!r}: {hint(scene.roads, found.roads)}")
+        if scene.roads not in scene_file.roads:
+            raise UsageError(f"{path}:{scene.line}: no roads {scene.roads!r}: {hint(scene.roads, scene_file.roads)}")
         names[scene.name] = scene.line
-    return found
+    return scene_file
 
 
 def _parsed(path: Path) -> SceneFile:
@@ -253,7 +253,7 @@ def _parsed(path: Path) -> SceneFile:
         raise UsageError(f"{path}:{mark.line + 1 if mark else 1}: not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(raw, dict):
         raise UsageError(f"{path}:1: a file of scenes has the keys roads and scenes")
-    for line, part in _placed(raw, root):
+    for line, part in _parts_with_lines(raw, root):
         for problem in problems(part, SceneFile):
             raise UsageError(f"{path}:{line}: {problem}")
     try:
@@ -262,7 +262,7 @@ def _parsed(path: Path) -> SceneFile:
         raise UsageError(f"{path}:{_line_of(str(error), root)}: {error}") from error
 
 
-def _placed(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
+def _parts_with_lines(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the parts of a document with their lines, and give each scene its line."""
     for key_node, node in root.value:
         key, value = str(key_node.value), raw[str(key_node.value)]

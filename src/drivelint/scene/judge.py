@@ -27,19 +27,21 @@ if TYPE_CHECKING:
     from drivelint.scene.document import SceneText
     from drivelint.scene.scene import Scene
 
-REFUSED: Final = "refused"
+NOT_JUDGED: Final = "refused"
 """The verdict on a scene whose log could not be judged."""
 _MET: Final = {
     "fail": {"fail"},
     "pass": {"pass"},
     "unknown": {"unknown"},
     "not_applicable": {"not_applicable"},
-    "refused": {REFUSED},
-    "not fail": {"pass", "unknown", "not_applicable", REFUSED},
-    "not pass": {"fail", "unknown", "not_applicable", REFUSED},
+    "refused": {NOT_JUDGED},
+    "not fail": {"pass", "unknown", "not_applicable", NOT_JUDGED},
+    "not pass": {"fail", "unknown", "not_applicable", NOT_JUDGED},
 }
 """What may be expected -> the verdicts that meet it."""
-_EXPECTED: Final = re.compile(r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL)
+_EXPECTATION: Final = re.compile(
+    r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL
+)
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 _GRAVE: Final = {"critical", "major"}
 
@@ -64,7 +66,7 @@ class Verdicts(NamedTuple):
     def verdict(self, key: Key) -> str:
         """Return the verdict of a rule on a scene: its worst row's."""
         found = {row["verdict"] for row in self.rows.get(key, ())}
-        return next((verdict for verdict in _WORST if verdict in found), REFUSED)
+        return next((verdict for verdict in _WORST if verdict in found), NOT_JUDGED)
 
     def codes(self, key: Key) -> set[str]:
         """Return the reason codes of its rows with that verdict."""
@@ -87,14 +89,16 @@ def reason_codes(row: Row) -> set[str]:
 
 def expectation(text: str) -> Expectation:
     """Read an expectation: `fail: it touches the car`. Errors: `UsageError`."""
-    found = _EXPECTED.fullmatch(text.strip())
+    found = _EXPECTATION.fullmatch(text.strip())
     verdict = found["verdict"] if found else text.partition(":")[0]
     if found is None or verdict not in _MET:
         raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _MET)}")
     return Expectation(verdict, found["code"], found["why"] or "")
 
 
-def judged(scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()) -> Verdicts:
+def judge_scenes(
+    scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
+) -> Verdicts:
     """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
     for scene in scenes:
         at = folder / scene.name
@@ -112,27 +116,28 @@ def judged(scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_di
         rows = check(options, Silent()).verdicts.to_pylist()
     except TraceError:  # not one of them could be judged
         rows = []
-    found: dict[Key, list[Row]] = defaultdict(list)
+    rows_by_key: dict[Key, list[Row]] = defaultdict(list)
     names = {scene.name for scene in scenes}
     for row in rows:
         drive = row["drive_id"]
-        found[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
-    return Verdicts(found)
+        rows_by_key[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
+    return Verdicts(rows_by_key)
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
     """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
-    expected = {rule: expectation(text) for rule, text in scene.text.expect.items()}
-    for rule, wanted in expected.items():
+    expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
+    for rule, expected_verdict in expectations.items():
         key = scene.name, rule
         got = verdicts.verdict(key)
-        if got not in _MET[wanted.verdict]:
-            why = f" ({wanted.why})" if wanted.why else ""
-            yield f"{rule}: expected {wanted.verdict}{why}, got {got}: {verdicts.reasons(key)}"
-        elif wanted.code and wanted.code not in verdicts.codes(key):
-            yield f"{rule}: expected {got} for {wanted.code}, got {', '.join(sorted(verdicts.codes(key)))}: {verdicts.reasons(key)}"
+        if got not in _MET[expected_verdict.verdict]:
+            why = f" ({expected_verdict.why})" if expected_verdict.why else ""
+            yield f"{rule}: expected {expected_verdict.verdict}{why}, got {got}: {verdicts.reasons(key)}"
+        elif expected_verdict.code and expected_verdict.code not in verdicts.codes(key):
+            codes = ", ".join(sorted(verdicts.codes(key)))
+            yield f"{rule}: expected {got} for {expected_verdict.code}, got {codes}: {verdicts.reasons(key)}"
     for (name, rule), rows in sorted(verdicts.rows.items()):
-        if name != scene.name or rule in expected or rule not in gating:
+        if name != scene.name or rule in expectations or rule not in gating:
             continue
         if any(row["verdict"] in {"fail", "error"} and row["severity"] in _GRAVE for row in rows):
             yield f"{rule}: not expected to fail: {verdicts.reasons((name, rule))}"
@@ -153,22 +158,22 @@ def scene_test(
     Errors: `UsageError` for what the file says, `OutputError`.
     """
     file = document.read(path)
-    chosen = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
-    if not chosen:
+    texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
+    if not texts:
         raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
-    known = catalogue.load_rules(tuple(rules_dirs))
-    scenes = scenes_of(chosen, file.roads)
+    rules = catalogue.load_rules(tuple(rules_dirs))
+    scenes = scenes_of(texts, file.roads)
     for scene in scenes:
         try:
-            _refuse_wrong_expectations(scene, known)
+            _refuse_wrong_expectations(scene, rules)
             files = scene.files()
         except DriveLintError as error:
             raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
         if out is not None:
             _write(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judged(scenes, rules_for(chosen, all_fails=file.all_fails), Path(folder), rules_dirs)
-    gating = gating_rules(known) if file.all_fails else frozenset()
+        verdicts = judge_scenes(scenes, rules_for(texts, all_fails=file.all_fails), Path(folder), rules_dirs)
+    gating = gating_rules(rules) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
         wrong = list(differences(scene, verdicts, gating))
@@ -183,15 +188,15 @@ def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 
 
-def gating_rules(known: Mapping[str, Rule]) -> frozenset[str]:
+def gating_rules(rules: Mapping[str, Rule]) -> frozenset[str]:
     """Return the rules of which no fail goes unnoticed."""
-    return frozenset(rule.id for rule in known.values() if rule.status == "stable")
+    return frozenset(rule.id for rule in rules.values() if rule.status == "stable")
 
 
-def _refuse_wrong_expectations(scene: Scene, known: Mapping[str, Rule]) -> None:
+def _refuse_wrong_expectations(scene: Scene, rules: Mapping[str, Rule]) -> None:
     for rule, said in scene.text.expect.items():
-        if rule not in known:
-            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, known)}")
+        if rule not in rules:
+            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, rules)}")
         expectation(said)
 
 

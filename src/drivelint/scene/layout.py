@@ -10,7 +10,7 @@ import msgspec
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.road import DRIVEN, Lane, Piece, Pose, Road, Turn, joined
+from drivelint.scene.road import DRIVABLE_KINDS, Lane, Piece, Pose, Road, Turn, connecting_piece
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
 _THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
-_NAMED: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
+_FORM_WITH_NAME: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
-    *DRIVEN,
+    *DRIVABLE_KINDS,
     "shoulder",
     "sidewalk",
     "median",
@@ -122,11 +122,11 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
 def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
     """Refuse words of things, lanes and marks that nobody would read. Errors: `UsageError`."""
     for thing in text.things:
-        what, _, rest = thing.what.partition(" ")
-        if what in _NAMED and not rest:
-            raise UsageError(f"road {name}: what: {thing.what!r}: write {_NAMED[what]}")
-        if what not in _NAMED and thing.what not in _THINGS:
-            raise UsageError(f"road {name}: what: {thing.what!r}: {hint(thing.what, _THINGS)}")
+        what, _, rest = thing.kind.partition(" ")
+        if what in _FORM_WITH_NAME and not rest:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORM_WITH_NAME[what]}")
+        if what not in _FORM_WITH_NAME and thing.kind not in _THINGS:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: {hint(thing.kind, _THINGS)}")
     for lane in lanes:
         if lane.kind not in _LANE_KINDS:
             raise UsageError(f"road {name}: lane {lane.number}: {lane.kind!r}: {hint(lane.kind, _LANE_KINDS)}")
@@ -139,8 +139,8 @@ def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
 
 def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[Lane]:
     texts = list(texts)
-    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVEN]
-    found = []
+    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVABLE_KINDS]
+    lanes = []
     for n, text in enumerate(texts):
         usual = "broken" if n in driven and n != driven[-1] else "solid" if n in driven else "none"
         if isinstance(text, str):
@@ -150,8 +150,8 @@ def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[La
             kind, width = text.kind, text.width
             marks = [(0.0, text.mark or usual)] if not isinstance(text.mark, list) else text.mark
             start, end = text.from_, length if text.to is None else text.to
-        found.append(Lane(side * (n + 1), kind, width, marks, start, end))
-    return found
+        lanes.append(Lane(side * (n + 1), kind, width, marks, start, end))
+    return lanes
 
 
 def _kind(text: str | LaneText) -> str:
@@ -190,7 +190,7 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
         merged = {group[end] for end in (one, other) if end in group}
         group |= {end: number for end, old in group.items() if old in merged}
         group |= {one: number, other: number}
-    found = {}
+    turn_roads = {}
     for a, n, b, m in turns:
         before, behind = roads[a], roads[b]
         lane = before.lane(n)
@@ -202,8 +202,8 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
         )
         name = f"{a} {n} to {b} {m}"
         z0, z1 = before.heights[-1 if n > 0 else 0][1], behind.heights[0 if m > 0 else -1][1]
-        piece = joined(start, end)
-        found[name] = Road(
+        piece = connecting_piece(start, end)
+        turn_roads[name] = Road(
             name,
             start,
             [piece],
@@ -213,24 +213,24 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
             heights=[(0.0, z0), (piece.length, z1)] if z0 != z1 else [(0.0, z0)],
             turn=Turn(900 + group[a, n > 0], a, n, b, m),
         )
-    return found
+    return turn_roads
 
 
 def _arms(crossing: Crossing) -> dict[str, RoadText]:
-    found: dict[str, RoadText] = {}
+    arms: dict[str, RoadText] = {}
     for arm in crossing.arms:
         angle = _COMPASS[arm]
         start = [crossing.half * math.cos(angle), crossing.half * math.sin(angle), math.degrees(angle)]
         things = [*crossing.road.things, *crossing.things.get(arm, ())]
-        found[arm] = msgspec.structs.replace(crossing.road, start=start, things=things)
-    if unknown := next((arm for arm in crossing.things if arm not in found), None):
-        raise UsageError(f"crossing: no arm {unknown!r}: {hint(unknown, found)}")
-    return found
+        arms[arm] = msgspec.structs.replace(crossing.road, start=start, things=things)
+    if unknown := next((arm for arm in crossing.things if arm not in arms), None):
+        raise UsageError(f"crossing: no arm {unknown!r}: {hint(unknown, arms)}")
+    return arms
 
 
 def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
     """Return the arms, and for each the part of the ring that begins behind it, driven anticlockwise."""
-    found: dict[str, RoadText] = {}
+    ring: dict[str, RoadText] = {}
     gap = 10.0 / roundabout.radius  # half of what an arm's junction takes of the ring, as an angle
     angles = sorted((_COMPASS[arm], arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))
@@ -239,11 +239,11 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
     for n, (angle, arm) in enumerate(angles):
         away = roundabout.radius + 15.0
         start = [away * math.cos(angle), away * math.sin(angle), math.degrees(angle)]
-        found[arm] = msgspec.structs.replace(roundabout.road, start=start)
+        ring[arm] = msgspec.structs.replace(roundabout.road, start=start)
         until = angles[(n + 1) % len(angles)][0]
         turn = until - angle + (0.0 if until > angle else 2 * math.pi) - 2 * gap
         begin = angle + gap
-        found[f"ring {arm}"] = msgspec.structs.replace(
+        ring[f"ring {arm}"] = msgspec.structs.replace(
             roundabout.road,
             line=[[turn * inner, inner]],
             start=[inner * math.cos(begin), inner * math.sin(begin), math.degrees(begin) + 90],
@@ -252,17 +252,17 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
             middle="curb",
             things=[],
         )
-    return found
+    return ring
 
 
 def _ring_turns(roundabout: Roundabout) -> list[tuple[str, int, str, int]]:
     arms = [arm for _, arm in sorted((_COMPASS[arm], arm) for arm in roundabout.arms)]
-    found = []
+    turns = []
     for n, arm in enumerate(arms):
         before = arms[n - 1]
-        found += [
+        turns += [
             (f"ring {before}", 1, f"ring {arm}", 1),
             (arm, -1, f"ring {arm}", 1),
             (f"ring {before}", 1, arm, 1),
         ]
-    return found
+    return turns

@@ -179,7 +179,7 @@ class _Writer:
         return 5000 + self.things
 
     def signal(self, thing: Thing) -> str:
-        what, _, rest = thing.what.partition(" ")
+        what, _, rest = thing.kind.partition(" ")
         if what == "light":
             number, (country, code), dynamic = rest, _LIGHT, "yes"
         elif what == "sign":
@@ -198,10 +198,10 @@ class _Writer:
         )
 
     def object(self, road: Road, thing: Thing) -> str:
-        if thing.what.startswith(("light ", "sign ")):
+        if thing.kind.startswith(("light ", "sign ")):
             return ""
         number = self.new_id()
-        if thing.what == "stop line":
+        if thing.kind == "stop line":
             width = 3.5 if thing.width is None else thing.width
             box = f'length="0.3" width="{width!r}" height="0" hdg="0" pitch="0" roll="0"'
             return (
@@ -216,7 +216,7 @@ class _Writer:
             for n, (ds, dt) in enumerate(corners)
         )
         return (
-            f'<object type="crosswalk" id="{number}" name={quoteattr(thing.what)} s="{thing.at!r}" t="{off!r}" zOffset="0" '
+            f'<object type="crosswalk" id="{number}" name={quoteattr(thing.kind)} s="{thing.at!r}" t="{off!r}" zOffset="0" '
             f'orientation="none" hdg="0" pitch="0" roll="0" length="{thing.deep!r}" width="{width!r}" height="0"><outlines>'
             f'<outline id="0" closed="true">{outline}</outline></outlines></object>'
         )

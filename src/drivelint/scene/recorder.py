@@ -87,7 +87,7 @@ def _present_steps(actor: Actor, t: Floats) -> Mask:
     """Return at which times (n) the recorder has the actor."""
     first, last = actor.text.there or (-1.0, math.inf)
     present: Mask = (t >= first - 1e-6) & (t <= last + 1e-6)
-    for begin, end in actor.text.faults.lost:
+    for begin, end in actor.text.faults.lost_spans:
         present &= ~_within(t, begin, end)
     return present
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STEP_M: Final = 0.1
 """Distance of the points of a way."""
-DRIVEN: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
+DRIVABLE_KINDS: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
 _STRAIGHT_RAD: Final = 1e-6
 
 
@@ -163,7 +163,7 @@ def end_of(pose: Pose, piece: Piece) -> Pose:
     return Pose(*(float(v) for v in _along(pose, piece, np.array(piece.length))))
 
 
-def joined(start: Pose, end: Pose) -> Piece:
+def connecting_piece(start: Pose, end: Pose) -> Piece:
     """Return a piece from one pose to another: a straight, an arc, or a cubic."""
     ahead, left = _in_frame(start, end.x, end.y)
     turn = float(wrapped(np.asarray(end.heading - start.heading)))
@@ -206,14 +206,14 @@ class Way:
     def through(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | None = None) -> Way:
         """Return the way through points, whose headings are those of the line between them unless given."""
         steps = np.hypot(np.diff(x), np.diff(y))
-        kept = np.concatenate([[True], steps > 1e-9])
-        x, y, z = x[kept], y[kept], np.zeros(int(kept.sum())) if z is None else z[kept]
+        distinct = np.concatenate([[True], steps > 1e-9])
+        x, y, z = x[distinct], y[distinct], np.zeros(int(distinct.sum())) if z is None else z[distinct]
         s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
         if heading is None:
             between = np.arctan2(np.diff(y), np.diff(x))
             heading = np.concatenate([between, between[-1:]])
         else:
-            heading = heading[kept]
+            heading = heading[distinct]
         return cls(s, x, y, np.unwrap(heading), z)
 
     def at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -67,7 +67,7 @@ class Scene:
             name: np.concatenate([np.asarray(part[name], object) for part in parts]).tolist() for name in parts[0]
         }
         for name, lights in text.lights.items():
-            if all(thing.what != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
+            if all(thing.kind != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
                 raise UsageError(f"light {name}: no road has a thing of this name")
         return {
             "actor": _rows("actor", [recorder.actor_row(actor) for actor in actors]),
@@ -84,35 +84,35 @@ class Scene:
         return {**log, MAP_FILE: self.map_text.encode()}
 
     def _conditions(self) -> list[dict[str, Any]]:
-        given = {name: value for name, value in (USUAL | self.text.given).items() if value != NOT_GIVEN}
+        given = {name: value for name, value in (USUAL | self.text.conditions).items() if value != NOT_GIVEN}
         for condition, value in given.items():
             if problem := condition_problem(condition) or value_problem(condition, value):
                 raise UsageError(f"given: {problem}")
         return [{"condition": name, "value": value} for name, value in given.items()]
 
     def _events(self) -> list[dict[str, Any]]:
-        found = []
-        for said in self.text.says:
-            if len(said) not in {2, 3} or not isinstance(said[0], int | float):
-                raise UsageError(f"says {said}: write [second, event] or [second, event, value]")
-            value = said[2] if len(said) == 3 else None
-            if self.left and said[1] == "blind_spot_check":
+        events = []
+        for declaration in self.text.says:
+            if len(declaration) not in {2, 3} or not isinstance(declaration[0], int | float):
+                raise UsageError(f"says {declaration}: write [second, event] or [second, event, value]")
+            value = declaration[2] if len(declaration) == 3 else None
+            if self.left and declaration[1] == "blind_spot_check":
                 value = {"left": "right", "right": "left"}.get(str(value), value)
-            row = {"actor_id": "ego", "t_ns": round(float(said[0]) * 1e9), "event": str(said[1])}
-            found.append(row | {"value": None if value is None else str(value)})
-        return found
+            row = {"actor_id": "ego", "t_ns": round(float(declaration[0]) * 1e9), "event": str(declaration[1])}
+            events.append(row | {"value": None if value is None else str(value)})
+        return events
 
 
 def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list[Scene]:
     """Return each scene, for both sides of the road where it or its layout asks for both."""
-    found = []
+    scenes = []
     for text in texts:
         layout = layouts[text.roads]
         side = text.traffic or layout.traffic
         for one in ("right", "left") if side == "both" else (side,):
             name = f"{text.name}-{one}" if side == "both" else text.name
-            found.append(Scene(text, layout, one == "left", name))
-    return found
+            scenes.append(Scene(text, layout, one == "left", name))
+    return scenes
 
 
 def _table(name: str, columns: Mapping[str, Sequence[Any]]) -> pa.Table:

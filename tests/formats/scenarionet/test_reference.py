@@ -94,7 +94,7 @@ def test_the_ego_of_nuscenes_leaps_no_more(name: str, lost: int, shift_s: float,
     told = second(name)
     state, ts = told["tracks"]["ego"]["state"], told["metadata"]["ts"]
     found = timed_track(state["position"][:, :2], state["heading"], ts, 0.02)
-    assert found.lost == lost
+    assert found.lost_messages == lost
     assert found.shift_s == pytest.approx(shift_s, abs=0.001)
 
     def greatest(place: np.ndarray) -> float:

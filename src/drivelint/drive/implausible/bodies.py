@@ -83,15 +83,15 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     for a, b in _begin_upon(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _common(states, track_a, track_b)
-        one, other = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
-        deep = _deep(one, other)
+        first, second = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
+        deep = _deep(first, second)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
-            if not _coupled(one, other):
-                together = _overlap_at_begin(one, other)
+            if not _coupled(first, second):
+                together = _overlap_at_begin(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
-        if not np.nanmedian(np.hypot(*(one.velocity - other.velocity))) <= SAME_MPS:
+        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_MPS:
             continue
         length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
@@ -144,15 +144,15 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
             < 0.0
         )
         speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
-        others = order[after:end]
-        others = others[motor[states.actor[others]]]
-        were = np.array([speed.get(number, np.nan) for number in states.actor[others].tolist()])
-        others = others[speeds[others] > np.maximum(were - HIT_MPS, SPIN_MPS)]
-        if not len(others):
+        other_rows = order[after:end]
+        other_rows = other_rows[motor[states.actor[other_rows]]]
+        were = np.array([speed.get(number, np.nan) for number in states.actor[other_rows].tolist()])
+        other_rows = other_rows[speeds[other_rows] > np.maximum(were - HIT_MPS, SPIN_MPS)]
+        if not len(other_rows):
             continue
-        since_s = (states.t_ns[others] - states.t_ns[last]) * 1e-9
-        mine = _boxes(states, actors, np.full(len(others), last))
-        depth = _overlap(mine, _boxes(states, actors, others))[0].min(axis=0)
+        since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
+        mine = _boxes(states, actors, np.full(len(other_rows), last))
+        depth = _overlap(mine, _boxes(states, actors, other_rows))[0].min(axis=0)
         if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
     text = (
@@ -166,13 +166,13 @@ def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     starts = track_starts(states.actor)
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
-    for first, other in _neighbours(states, actors, starts):
+    for first, second in _neighbours(states, actors, starts):
         # of two that begin together each is met once
-        once = (states.actor[first] != states.actor[other]) & ((number[other] < 0) | (number[other] > number[first]))
-        first, other = first[once], other[once]  # noqa: PLW2901  the rest is of no use
-        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, other)
+        once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
+        first, second = first[once], second[once]  # noqa: PLW2901  the rest is of no use
+        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, second)
         near = _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
-        yield from zip(states.actor[first[near]].tolist(), states.actor[other[near]].tolist(), strict=True)
+        yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
 def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
@@ -212,55 +212,58 @@ def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
     return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), half, np.stack([vx, vy]))
 
 
-def _deep(one: _Boxes, other: _Boxes) -> Mask:
+def _deep(first: _Boxes, second: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
-    overlap, reach = _overlap(one, other)
-    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(one.half, reach), axis=0)
+    overlap, reach = _overlap(first, second)
+    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(first.half, reach), axis=0)
     return deep
 
 
-def _in_line(one: _Boxes, other: _Boxes) -> Mask:
+def _in_line(first: _Boxes, second: _Boxes) -> Mask:
     """Say of each pair of boxes (n) whether they are close behind each other, one heading and one track; NaN: no."""
-    overlap, reach = _overlap(one, other)
-    aside = one.half[1] + reach[1] - overlap[1]
-    ahead = one.half[0] + reach[0] - overlap[0]
+    overlap, reach = _overlap(first, second)
+    aside = first.half[1] + reach[1] - overlap[1]
+    ahead = first.half[0] + reach[0] - overlap[0]
     near = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
-    line: Mask = near & ((one.along * other.along).sum(axis=0) > 0.95)
+    line: Mask = near & ((first.along * second.along).sum(axis=0) > 0.95)
     return line
 
 
-def _coupled(one: _Boxes, other: _Boxes) -> bool:
+def _coupled(first: _Boxes, second: _Boxes) -> bool:
     """Say whether two tracks keep close in line at speed in all that both have, and sink into each other without an impact."""
-    line = _in_line(one, other)
+    line = _in_line(first, second)
     if len(line) < COUPLED_LEAST or not line.all():
         return False
-    sunk = _overlap(one, other)[0][0] >= SUNK_M
-    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (one, other)])
+    sunk = _overlap(first, second)[0][0] >= SUNK_M
+    speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (first, second)])
     return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
 
 
-def _overlap_at_begin(one: _Boxes, other: _Boxes) -> Mask:
+def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
     """Say in which of their first samples (n) two tracks that move overlap, deep at once, or are hardly apart, without an impact."""
-    across, depth = _overlap(one, other)[0][1], _overlap(one, other)[0].min(axis=0)
-    speeds = np.minimum(np.hypot(*one.velocity), np.hypot(*other.velocity))
+    across, depth = _overlap(first, second)[0][1], _overlap(first, second)[0].min(axis=0)
+    speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
-    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (one, other)]
+    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (first, second)]
     # places that are off by so much are not believed before the boxes are as far apart as they overlapped
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
-    if across[0] <= BESIDE_SHARE * 2 * min(one.half[1][0], other.half[1][0]):
+    if across[0] <= BESIDE_SHARE * 2 * min(first.half[1][0], second.half[1][0]):
         most = across[together].max() + BESIDE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
 
 
-def _overlap(one: _Boxes, other: _Boxes) -> tuple[Floats, Floats]:
+def _overlap(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
     """Return by how much pairs of boxes (n) overlap along the first and across it, negative: are apart, and the other's half extents so."""
-    apart = other.place - one.place
-    cos, sin = (one.along * other.along).sum(axis=0), one.along[0] * other.along[1] - one.along[1] * other.along[0]
-    length, width = other.half
+    apart = second.place - first.place
+    cos, sin = (
+        (first.along * second.along).sum(axis=0),
+        first.along[0] * second.along[1] - first.along[1] * second.along[0],
+    )
+    length, width = second.half
     reach = np.stack([length * abs(cos) + width * abs(sin), length * abs(sin) + width * abs(cos)])
-    offset = np.stack([(apart * one.along).sum(axis=0), one.along[0] * apart[1] - one.along[1] * apart[0]])
-    return one.half + reach - np.abs(offset), reach
+    offset = np.stack([(apart * first.along).sum(axis=0), first.along[0] * apart[1] - first.along[1] * apart[0]])
+    return first.half + reach - np.abs(offset), reach

@@ -52,10 +52,10 @@ def without_nameless(
 ) -> tuple[Mask, list[QualityFinding], list[LostTime]]:
     """Say which rows have a track (`name`) and a time (`timed`), and tell of the others: what they are, and when they were recorded."""
     ids = cast(path, rows, name, pa.string())
-    lost = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
-    n = int(lost.sum())
+    lost_rows = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
+    n = int(lost_rows.sum())
     if not n:
-        return ~lost, [], []
+        return ~lost_rows, [], []
     what = f"{path.name}: rows without {name} or time"
     finding = QualityFinding("dropped_row", "error", f"{what}: {n}: they are not judged", n)
-    return ~lost, [finding], times_of_lost_rows(t_ns, timed, lost, what)
+    return ~lost_rows, [finding], times_of_lost_rows(t_ns, timed, lost_rows, what)

@@ -64,7 +64,7 @@ def read(probe: Probe) -> Recording:
     rows = _rows(path)
     step, timed = cells.integers(path, rows, _TIME)
     t_ns = _times(path, rows, step)
-    usable, findings, lost = cells.without_nameless(path, rows, "track_id", t_ns, timed)
+    usable, findings, lost_times = cells.without_nameless(path, rows, "track_id", t_ns, timed)
     rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     ids = pc.dictionary_encode(cells.cast(path, rows, "track_id", pa.string()))
     classes, notes = class_codes(cells.cast(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
@@ -80,7 +80,7 @@ def read(probe: Probe) -> Recording:
         {"actor_class": classes}, odd,
     )  # fmt: skip
     _place_ego(states)
-    recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost=lost, notes=notes)
+    recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost_times=lost_times, notes=notes)
     if EGO_ID in states.ids:
         recording.findings.append(vehicle.assumed_size(EGO_ID))
     recording.sensor_range_m = SENSOR_RANGE_M
@@ -139,13 +139,13 @@ def _place_ego(states: States) -> None:
 
     Its velocity stays that of the axle: along the heading the two are the same.
     """
-    own = states.actor == states.ids.index(EGO_ID) if EGO_ID in states.ids else np.zeros(len(states), np.bool_)
-    states.codes["actor_class"][own] = ACTOR_CLASSES.index("car")
+    ego_rows = states.actor == states.ids.index(EGO_ID) if EGO_ID in states.ids else np.zeros(len(states), np.bool_)
+    states.codes["actor_class"][ego_rows] = ACTOR_CLASSES.index("car")
     numbers = states.numbers
-    x, y, yaw = (numbers[name][own] for name in ("x_m", "y_m", "yaw_rad"))
-    numbers["x_m"][own], numbers["y_m"][own] = vehicle.box_places(x, y, yaw)
+    x, y, yaw = (numbers[name][ego_rows] for name in ("x_m", "y_m", "yaw_rad"))
+    numbers["x_m"][ego_rows], numbers["y_m"][ego_rows] = vehicle.box_places(x, y, yaw)
     for name, size in zip(("length_m", "width_m", "height_m"), vehicle.SIZE_M, strict=True):
-        numbers[name] = np.where(own, size, np.nan)
+        numbers[name] = np.where(ego_rows, size, np.nan)
 
 
 def _add_map(recording: Recording, path: Path) -> None:

@@ -108,37 +108,37 @@ def _archive(source: MapSource) -> dict[str, Any]:
     return dict(archive)
 
 
-def _segments(said: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
+def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
     """Return the lane segments by their ids; those that cannot be understood are reported."""
-    found: dict[str, _Segment] = {}
-    for key, segment in said.items():
+    segments: dict[str, _Segment] = {}
+    for key, segment in records.items():
         try:
             name = _name(segment["id"])
-            if name in found:
+            if name in segments:
                 raise ValueError("another one has its id")
-            found[name] = _segment(segment)
+            segments[name] = _segment(segment)
         except _UNREADABLE as error:
             quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
-    return found
+    return segments
 
 
 def _why(error: Exception) -> str:
     return f"it has no {error}" if isinstance(error, KeyError) else str(error)
 
 
-def _segment(said: Mapping[str, Any]) -> _Segment:
+def _segment(record: Mapping[str, Any]) -> _Segment:
     """Return a segment. Errors: those of `_UNREADABLE`."""
-    left, right = (None if (number := said[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
+    left, right = (None if (number := record[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
     return _Segment(
-        left=_points(said["left_lane_boundary"]),
-        right=_points(said["right_lane_boundary"]),
-        lane_type=str(said["lane_type"]),
-        is_intersection=bool(said["is_intersection"]),
-        successors=tuple(map(_name, said["successors"])),
+        left=_points(record["left_lane_boundary"]),
+        right=_points(record["right_lane_boundary"]),
+        lane_type=str(record["lane_type"]),
+        is_intersection=bool(record["is_intersection"]),
+        successors=tuple(map(_name, record["successors"])),
         left_id=left,
         right_id=right,
-        left_mark=str(said["left_lane_mark_type"]),
-        right_mark=str(said["right_lane_mark_type"]),
+        left_mark=str(record["left_lane_mark_type"]),
+        right_mark=str(record["right_lane_mark_type"]),
     )
 
 
@@ -169,9 +169,9 @@ def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
     return lane
 
 
-def _is_against(own: Floats, with_it: Floats, against: Floats) -> bool:
+def _is_against(bound: Floats, with_it: Floats, against: Floats) -> bool:
     """Say whether a bound is rather one of the other lane's that runs against it than the one that runs with it."""
-    ends = own[[0, -1], :2]
+    ends = bound[[0, -1], :2]
     to_with, to_against = (
         float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
     )
@@ -252,23 +252,23 @@ def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
         return []
     areas = [lane.line.polygon for lane in lanes]
     pairs = shapely.STRtree(areas).query(areas, predicate="intersects").T
-    found = []
+    overlaps = []
     for i, j in pairs[pairs[:, 0] < pairs[:, 1]].tolist():
         a, b = lanes[i], lanes[j]
         apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
         if apart <= _LEVEL_M and shapely.area(shapely.intersection(areas[i], areas[j])) > _COMMON_GROUND_M2:
-            found.append([a.lanelet_id, b.lanelet_id])
-    return found
+            overlaps.append([a.lanelet_id, b.lanelet_id])
+    return overlaps
 
 
 def _have_heights(*lanes: BoundedLane) -> bool:
     return all(np.isfinite(lane.z).any() for lane in lanes)
 
 
-def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
+def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     """Return the pedestrian crossings, the two edges as the bounds of a lane for people on foot."""
-    found = []
-    for key, crossing in said.items():
+    crossings = []
+    for key, crossing in records.items():
         try:
             first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
             name = _name(crossing["id"])
@@ -277,5 +277,5 @@ def _walks(said: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
             continue
         if float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
             second = second[::-1]
-        found.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
-    return found
+        crossings.append(BoundedLane(name, first, second, "crosswalk", drivable=False))
+    return crossings

@@ -61,7 +61,7 @@ def read(probe: Probe) -> Recording:
     file, notes = _annotations(probe.path)
     rows = ipc.table(file, (_TIME, "track_uuid", "category", *_SIZE, *_PLACE, *_TURN))
     t_ns, timed = cells.integers(file, rows, _TIME)
-    usable, findings, lost = cells.without_nameless(file, rows, "track_uuid", t_ns, timed)
+    usable, findings, lost_times = cells.without_nameless(file, rows, "track_uuid", t_ns, timed)
     rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     steps, step = np.unique(t_ns, return_inverse=True)
     if not len(steps):
@@ -70,9 +70,11 @@ def read(probe: Probe) -> Recording:
         )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
     findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
-    others, more = _others(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
+    others, more = _annotated_states(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
     ego = _ego(steps, vehicle.box_poses(rear_axle), others.ids)
-    recording = Recording(NAME, States.joined([ego, others]), ego_ids=[EGO_ID], findings=findings, lost=lost)
+    recording = Recording(
+        NAME, States.concatenate([ego, others]), ego_ids=[EGO_ID], findings=findings, lost_times=lost_times
+    )
     recording.notes = notes + more
     recording.sensor_range_m = SENSOR_RANGE_M
     recording.conditions["nation"] = NATION
@@ -117,11 +119,11 @@ def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityF
     return [QualityFinding("frame_unresolved", "error", message, n, first)]
 
 
-def _others(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
+def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
     """Return the annotated boxes as states, `rear_axle`: the pose at each, and notes."""
     category = cells.cast(path, rows, "category", pa.string())
     classes, notes = class_codes(category, SENSOR_CLASSES)
-    own = _is_any(category, [EGO_CATEGORY])
+    is_ego = _is_any(category, [EGO_CATEGORY])
     ids = pc.dictionary_encode(cells.cast(path, rows, "track_uuid", pa.string()))
     actor = ids.indices.to_numpy().astype(np.int32)
     raw = cells.numbers(path, rows, (*_PLACE, *_TURN, *_SIZE))
@@ -138,10 +140,10 @@ def _others(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[
     if riders:
         who = listed([names[i] for i in riders])
         notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
-    if own.any():
+    if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
     states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)
-    return states.take(~own & ~inside), notes
+    return states.take(~is_ego & ~inside), notes
 
 
 def _is_any(words: pa.Array, of: Iterable[str]) -> Mask:

@@ -37,18 +37,18 @@ def signal_states(
     for light in root.findall("trafficLight"):
         name = light.get("id", "")
         try:
-            steps, shown = _unrolled(light, first, last)
+            steps, light_states = _unrolled(light, first, last)
         except _UnreadError as error:
             message = f"the states of traffic light {name} are not known: {error}"
             findings.append(QualityFinding("signal_cycle", "warning", message))
             continue
-        if None in shown:
+        if None in light_states:
             words = sorted({w for w in _colours(light) if w not in _STATES})
             message = f"traffic light {name} has colours that are not known: {', '.join(words)}"
             findings.append(QualityFinding("signal_cycle", "warning", message, len(words)))
         ids += [name] * len(steps)
         times.append(np.round(steps * step_s * 1e9).astype(np.int64))
-        states += shown
+        states += light_states
     if not ids:
         return None, findings
     return pa.table({"signal_id": ids, "t_ns": np.concatenate(times), "state": pa.array(states, pa.string())}), findings
@@ -59,7 +59,7 @@ def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats,
 
     The cycle begins at step `timeOffset` and goes on without end in both directions. A light that is not active is off.
     """
-    if _said(light, "active").lower() in {"false", "0"}:
+    if _child_text(light, "active").lower() in {"false", "0"}:
         return np.array([first]), ["off"]
     colours = _colours(light)
     if not colours:
@@ -69,7 +69,7 @@ def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats,
     )
     if not (durations >= _LEAST_STEPS).all():
         raise _UnreadError("a phase of its cycle has no duration")
-    offset = safe_xml.number(_said(light, "timeOffset") or "0")
+    offset = safe_xml.number(_child_text(light, "timeOffset") or "0")
     if not math.isfinite(offset):
         raise _UnreadError("its time offset is no number")
     ends = np.cumsum(durations)
@@ -85,6 +85,6 @@ def _colours(light: etree._Element) -> list[str]:
     return [(e.findtext("color") or "").strip() for e in light.iterfind("cycle/cycleElement")]
 
 
-def _said(light: etree._Element, name: str) -> str:
+def _child_text(light: etree._Element, name: str) -> str:
     """Return what a light says, or its cycle: writers differ in where they put it."""
     return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()

@@ -221,7 +221,7 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
 
 def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
     """Return the pattern of a state, the places of the numbers in it, and how many tags it has."""
-    pattern, at, opened = b"", 0, False
+    pattern, at, is_open = b"", 0, False
     places: list[str] = []
     stack: list[str] = []
     tags = list(_TAG.finditer(state))
@@ -230,7 +230,7 @@ def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
         closes, name = bool(tag[1]), tag[2].decode()
         if closes and not stack:
             return None
-        if opened and closes:
+        if is_open and closes:
             pattern += rb"([^<]*)"
             places.append("/".join(stack[1:]))
         elif between.strip():
@@ -242,7 +242,7 @@ def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
             stack.pop()
         else:
             stack.append(name)
-        at, opened = tag.end(), not closes
+        at, is_open = tag.end(), not closes
     if (
         len(tags) != state.count(b"<")
         or any("interval" in place or (place.startswith("position/") and "/point/" not in place) for place in places)

@@ -35,7 +35,7 @@ READINGS_AGREE_M: Final = 0.01
 _POLYGON: Final = "a polygon"
 _TRAILER: Final = "a truck with its trailer"
 _SEVERAL: Final = "several shapes"
-_NONE: Final = "no shape that is read"
+_NO_SHAPE: Final = "no shape that is read"
 
 
 class ObstacleShape(NamedTuple):
@@ -71,13 +71,13 @@ def read_shape(obstacle: etree._Element) -> ObstacleShape:
     if len(parts) == 1 and parts[0].tag == "polygon":
         return ObstacleShape(centre_m=_middle(parts[0]), no_box=_POLYGON)
     several = len(parts) > 1 or any(part.tag == "shapeGroup" for part in parts)
-    return ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL) if several else ObstacleShape(no_box=_NONE)
+    return ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL) if several else ObstacleShape(no_box=_NO_SHAPE)
 
 
 def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleShape:
     """Return the box of these sizes; `origin` has the element that says where its origin lies."""
     if size is None:
-        return ObstacleShape(ahead_m=math.nan, no_box=_NONE)
+        return ObstacleShape(ahead_m=math.nan, no_box=_NO_SHAPE)
     length, width = (safe_xml.number(size.findtext(name)) for name in ("length", "width"))
     shift = _number(origin, "originXShift")
     if abs(shift) > length / 2:

@@ -68,12 +68,12 @@ class Signs:
 
         None: the map gives none that is sure. One that holds only under a condition, by a plate, may be lower: then the limit is not known.
         """
-        own = _number(lanelet.findtext("speedLimit"))
-        if own is not None and (trouble := _implausible(own)):
+        own_limit = _number(lanelet.findtext("speedLimit"))
+        if own_limit is not None and (trouble := _implausible(own_limit)):
             name = lanelet.get("id")
             self.quality.add("invalid_speed", "warning", name, f"the limit of lanelet {name} is not taken: {trouble}")
-            own = None
-        sure = [own] if own is not None else []
+            own_limit = None
+        sure = [own_limit] if own_limit is not None else []
         perhaps: list[float] = []
         for ref in referenced_ids(lanelet, "trafficSignRef"):
             on_post = self.elements.get(ref, [])
@@ -84,19 +84,19 @@ class Signs:
         least = min(sure, default=None)
         if perhaps and (least is None or min(perhaps) < least):
             least = None
-        return least, "lane" if least is not None and least == own else "sign"
+        return least, "lane" if least is not None and least == own_limit else "sign"
 
     def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
         """Report signs that are not read, and references to signs or lights that the map does not have."""
         self._report_codes()
         self._report_values()
-        known = {*self.elements, *lights}
-        lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known)
+        known_ids = {*self.elements, *lights}
+        lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known_ids)
         if lost:
-            message = f"lanelets refer to signs or lights that the map does not have: {_counted(lost)}"
+            message = f"lanelets refer to signs or lights that the map does not have: {_counts_text(lost)}"
             self.quality.add("missing_signal", "warning", None, message, lost.total())
         held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
-        if idle := sorted(known - held):
+        if idle := sorted(known_ids - held):
             message = f"signs and lights to which no lanelet refers hold for no lane: {', '.join(idle)}"
             self.quality.add("signal_without_lane", "info", None, message, len(idle))
 
@@ -106,12 +106,12 @@ class Signs:
         plain = Counter(e.code for e in unread) - numbered
         if numbered:
             message = (
-                f"signs with a number and a code that is not known ({self.country}): {_counted(numbered)}: "
+                f"signs with a number and a code that is not known ({self.country}): {_counts_text(numbered)}: "
                 "whether they limit the speed is not known"
             )
             self.quality.add("unknown_sign", "warning", None, message, numbered.total())
         if plain:
-            message = f"signs that no rule reads ({self.country}): {_counted(plain)}"
+            message = f"signs that no rule reads ({self.country}): {_counts_text(plain)}"
             self.quality.add("unknown_sign", "info", None, message, plain.total())
 
     def _report_values(self) -> None:
@@ -214,15 +214,15 @@ def stop_line_stations(
 ) -> dict[str, float]:
     """Return the station of each lanelet's stop line: that of its points, else the lanelet's end."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
-    found = {}
+    station_by_lanelet = {}
     for lanelet in root.findall("lanelet"):
         line, lane = lanelet.find("stopLine"), by_id.get(lanelet.get("id", ""))
         if line is None or lane is None:
             continue
         place = points(line)
         s = shapely.line_locate_point(shapely.LineString(lane.line.centre), shapely.points(place + offset))
-        found[lane.lanelet_id] = float(np.mean(s)) if len(place) else lane.line.length
-    return found
+        station_by_lanelet[lane.lanelet_id] = float(np.mean(s)) if len(place) else lane.line.length
+    return station_by_lanelet
 
 
 def points(parent: etree._Element | None) -> Floats:
@@ -255,5 +255,5 @@ def _restricts(element: SignElement) -> bool:
     return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
 
 
-def _counted(found: Counter[str]) -> str:
-    return ", ".join(f"{code or 'no code'} ({n})" for code, n in sorted(found.items()))
+def _counts_text(code_counts: Counter[str]) -> str:
+    return ", ".join(f"{code or 'no code'} ({n})" for code, n in sorted(code_counts.items()))

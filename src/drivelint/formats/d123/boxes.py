@@ -57,13 +57,13 @@ def box_states(
     columns = {name: _of_rows(boxes.columns[name], rows) for name in _COLUMNS}
     frame = np.repeat(np.arange(len(rows)), lengths(columns["track_token"]))
     flat = {name: lists.flatten() for name, lists in columns.items()}
-    labels, findings, own = _classes(boxes, integers(flat["label"]))
+    labels, findings, is_ego = _classes(boxes, integers(flat["label"]))
     notes = []
-    if own.any():
+    if is_ego.any():
         notes.append(
-            f"{int(own.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own"
+            f"{int(is_ego.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own"
         )
-        keep = np.flatnonzero(~own)
+        keep = np.flatnonzero(~is_ego)
         flat, frame, labels = {name: values.take(keep) for name, values in flat.items()}, frame[keep], labels[keep]
     tracks = flat["track_token"].dictionary_encode()
     box, velocity = vectors(flat["bounding_box_se3"]), vectors(flat["velocity_3d"])
@@ -122,8 +122,8 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
         finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []
         return np.full(len(numbers), -1, np.int8), finding, none_own
     inside = (numbers >= 0) & (numbers < len(codes))
-    found = np.where(inside, codes[np.where(inside, numbers, 0)], -2).astype(np.int8)
-    unknown = found == -2
+    class_codes = np.where(inside, codes[np.where(inside, numbers, 0)], -2).astype(np.int8)
+    unknown = class_codes == -2
     findings = []
     if unknown.any():
         which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(numbers[unknown]).tolist()])
@@ -131,7 +131,7 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
         findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
     ego_number = facts.LABELS[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
     own = (numbers == ego_number) & inside
-    return np.maximum(found, -1).astype(np.int8), findings, np.asarray(own, np.bool_)
+    return np.maximum(class_codes, -1).astype(np.int8), findings, np.asarray(own, np.bool_)
 
 
 def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFinding]:

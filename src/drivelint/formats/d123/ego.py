@@ -48,9 +48,9 @@ def read_ego(folder: Path) -> Modality:
     return found
 
 
-def ego_id(taken: Iterable[str]) -> str:
+def ego_id(box_ids: Iterable[str]) -> str:
     """Return an id for the ego that no box has."""
-    name, others = EGO_ID, set(taken)
+    name, others = EGO_ID, set(box_ids)
     while name in others:
         name += "_vehicle"
     return name
@@ -106,20 +106,20 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
     That of the IMU is recorded, and how fast the ego turns; where the log turns and says that it does not, nobody knows how fast. A
     velocity that is the way from pose to pose was filled in by the converter.
     """
-    nothing = np.full((len(motion), 3), np.nan)
+    unknown_velocity = np.full((len(motion), 3), np.nan)
     velocity, turning = motion[:, :3], motion[:, 6:9]
     has_velocity = np.asarray(np.isfinite(velocity).all(axis=1), np.bool_)
     if not has_velocity.any():
-        return nothing
+        return unknown_velocity
     outward = rotated(imu.turn, velocity)
     if _way_between_poses(ego, imu, outward, has_velocity):
-        return nothing
+        return unknown_velocity
     still = has_velocity & (velocity == 0.0).all(axis=1)
     if still[has_velocity].all():
         return np.where(has_velocity[:, None], np.zeros_like(velocity), np.nan)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
     if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[has_velocity] != 0.0).any() and box.place[:2].any():
-        return nothing
+        return unknown_velocity
     swing = rotated(imu.turn, np.cross(turning, box.place))
     return np.where(has_velocity[:, None], outward + swing, np.nan)
 

@@ -80,15 +80,15 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
     """Return the lanes with their bounds as arrays, (n, 2) or (n, 3), in the order of the map."""
-    found = {}
+    lanes = {}
     for name, lane in layers.features("LANE", Lane, quality).items():
         try:
             lane.left_boundary, lane.right_boundary = points_of(lane.left_boundary), points_of(lane.right_boundary)
         except ValueError as error:
             quality.add("invalid_lane", "error", str(name), f"lanelet {name} is left out: {error}")
             continue
-        found[name] = lane
-    return found
+        lanes[name] = lane
+    return lanes
 
 
 def _junctions(
@@ -159,9 +159,9 @@ def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tu
     return ((0.0, 1.0, None),), "unread"
 
 
-def _runs_against(lane: Lane, other: Lane) -> bool:
+def _runs_against(lane: Lane, neighbour: Lane) -> bool:
     """Say whether a lane beside another is driven the other way, by their directions where they are nearest to each other."""
-    (own, along), (its, its_along) = _pieces(lane), _pieces(other)
+    (own, along), (its, its_along) = _pieces(lane), _pieces(neighbour)
     near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
     i, j = np.unravel_index(int(np.argmin(near)), near.shape)
     return bool(along[i] @ its_along[j] < 0.0)

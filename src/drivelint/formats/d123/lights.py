@@ -30,7 +30,7 @@ class LightStates(NamedTuple):
     rows: pa.Table
     lanes: tuple[int, ...]
     findings: list[QualityFinding]
-    lost: list[LostTime]
+    lost_times: list[LostTime]
 
 
 def read_lights(folder: Path) -> Modality | None:
@@ -42,29 +42,29 @@ def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightSt
     """Return the states of the lights, `t_ns`: the times of the rows."""
     counts = [lengths(lights.columns[name]) for name in _COLUMNS]
     bad = (counts[0] != counts[1]) | (counts[0] < 0)
-    findings, lost = [], []
+    findings, lost_times = [], []
     if bad.any():
         what = "frames of traffic lights whose lanes and states differ in number"
         findings.append(
             QualityFinding("malformed_row", "warning", f"{what}: {int(bad.sum())}: left out", int(bad.sum()))
         )
-        lost = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, what)
+        lost_times = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, what)
     good = pa.array(~bad)
     lane, status = (integers(lights.columns[name].filter(good).flatten()) for name in _COLUMNS)
-    lanes, which = np.unique(lane, return_inverse=True)
+    lanes, lane_index = np.unique(lane, return_inverse=True)
     codes, unknown = _codes(status)
     findings += unknown
     if about.steady_for_flashing:
-        codes, doubtful = _without_doubtful_colours(codes, which, len(lanes))
+        codes, doubtful = _without_doubtful_colours(codes, lane_index, len(lanes))
         findings += doubtful
     rows = pa.table(
         {
-            "signal_id": spelled(which.astype(np.int32), [str(number) for number in lanes.tolist()]),
+            "signal_id": spelled(lane_index.astype(np.int32), [str(number) for number in lanes.tolist()]),
             "t_ns": np.repeat(t_ns[~bad], counts[0][~bad]),
             "state": spelled(codes, SIGNAL_STATES),
         }
     )
-    return LightStates(rows, tuple(lanes.tolist()), findings, lost)
+    return LightStates(rows, tuple(lanes.tolist()), findings, lost_times)
 
 
 def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
-_READ: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
+_READ_LAYERS: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
 _LEVEL_M: Final = 3.0  # what lies so far above or below a lane is not on it
 
 
@@ -80,7 +80,7 @@ def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> 
     """Report what a map of 123D does not say, the layers that are not read, and what of the lanes the converter estimates."""
     message = "a map of 123D has no signs: what governs a way into a junction without a light is not known"
     quality.add(SIGNS_UNMAPPED, "info", None, message)
-    counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ}
+    counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ_LAYERS}
     unread = [f"{n} of {name.lower().replace('_', ' ')}" for name, n in counts.items() if n]
     if unread:
         message = f"objects of layers that are not read: {', '.join(unread)}"

@@ -104,30 +104,30 @@ class Layers:
     def features(self, layer: str, kind: type[T], quality: MapQuality) -> dict[int, T]:
         """Return what is said of each object of a layer, in the order of the map; one that cannot be read is reported and left out."""
         some = self._of(layer)
-        found: dict[int, T] = {}
+        feature_by_id: dict[int, T] = {}
         decoder = msgspec.msgpack.Decoder(kind)
         for name, packed in zip(some["object_id"].to_pylist(), some["features"].to_pylist(), strict=True):
-            if name in found:
+            if name in feature_by_id:
                 self._report(layer, name, "another has the same number", quality)
                 continue
             try:
-                found[name] = decoder.decode(packed or b"")
+                feature_by_id[name] = decoder.decode(packed or b"")
             except (msgspec.MsgspecError, UnicodeDecodeError) as error:
                 self._report(layer, name, f"its features cannot be read: {error}", quality)
-        return found
+        return feature_by_id
 
     def outlines(self, layer: str, quality: MapQuality) -> dict[int, Floats]:
         """Return the points, (n, 2) or (n, 3), of the outline or line of each object of a layer; one without is reported and left out."""
         some = self._of(layer)
         shapes = shapely.from_wkb(some["wkb"].to_pylist(), on_invalid="ignore")
-        found = {}
+        outline_by_id = {}
         for name, shape in zip(some["object_id"].to_pylist(), shapes, strict=True):
             line = shape.exterior if isinstance(shape, shapely.Polygon) else shape
             if isinstance(line, shapely.LineString) and not line.is_empty:
-                found[name] = shapely.get_coordinates(line, include_z=line.has_z)
+                outline_by_id[name] = shapely.get_coordinates(line, include_z=line.has_z)
             else:
                 self._report(layer, name, "it has no outline", quality)
-        return found
+        return outline_by_id
 
     def _of(self, layer: str) -> pa.Table:
         return self.rows.filter(pa.array(self._layer == facts.LAYERS[layer]))

@@ -66,7 +66,7 @@ def read(probe: Probe) -> Recording:
     files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
     time = clock(folder, [sync["timestamp_us"], *files], utc=about.utc)
     frames = _frames(folder, sync, ego, boxes)
-    recording = Recording(NAME, _NOBODY, sensor_range_m=about.sensor_range_m, notes=[_origin(info), *time.notes])
+    recording = Recording(NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_origin(info), *time.notes])
     recording.notes += frames.notes
     if nation := about.nation_of(info.location):
         recording.conditions["nation"] = nation
@@ -74,36 +74,36 @@ def read(probe: Probe) -> Recording:
         n = int(frames.malformed.sum())
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))
         t_ns = time.nanoseconds(integers(sync["timestamp_us"]))
-        recording.lost += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
-    others: list[States] = []
+        recording.lost_times += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
+    box_states: list[States] = []
     if boxes is None:
         recording.findings.append(_NO_ROAD_USERS)
     else:
         t_ns = time.nanoseconds(integers(boxes.columns["timestamp_us"])[frames.box_rows])
         states, findings, notes = box_file.box_states(boxes, frames.box_rows, t_ns, about)
-        others.append(states)
+        box_states.append(states)
         recording.findings += findings
         recording.notes += notes
-    name = ego_file.ego_id(others[0].ids if others else ())
+    name = ego_file.ego_id(box_states[0].ids if box_states else ())
     forward_m = 0.0 if probe.options.ego_size is None else probe.options.ego_size.forward_m
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
     t_ns = time.nanoseconds(frames.ego_us)
     own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
-    recording.states, recording.ego_ids = _joined(own, others), [name]
+    recording.states, recording.ego_ids = _ego_with_boxes(own, box_states), [name]
     light_lanes: tuple[int, ...] = ()
     if lights is not None:
         shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
         recording.signals, light_lanes = shown.rows, shown.lanes
         recording.findings += shown.findings
-        recording.lost += shown.lost
+        recording.lost_times += shown.lost_times
     recording.embedded_map, findings, notes = find_map(folder, info, light_lanes)
     recording.findings += findings
     recording.notes += notes
     return recording
 
 
-_NOBODY: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))
+_NO_STATES: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))
 
 
 class _Frames(NamedTuple):
@@ -164,12 +164,14 @@ def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices
     return rows, np.where(np.abs(moments[rows] - box_us) <= _ROUNDED_US, box_us, moments[rows])
 
 
-def _joined(own: States, others: list[States]) -> States:
+def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
     """Return the states of the ego and of the others."""
-    if not others:
-        return own
-    ids = [*own.ids, *others[0].ids]
-    return States.joined([replace(own, ids=ids), replace(others[0], ids=ids, actor=others[0].actor + np.int32(1))])
+    if not box_states:
+        return ego_states
+    ids = [*ego_states.ids, *box_states[0].ids]
+    return States.concatenate(
+        [replace(ego_states, ids=ids), replace(box_states[0], ids=ids, actor=box_states[0].actor + np.int32(1))]
+    )
 
 
 def _origin(info: LogInfo) -> str:

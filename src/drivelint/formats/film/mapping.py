@@ -134,7 +134,7 @@ def load(name: str) -> tuple[str, VideoMapping]:
         base = raw.pop("extends")
         if base not in shipped_mappings():
             raise UsageError(f"mapping {path}: extends {base!r}: {hint(str(base), shipped_mappings())}")
-        raw = _merged(read_toml(MAPPINGS_FOLDER / f"{base}.toml"), raw)
+        raw = _merge_tables(read_toml(MAPPINGS_FOLDER / f"{base}.toml"), raw)
     try:
         film = msgspec.convert(raw, VideoMapping)
     except msgspec.ValidationError as error:
@@ -143,11 +143,11 @@ def load(name: str) -> tuple[str, VideoMapping]:
     return path.stem, film
 
 
-def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
-    """Return `base` with what `over` says otherwise; tables are merged, lists replaced."""
+def _merge_tables(base: dict[str, Any], override: dict[str, Any]) -> dict[str, Any]:
+    """Return `base` with what `override` says otherwise; tables are merged, lists replaced."""
     both = {
-        key: _merged(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
-        for key, value in over.items()
+        key: _merge_tables(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
+        for key, value in override.items()
     }
     return {**base, **both}
 

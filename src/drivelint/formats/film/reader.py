@@ -70,15 +70,15 @@ def read(probe: Probe) -> Recording:
     stem, film = video_mapping.load(probe.options.mapping or _matching_mapping(path) or "")
     findings: list[QualityFinding] = []
     if probe.head.startswith(b"\x89MCAP"):
-        seen = boxes.read(path, film)
+        detections = boxes.read(path, film)
     else:
-        seen = _table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
-    judged = seen.frames % film.frames.every == 0
-    frames = seen.frames[judged]
+        detections = _table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
+    judged = detections.frames % film.frames.every == 0
+    frames = detections.frames[judged]
     if not len(frames):
         raise TraceError(f"{path}: no frame that mapping {stem!r} judges: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
-    states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in seen.ahead_m])
+    states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
     message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
     findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
@@ -154,9 +154,9 @@ def _states(
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
         yaw, mps = (0.0, actor.speed.mps) if along else (np.pi, -actor.speed.mps)
         tracks.append((t_ns[there], x, y, yaw, mps))
-    who = np.repeat(np.arange(len(tracks), dtype=np.int32), [len(track[0]) for track in tracks])
+    actor_index = np.repeat(np.arange(len(tracks), dtype=np.int32), [len(track[0]) for track in tracks])
     times, x, y = (np.concatenate([track[k] for track in tracks]) for k in range(3))
-    everybody: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
+    actors: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
     # where somebody has no place, nothing else is known
     motions = {
         "yaw_rad": [track[3] for track in tracks],
@@ -164,12 +164,16 @@ def _states(
         "vy_mps": [0.0] * len(tracks),
     }
     numbers = {"x_m": x, "y_m": y}
-    numbers |= {name: np.where(np.isfinite(x), np.array(values)[who], np.nan) for name, values in motions.items()}
-    numbers["length_m"] = np.array([each.length for each in everybody])[who]
-    numbers["width_m"] = np.array([each.width for each in everybody])[who]
+    numbers |= {
+        name: np.where(np.isfinite(x), np.array(values)[actor_index], np.nan) for name, values in motions.items()
+    }
+    numbers["length_m"] = np.array([each.length for each in actors])[actor_index]
+    numbers["width_m"] = np.array([each.width for each in actors])[actor_index]
     kinds = ["car", *(actor.kind for actor in film.actor)]
-    codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[who]}
-    states = States([each.id for each in everybody], who, times, numbers, codes, np.zeros(len(who), np.bool_))
+    codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[actor_index]}
+    states = States(
+        [each.id for each in actors], actor_index, times, numbers, codes, np.zeros(len(actor_index), np.bool_)
+    )
     return states, (float(ego_x[0]), float(ego_x[-1]))
 
 

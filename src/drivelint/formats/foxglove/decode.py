@@ -33,7 +33,7 @@ TRANSFORMS: Final = "foxglove.FrameTransforms"
 _TIME: Final = {"seconds": None, "nanos": None, "sec": None, "nsec": None}
 _XYZ: Final = {"x": None, "y": None, "z": None}
 _TURN: Final = {**_XYZ, "w": None}
-_ONE: Final = {
+_TRANSFORM_FIELDS: Final = {
     "timestamp": _TIME, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ, "rotation": _TURN,
 }  # fmt: skip
 FIELD_TREES: Final[dict[str, FieldTree]] = {
@@ -49,8 +49,8 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
             "cubes": {"pose": {"position": _XYZ, "orientation": _TURN}, "size": _XYZ},
         },
     },
-    TRANSFORM: _ONE,
-    TRANSFORMS: {"transforms": _ONE},
+    TRANSFORM: _TRANSFORM_FIELDS,
+    TRANSFORMS: {"transforms": _TRANSFORM_FIELDS},
 }
 _LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
 _WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})

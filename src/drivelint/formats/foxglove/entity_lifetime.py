@@ -29,18 +29,18 @@ _NEVER: Final = np.iinfo(np.int64).max
 
 
 def with_persisted(
-    rows: RecordedPoses, gone: tuple[Times, list[str | None]], findings: list[QualityFinding], topic: str
+    rows: RecordedPoses, deletions: tuple[Times, list[str | None]], findings: list[QualityFinding], topic: str
 ) -> RecordedPoses:
     """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
-    `gone`: times of deletions, and the ids of whom they delete, None: of all. Who was updated at that time or later stays.
+    `deletions`: times of deletions, and the ids of whom they delete, None: of all. Who was updated at that time or later stays.
     """
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
-    whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in gone[1]], np.int32)
+    whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in deletions[1]], np.int32)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]
-    grid_ns = np.unique(np.concatenate([rows.t_ns[new], gone[0]]))
-    row, t_ns, stood_still = _persisted(rows, actor, (gone[0], whom), grid_ns)
+    grid_ns = np.unique(np.concatenate([rows.t_ns[new], deletions[0]]))
+    row, t_ns, stood_still = _persisted(rows, actor, (deletions[0], whom), grid_ns)
     if not len(row):
         return rows
     extra = rows.take(row)
@@ -77,13 +77,13 @@ def _persisted(
     same = actor[1:] == actor[:-1]
     follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
     # a lifetime of centuries would overflow
-    gone = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
-    gone = np.minimum(gone, _deleted(actor, t_ns, deletions))
-    replaced = (follows <= gone) & (follows < _NEVER)
+    gone_ns = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
+    gone_ns = np.minimum(gone_ns, _deleted(actor, t_ns, deletions))
+    replaced = (follows <= gone_ns) & (follows < _NEVER)
     # between two places the entity moved: the samples themselves say so, and nothing is put between them
     still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
     first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
-    last = np.searchsorted(grid_ns, np.minimum(follows, gone), side="left")
+    last = np.searchsorted(grid_ns, np.minimum(follows, gone_ns), side="left")
     count = np.where(still | ~replaced, np.maximum(last - first, 0), 0)
     total = int(count.sum())
     if total > MAX_PERSISTED:

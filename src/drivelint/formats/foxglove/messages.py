@@ -15,7 +15,7 @@ from mcap.records import Schema
 from drivelint.facts import toml_beside
 from drivelint.formats.protobuf.descriptors import Declarations, add_field
 
-_KNOWN: Final = {"Timestamp": timestamp_pb2.DESCRIPTOR, "Duration": duration_pb2.DESCRIPTOR}
+_WELL_KNOWN_TYPES: Final = {"Timestamp": timestamp_pb2.DESCRIPTOR, "Duration": duration_pb2.DESCRIPTOR}
 LINE_STRIP, LINE_LOOP, LINE_LIST = range(3)
 DELETE_ALL: Final = 1
 INFO, WARNING, ERROR = 2, 3, 4
@@ -25,31 +25,35 @@ INFO, WARNING, ERROR = 2, 3, 4
 def schema(name: str) -> Schema:
     """Return the MCAP schema record (still without id) of `foxglove.<name>`: a set of file descriptors, imports first."""
     files = descriptor_pb2.FileDescriptorSet()
-    _add(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
+    _add_declaration(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
     # a fixed order of bytes: no map fields, and the files in the order in which they are found
     return Schema(id=0, name=f"foxglove.{name}", encoding="protobuf", data=files.SerializeToString(deterministic=True))
 
 
-def _add(name: str, files: descriptor_pb2.FileDescriptorSet, done: set[str], declared: Declarations) -> None:
+def _add_declaration(
+    name: str, files: descriptor_pb2.FileDescriptorSet, added_names: set[str], declared: Declarations
+) -> None:
     """Append the file that declares a message, after those that it imports."""
-    if name in done:
+    if name in added_names:
         return
-    done.add(name)
-    if name in _KNOWN:
-        _KNOWN[name].CopyToProto(files.file.add())
+    added_names.add(name)
+    if name in _WELL_KNOWN_TYPES:
+        _WELL_KNOWN_TYPES[name].CopyToProto(files.file.add())
         return
     fields = declared.messages[name]
-    used = sorted({kind.removesuffix("[]") for _, _, kind in fields} & {*declared.messages, *_KNOWN})
+    used = sorted({kind.removesuffix("[]") for _, _, kind in fields} & {*declared.messages, *_WELL_KNOWN_TYPES})
     for kind in used:
-        _add(kind, files, done, declared)
+        _add_declaration(kind, files, added_names, declared)
     file = files.file.add(name=f"foxglove/{name}.proto", package="foxglove", syntax="proto3")
-    file.dependency.extend(_KNOWN[kind].name if kind in _KNOWN else f"foxglove/{kind}.proto" for kind in used)
+    file.dependency.extend(
+        _WELL_KNOWN_TYPES[kind].name if kind in _WELL_KNOWN_TYPES else f"foxglove/{kind}.proto" for kind in used
+    )
     message = file.message_type.add(name=name)
     for field, number, kind in fields:
         added = add_field(message, (field, number, kind), "foxglove", declared.enums)
         first, *others = field.split("_")
         added.json_name = first + "".join(map(str.title, others))
-        if kind in _KNOWN:
+        if kind in _WELL_KNOWN_TYPES:
             added.type_name = f".google.protobuf.{kind}"
     for enum, values in declared.enums.items():
         if enum.startswith(f"{name}."):

@@ -95,9 +95,9 @@ def read(path: Path, topic: str | None) -> Recording:
         findings += container.findings
         parts.append(container)
     findings += bag.missing_messages(path, parts, FIELD_TREES.__contains__)
-    name = _chosen(path, scenes, topic, unread)
+    name = _scene_topic(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
-    recording.lost += times_of_parts([(part.path, part.losses) for part in parts])
+    recording.lost_times += times_of_parts([(part.path, part.losses) for part in parts])
     return recording
 
 
@@ -111,7 +111,7 @@ def _kind(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Sch
     return None
 
 
-def _chosen(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
+def _scene_topic(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
     names = sorted(scenes)
     if topic is not None:
         if topic not in scenes:
@@ -185,14 +185,14 @@ def _recording(
     path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, Times]], findings: list[QualityFinding]
 ) -> Recording:
     rows = join_batches(scene.rows)
-    named = rows.ids != b""
-    lost: list[LostTime] = []
-    if not named.all():
-        n = int((~named).sum())
+    has_id = rows.ids != b""
+    lost_times: list[LostTime] = []
+    if not has_id.all():
+        n = int((~has_id).sum())
         message = f"{topic}: entities without an id: {n}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, n))
-        lost = _lost(rows.take(~named), topic)
-        rows = rows.take(named)
+        lost_times = _lost_times(rows.take(~has_id), topic)
+        rows = rows.take(has_id)
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
@@ -206,13 +206,13 @@ def _recording(
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
-    recording = Recording("foxglove-mcap", states, findings=findings, lost=lost)
+    recording = Recording("foxglove-mcap", states, findings=findings, lost_times=lost_times)
     recording.notes = [f"positions are in the frame {fixed!r}"]
     recording.frame_times, recording.utc_start_ns = message_times([rows])
     return recording
 
 
-def _lost(nameless: RecordedPoses, topic: str) -> list[LostTime]:
+def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
     """Return when entities without an id were there: from their message on for their lifetime, if they have one."""
     times = zip(nameless.log_ns.tolist(), np.asarray(nameless.lifetime_ns).tolist(), strict=True)
     spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}
@@ -238,7 +238,7 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
 
 def _frames(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> TransformTree:
     """Collect transforms. One that is always the same holds always: a scene says it once, when it begins."""
-    found: dict[tuple[str, str], list[tuple[Times, Any, Any]]] = {}
+    parts_by_frames: dict[tuple[str, str], list[tuple[Times, Any, Any]]] = {}
     for rows, log_ns in transforms:
         t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns
         place, turn = vectors(rows, "translation"), vectors(rows, "rotation", "xyzw")
@@ -247,9 +247,9 @@ def _frames(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> Tra
         for i, j in sorted(set(zip(inner.tolist(), parent.tolist(), strict=True))):
             here = (inner == i) & (parent == j)
             names = clean_frame_name(children[i]), clean_frame_name(parents[j])
-            found.setdefault(names, []).append((t_ns[here], place[here], turn[here]))
+            parts_by_frames.setdefault(names, []).append((t_ns[here], place[here], turn[here]))
     frames = TransformTree()
-    for (name, parent_name), parts in found.items():
+    for (name, parent_name), parts in parts_by_frames.items():
         t_ns, place, turn = (np.concatenate([part[k] for part in parts]) for k in range(3))
         same = bool((place == place[0]).all() and (turn == turn[0]).all())
         frames.add(name, parent_name, t_ns, Poses(place, unit_quaternions(turn)), static=same)

@@ -65,13 +65,13 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     In maps of Autoware these are empty or of another frame, and the library tells by them which bound of a lane is the
     left one and which way it runs. A node without local coordinates has no place.
     """
-    lost = 0
+    n_lost = 0
     first: tuple[float, float] | None = None
     for node in root.iterfind("node"):
         tags = {tag.get("k"): tag for tag in node.iterfind("tag")}
         x, y = (safe_xml.number(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
         if not (math.isfinite(x) and math.isfinite(y)):
-            lost += 1
+            n_lost += 1
             x = y = math.nan
         elif first is None:
             first = x, y
@@ -80,9 +80,9 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
         east, north = (0.0, 0.0) if first is None or math.isnan(x) else (x - first[0], y - first[1])
         node.set("lon", repr(math.degrees(east / _EARTH_M)))
         node.set("lat", repr(math.degrees(north / _EARTH_M)))
-    if lost:
+    if n_lost:
         message = "nodes have no local_x and local_y, as the others have: what they belong to is left out"
-        quality.add("unplaced_node", "warning", None, message, lost)
+        quality.add("unplaced_node", "warning", None, message, n_lost)
 
 
 def xy(bound: Any) -> Floats:

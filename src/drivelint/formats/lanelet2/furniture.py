@@ -114,28 +114,28 @@ def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, 
     Those whose regulatory elements refer to it, if it lies across any of them, else all whose centre line it crosses;
     between two lanes it stands at the end of the first.
     """
-    driven = [lane for lane in lanes if lane.drivable]
-    tree = shapely.STRtree([shapely.LineString(lane.line.centre) for lane in driven])
+    drivable_lanes = [lane for lane in lanes if lane.drivable]
+    tree = shapely.STRtree([shapely.LineString(lane.line.centre) for lane in drivable_lanes])
     referring = _referring(layers)
     rows = []
     for line in sorted(layers.lineStringLayer, key=lambda x: x.id):
         points = xy(line) + offset
         if attribute(line, "type") != "stop_line" or len(line) < 2 or not np.isfinite(points).all():
             continue
-        near = [driven[i] for i in sorted(tree.query(shapely.LineString(points).buffer(STOP_LINE_GAP_M)))]
+        near = [drivable_lanes[i] for i in sorted(tree.query(shapely.LineString(points).buffer(STOP_LINE_GAP_M)))]
         own = [
             (lane, s)
             for lane in near
             if lane.lanelet_id in referring[line.id] and (s := _crossed(lane, points)) is not None
         ]
-        found = own or [(lane, s) for lane in near if (s := _crossed(lane, points, near_m=0.0)) is not None]
-        followers = {name for lane, _ in found for name in lane.successors}
+        lane_stations = own or [(lane, s) for lane in near if (s := _crossed(lane, points, near_m=0.0)) is not None]
+        followers = {name for lane, _ in lane_stations for name in lane.successors}
         rows += [
             stop_line_row(str(line.id), lane.lanelet_id, s)
-            for lane, s in found
+            for lane, s in lane_stations
             if s > 0.0 or lane.lanelet_id not in followers
         ]
-        if not found:
+        if not lane_stations:
             message = f"stop line {line.id} lies across no lane that vehicles drive on"
             quality.add("object_without_lane", "info", None, message)
     return sorted(rows, key=lambda r: (r["stop_line_id"], r["lanelet_id"]))

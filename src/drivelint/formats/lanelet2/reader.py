@@ -59,18 +59,18 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
     rules = TrafficRules()
     access = {x.id: found for x in layers.laneletLayer if (found := rules.access(x)) is not None}
-    mine = sorted((x for x in layers.laneletLayer if x.id in access), key=lambda x: x.id)
-    for x in [x for x in mine if not (len(x.leftBound) and len(x.rightBound))]:
-        mine.remove(x)
+    lanelets = sorted((x for x in layers.laneletLayer if x.id in access), key=lambda x: x.id)
+    for x in [x for x in lanelets if not (len(x.leftBound) and len(x.rightBound))]:
+        lanelets.remove(x)
         quality.add("invalid_lane", "error", str(x.id), f"lanelet {x.id} is left out: a bound has no points")
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
     lefts: dict[Bound, list[Any]] = defaultdict(list)
     rights: dict[Bound, list[Any]] = defaultdict(list)
-    for x in mine:
+    for x in lanelets:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
         lefts[_bound(x.leftBound)].append(x)
         rights[_bound(x.rightBound)].append(x)
-    for x in mine:
+    for x in lanelets:
         lane_type, drivable, bidirectional = access[x.id]
         limit_mps = rules.limit_mps(x)
         readable = limit_mps is None or math.isfinite(limit_mps)
@@ -92,11 +92,11 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         yield lane
 
 
-def _beside(own: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
+def _beside(lanelet: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
     """Return the neighbour across a bound: `same` have it as their other bound, `against` as the same one, turned round."""
     for lanes, other_way in ((same, False), (against, True)):
         for x in lanes:
-            if x.id != own.id:
+            if x.id != lanelet.id:
                 return str(x.id), other_way
     return None, None
 

@@ -28,7 +28,7 @@ _DRIVERS: Final = {
     "vehicle:taxi": "taxi",
 }  # fmt: skip
 """Motor vehicles, and the type of a lane that is for none of those before them."""
-_OTHERS: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
+_LANE_TYPE_BY_PARTICIPANT: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
 _SPEED: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
 _UNITS_MPS: Final = {
     "": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "kmph": 1 / 3.6, "mph": 0.44704, "m/s": 1.0, "mps": 1.0,
@@ -53,7 +53,9 @@ class TrafficRules:
 
         rules = lanelet2.traffic_rules
         self._vehicle = rules.create(rules.Locations.Germany, rules.Participants.Vehicle)
-        self._of = {word: rules.create(rules.Locations.Germany, word) for word in (*_DRIVERS, *_OTHERS)}
+        self._of = {
+            word: rules.create(rules.Locations.Germany, word) for word in (*_DRIVERS, *_LANE_TYPE_BY_PARTICIPANT)
+        }
 
     def access(self, lanelet: Any) -> Access | None:
         """Return who may use a lanelet; None for one that is no lane of a road, such as a crosswalk."""
@@ -67,7 +69,9 @@ class TrafficRules:
                 return Access(of_subtype if of_subtype == "exit" else lane_type, True, both_ways)
         if of_subtype is None:
             return None
-        may_pass = [lane_type for word, lane_type in _OTHERS.items() if self._of[word].canPass(lanelet)]
+        may_pass = [
+            lane_type for word, lane_type in _LANE_TYPE_BY_PARTICIPANT.items() if self._of[word].canPass(lanelet)
+        ]
         has_participants = any(key.startswith("participant:") for key in lanelet.attributes.keys())  # noqa: SIM118 - the library's map
         if of_subtype in {"driving", "bus", "exit"} or (has_participants and may_pass):
             return Access(may_pass[0] if may_pass else "restricted", False, False)

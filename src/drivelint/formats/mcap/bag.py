@@ -46,7 +46,7 @@ def mcap_files(path: Path) -> list[Path]:
         raise TraceError(
             f"{path}: a bag in {storage}: convert it to MCAP (ros2 bag convert, with storage_id: mcap), and give that"
         )
-    found = []
+    files = []
     for name in names:
         # older recorders list a file by its name only, or below the folder's own name
         file = next(
@@ -58,12 +58,12 @@ def mcap_files(path: Path) -> list[Path]:
             raise TraceError(
                 f"{path}: {name}, a part of this bag, is empty (0 bytes): copy it again, or reindex the bag"
             )
-        found.append(file)
-    if unlisted := sorted(each.name for each in path.glob("*.mcap") if each not in found):
+        files.append(file)
+    if unlisted := sorted(each.name for each in path.glob("*.mcap") if each not in files):
         raise TraceError(
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or take the file out of its folder"
         )
-    return found
+    return files
 
 
 def _information(path: Path) -> Any:
@@ -88,15 +88,15 @@ def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[
     """
     if not path.is_dir() or any(part.losses.has_lost_bytes for part in parts):
         return []
-    found: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for part in parts:
         for number, n in part.counts.of_channels.items():
-            found[part.channels[number].topic] += n
+            counts[part.channels[number].topic] += n
     findings = []
     for topic, kind, counted in _counted_topics(_information(path)):
-        if counted > found[topic] and is_read(message_kind(kind)):
-            n = counted - found[topic]
-            message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {found[topic]}: {n} are lost"
+        if counted > counts[topic] and is_read(message_kind(kind)):
+            n = counted - counts[topic]
+            message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {counts[topic]}: {n} are lost"
             findings.append(QualityFinding("index_mismatch", "error", message, n))
     return findings
 

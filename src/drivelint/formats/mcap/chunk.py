@@ -23,8 +23,8 @@ _CHUNK = struct.Struct("<QQQII")
 class ChunkError(Exception):
     """A chunk is damaged. `framed`: the length of its record can be believed all the same."""
 
-    def __init__(self, what: str, *, framed: bool = True) -> None:
-        super().__init__(what)
+    def __init__(self, message: str, *, framed: bool = True) -> None:
+        super().__init__(message)
         self.framed = framed
 
 

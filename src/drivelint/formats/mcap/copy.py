@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import ChangedLogError
 from drivelint.formats.mcap.bag import mcap_files
 from drivelint.formats.mcap.bag_folder import is_bag
-from drivelint.formats.mcap.original import Original, opened
+from drivelint.formats.mcap.original import Original, open_log
 from drivelint.formats.mcap.part_copy import PartCopy
 from drivelint.formats.mcap.resume import MAGIC
 
@@ -49,5 +49,5 @@ def is_mcap(path: Path) -> bool:
     """Whether a trace is an MCAP file, by its first bytes, or a bag of such files."""
     if path.is_dir():
         return is_bag(path)
-    with opened(path) as file:
+    with open_log(path) as file:
         return file.read(len(MAGIC)) == MAGIC

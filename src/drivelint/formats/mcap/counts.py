@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 MESSAGE_INDEX_HEAD: Final = struct.Struct("<HI")
 """Channel, and bytes of the entries behind it."""
 _ENTRY: Final = struct.Struct("<QQ")
-_NAMED: Final = 3
+_MOST_CONTRADICTIONS: Final = 3
 
 
 @dataclass
@@ -24,22 +24,24 @@ class MessageCounts:
 
     of_channels: Counter[int] = field(default_factory=Counter)
     unused: set[int] = field(default_factory=set)
-    _open: dict[int, list[int]] | None = None  # channel -> log times of its messages in the chunk that is being read
-    _closed: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
+    _open_chunk: dict[int, list[int]] | None = (
+        None  # channel -> log times of its messages in the chunk that is being read
+    )
+    _last_chunk: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
 
     def add(self, channel: int, log_ns: int) -> None:
         """Count a message."""
         self.of_channels[channel] += 1
-        if self._open is not None:
-            self._open.setdefault(channel, []).append(log_ns)
+        if self._open_chunk is not None:
+            self._open_chunk.setdefault(channel, []).append(log_ns)
 
     def begin_chunk(self) -> None:
         """Begin with the messages of a chunk."""
-        self._open, self._closed = {}, None
+        self._open_chunk, self._last_chunk = {}, None
 
     def end_chunk(self) -> None:
         """End with them: all were read."""
-        self._open, self._closed = None, self._open
+        self._open_chunk, self._last_chunk = None, self._open_chunk
 
     def missing_from_chunk(self, index: memoryview) -> list[int]:
         """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
@@ -47,7 +49,7 @@ class MessageCounts:
         They count as found: whoever asks says that they are lost.
         """
         channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
-        found = None if self._closed is None else self._closed.get(channel, [])
+        found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
         if found is None or length <= _ENTRY.size * len(found) or channel in self.unused:
             return []
         named = Counter(log_ns for log_ns, _ in _ENTRY.iter_unpack(index[MESSAGE_INDEX_HEAD.size :]))
@@ -60,16 +62,16 @@ class MessageCounts:
 
         An index with a wrong CRC (`is_damaged`) is heard if it agrees with itself: what changed it may have taken messages.
         """
-        counted, total = index.channel_message_counts, self.of_channels.total()
-        agrees = not counted or sum(counted.values()) == index.message_count
+        index_counts, total = index.channel_message_counts, self.of_channels.total()
+        agrees = not index_counts or sum(index_counts.values()) == index.message_count
         if is_damaged and not agrees:
             return None
         names = {number: f"topic {channel.topic!r}" for number, channel in channels.items()}
-        told = [
+        contradictions = [
             f"{n} messages of {names.get(number, f'channel {number}')}, the file has {self.of_channels[number]}"
-            for number, n in sorted(counted.items())
+            for number, n in sorted(index_counts.items())
             if number not in self.unused and n != self.of_channels[number]
         ]
-        if not told and not (counted and agrees) and index.message_count != total:
-            told = [f"{index.message_count} messages, the file has {total}"]
-        return "; ".join(told[:_NAMED]) or None
+        if not contradictions and not (index_counts and agrees) and index.message_count != total:
+            contradictions = [f"{index.message_count} messages, the file has {total}"]
+        return "; ".join(contradictions[:_MOST_CONTRADICTIONS]) or None

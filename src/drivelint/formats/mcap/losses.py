@@ -24,7 +24,7 @@ class LostBytes:
 
     start: int
     end: int
-    what: str
+    cause: str
     since_ns: int | None
     until_ns: int | None = None
     timed: bool = False
@@ -34,7 +34,7 @@ class LostBytes:
 class Losses:
     """The lost bytes of a file in its order, each between the messages before and after it. False if there are none."""
 
-    found: list[LostBytes] = field(default_factory=list)
+    lost_bytes: list[LostBytes] = field(default_factory=list)
     first_ns: int | None = None
     last_ns: int | None = None
     _latest_ns: int = -1
@@ -42,86 +42,86 @@ class Losses:
     _open: int = 0
 
     def __bool__(self) -> bool:
-        return bool(self.found)
+        return bool(self.lost_bytes)
 
     @property
     def first(self) -> LostBytes:
         """The first lost bytes; there must be some."""
-        return self.found[0]
+        return self.lost_bytes[0]
 
     @property
     def last(self) -> LostBytes:
         """The lost bytes that were found last; there must be some."""
-        return self.found[-1]
+        return self.lost_bytes[-1]
 
     def message(self, log_ns: int) -> None:
         """Take note of a message that was read."""
         if self.first_ns is None:
             self.first_ns = log_ns
-        for k in range(self._open, len(self.found)):
-            if not self.found[k].timed:
-                self.found[k] = replace(self.found[k], until_ns=log_ns)
-        self._open = len(self.found)
+        for k in range(self._open, len(self.lost_bytes)):
+            if not self.lost_bytes[k].timed:
+                self.lost_bytes[k] = replace(self.lost_bytes[k], until_ns=log_ns)
+        self._open = len(self.lost_bytes)
         self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_NS
         self._latest_ns = max(self._latest_ns, log_ns)
         self.last_ns = log_ns
 
-    def add(self, start: int, end: int, what: str, since: int | None = None, until: int | None = None) -> None:
+    def add(self, start: int, end: int, cause: str, since: int | None = None, until: int | None = None) -> None:
         """Take note of lost bytes behind the messages read so far, or of these first and last log times."""
         if since is None or until is None:
-            self.found.append(LostBytes(start, end, what, self.last_ns))
+            self.lost_bytes.append(LostBytes(start, end, cause, self.last_ns))
         else:
-            self.found.append(LostBytes(start, end, what, since - 1, until + 1, timed=True))
-            self._open = len(self.found)
+            self.lost_bytes.append(LostBytes(start, end, cause, since - 1, until + 1, timed=True))
+            self._open = len(self.lost_bytes)
 
-    def add_message(self, offset: int, what: str, log_ns: int) -> None:
+    def add_message(self, offset: int, cause: str, log_ns: int) -> None:
         """Take note of a message that cannot be decoded."""
-        self.found.append(LostBytes(offset, offset, what, log_ns - 1, log_ns + 1, timed=True))
+        self.lost_bytes.append(LostBytes(offset, offset, cause, log_ns - 1, log_ns + 1, timed=True))
 
     @property
     def has_lost_bytes(self) -> bool:
         """Whether bytes are lost, not only single messages that cannot be decoded."""
-        return any(each.end > each.start for each in self.found)
+        return any(each.end > each.start for each in self.lost_bytes)
 
     def covers(self, offset: int) -> bool:
         """Whether this byte is lost."""
-        return any(each.start <= offset < each.end for each in self.found)
+        return any(each.start <= offset < each.end for each in self.lost_bytes)
 
     def narrow(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
         """Bound the times of lost bytes by those of the chunks in them, where the index knows these (offset: length, times).
 
         A loss with nothing but chunks and their message indexes in it cannot be of other times.
         """
-        for k, each in enumerate(self.found):
+        for k, each in enumerate(self.lost_bytes):
             inside = [times for offset, (_, *times) in chunks.items() if each.start <= offset < each.end]
             if inside and not each.timed:
                 since, until = min(a for a, _ in inside) - 1, max(b for _, b in inside) + 1
-                self.found[k] = replace(each, since_ns=since, until_ns=until, timed=True)
+                self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
 
     def times(self, path: Path) -> list[LostTime]:
         """Return what was lost as stretches of log time, each with the sentence that tells it."""
-        found = []
-        for each in self.found:
-            since, until = each.since_ns, each.until_ns
-            if self._backward and not each.timed:
+        lost_times = []
+        for loss in self.lost_bytes:
+            since, until = loss.since_ns, loss.until_ns
+            if self._backward and not loss.timed:
                 since = until = None
             elif since is not None and until is not None and until < since:
                 since, until = until, since
-            what = each.what.removeprefix(f"{path}: ")
+            what = loss.cause.removeprefix(f"{path}: ")
             what = what.partition(": the log is damaged")[0].partition(": record or copy")[0]
-            if each.end > each.start:
-                what = f"{each.end - each.start} bytes from byte {each.start} on cannot be read ({what})"
-            found.append(LostTime(since, until, f"{path.name}: {what}"))
-        return found
+            if loss.end > loss.start:
+                what = f"{loss.end - loss.start} bytes from byte {loss.start} on cannot be read ({what})"
+            lost_times.append(LostTime(since, until, f"{path.name}: {what}"))
+        return lost_times
 
 
 def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
     """Return what was lost of a log in several files, in their order: what its neighbours have bounds a file's beginning and end."""
-    found = []
+    lost_times = []
     for k, (path, losses) in enumerate(parts):
         before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)
         after = min((each.first_ns for _, each in parts[k + 1 :] if each.first_ns is not None), default=None)
         for lost in losses.times(path):
             since = before if lost.since_ns is None else lost.since_ns
-            found.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
-    return found
+            lost_times.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
+    return lost_times

@@ -58,16 +58,16 @@ def decode_others(
 
 def _malformed(packets: list[Packet], decode: Callable[[list[Packet]], object]) -> list[tuple[int, MessageError]]:
     """Return the places of the messages that cannot be decoded, and their errors, by halves."""
-    found: list[tuple[int, MessageError]] = []
+    malformed_messages: list[tuple[int, MessageError]] = []
     waiting = [(0, len(packets))]
-    while waiting and len(found) <= max(1, MOST_MALFORMED_SHARE * len(packets)):
+    while waiting and len(malformed_messages) <= max(1, MOST_MALFORMED_SHARE * len(packets)):
         begin, end = waiting.pop()
         try:
             decode(packets[begin:end])
         except MessageError as error:
             if end - begin == 1:
-                found.append((begin, error))
+                malformed_messages.append((begin, error))
             else:
                 middle = (begin + end) // 2
                 waiting += [(middle, end), (begin, middle)]
-    return found
+    return malformed_messages

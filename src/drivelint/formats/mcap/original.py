@@ -56,7 +56,7 @@ class Original:
     def __init__(self, path: Path, sha256: str | None = None) -> None:
         self.path = path
         self.sha256 = sha256
-        self._file = opened(path)  # closed by leaving the `with` that this object is made for
+        self._file = open_log(path)  # closed by leaving the `with` that this object is made for
         # mapped for the record heads alone: what is read through a map counts as memory of this process
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.schemas: dict[int, Schema] = {}
@@ -106,9 +106,9 @@ class Original:
             raise self.damage_error(start)
         return content
 
-    def stream(self, record: Record, most: int | None = None) -> ReadDataStream:
-        """Return the body of a record, to be read field by field; `most`: so many bytes, for the fields before its data."""
-        end = record.end if most is None else min(record.end, record.body + most)
+    def stream(self, record: Record, most_bytes: int | None = None) -> ReadDataStream:
+        """Return the body of a record, to be read field by field; `most_bytes`: so many bytes, for the fields before its data."""
+        end = record.end if most_bytes is None else min(record.end, record.body + most_bytes)
         return ReadDataStream(io.BytesIO(self.read(record.body, end)))
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
@@ -139,7 +139,7 @@ class Original:
 
     def _survey(self) -> bool:
         """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
-        named: set[int] = set()
+        indexed_channels: set[int] = set()
         chunks: list[Record] = []
         data: list[Record] = []
         summary: list[Record] = []
@@ -154,7 +154,7 @@ class Original:
                 messages += 1
             elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
                 channel_id, n = self.message_index_header(record)
-                named.add(channel_id)
+                indexed_channels.add(channel_id)
                 messages += n
             else:
                 part.append(record)
@@ -163,7 +163,7 @@ class Original:
         with suppress(TraceError):  # the data are enough
             schemas, channels, counts = self._announced(summary)
             self.schemas, self.channels = schemas | self.schemas, channels | self.channels
-        if not chunks or self._agrees(counts, messages, named):
+        if not chunks or self._agrees(counts, messages, indexed_channels):
             return True
         self._look_inside(chunks)
         return False
@@ -200,14 +200,14 @@ class Original:
                         channel = Channel.read(ReadDataStream(io.BytesIO(body)))
                         self.channels[channel.id] = channel
 
-    def _agrees(self, counts: Statistics | None, messages: int, named: set[int]) -> bool:
+    def _agrees(self, counts: Statistics | None, messages: int, indexed_channels: set[int]) -> bool:
         """Whether the summary names every channel and schema, and the message indexes know of every message."""
         return (
             counts is not None
             and counts.message_count == messages
             and counts.channel_count == len(self.channels)
             and counts.schema_count == len(self.schemas)
-            and named <= self.channels.keys()
+            and indexed_channels <= self.channels.keys()
             and all(c.schema_id == 0 or c.schema_id in self.schemas for c in self.channels.values())
         )
 
@@ -219,7 +219,7 @@ class Original:
         return digest.hexdigest()
 
 
-def opened(path: Path) -> BinaryIO:
+def open_log(path: Path) -> BinaryIO:
     """Open a log that was read before. Errors: `TraceError`."""
     try:
         return path.open("rb")

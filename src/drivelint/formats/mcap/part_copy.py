@@ -64,11 +64,11 @@ class Numbers:
         return all(old == new for numbers in (self.schemas, self.channels) for old, new in numbers.items())
 
 
-def _number(announced: T, taken: dict[int, T], what: str, *, least: int) -> int:
-    same = [number for number, known in taken.items() if replace(known, id=0) == replace(announced, id=0)]
-    if announced.id not in taken or announced.id in same:
+def _number(announced: T, records_by_id: dict[int, T], kind: str, *, least: int) -> int:
+    same = [number for number, known in records_by_id.items() if replace(known, id=0) == replace(announced, id=0)]
+    if announced.id not in records_by_id or announced.id in same:
         return announced.id
-    return min(same) if same else free_id(taken, least, what)
+    return min(same) if same else free_id(records_by_id, least, kind)
 
 
 class PartCopy:

@@ -42,7 +42,7 @@ _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Records whose length is always the same."""
-_KNOWN = frozenset(Opcode)
+_OPCODES = frozenset(Opcode)
 _PRIVATE = 0x80
 """Opcodes from here on belong to applications: what they hold is no part of the log."""
 _MAGIC = re.compile(re.escape(MAGIC))
@@ -67,10 +67,10 @@ class Packet:
     data: bytes
     offset: int
 
-    def error(self, path: Path, what: str) -> MessageError:
+    def error(self, path: Path, problem: str) -> MessageError:
         """Return the error for this message: where it is, and what is wrong with it."""
         where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
-        return MessageError(f"{path}: {where}: {what}: record or copy the log again")
+        return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
 
 @dataclass
@@ -112,9 +112,9 @@ class Container:
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         yield from self._file(memoryview(data))
 
-    def _damaged(self, offset: int, what: str, resume: int | None = None) -> DamageError:
+    def _damaged(self, offset: int, problem: str, resume: int | None = None) -> DamageError:
         error = DamageError(
-            f"{self.path}: {what} at byte {offset}: the log is damaged or cut off: copy it again, or repair it"
+            f"{self.path}: {problem} at byte {offset}: the log is damaged or cut off: copy it again, or repair it"
         )
         error.resume = resume
         return error
@@ -141,7 +141,7 @@ class Container:
                 self.losses.add(at, resume, str(error))
                 at = resume
         if self.losses and not self._messages:
-            raise DamageError(self.losses.first.what)
+            raise DamageError(self.losses.first.cause)
         if footer is not None:
             self._check_footer(view, *footer)
         if index is None:
@@ -161,7 +161,7 @@ class Container:
         self._refuse_second_file(view, at)
         if length > len(view) - start:
             what = f"a {_name(opcode)} record of {length} bytes, of which {len(view) - start} are there,"
-            if length >= MOST_RECORD_BYTES and opcode in _KNOWN:
+            if length >= MOST_RECORD_BYTES and opcode in _OPCODES:
                 raise TraceError(str(self._damaged(at, what)))
             raise self._damaged(at, what)
         end = start + length
@@ -176,7 +176,7 @@ class Container:
                 raise self._damaged(end, "no closing magic bytes after the footer")
         if wrong:
             raise self._damaged(at, f"a {_name(opcode)} record that is none")
-        if self._in_data and opcode not in _KNOWN and self._may_be_lost_data(view, opcode, end):
+        if self._in_data and opcode not in _OPCODES and self._may_be_lost_data(view, opcode, end):
             raise self._damaged(at, f"a {_name(opcode)} record", end)
         return opcode, start, end
 
@@ -226,9 +226,9 @@ class Container:
             raise TraceError(str(error))
         self.findings.append(QualityFinding("data_changed", "error", str(error)))
 
-    def _parsed(self, read: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
+    def _parsed(self, parse: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
         try:
-            return read(ReadDataStream(io.BytesIO(body)))
+            return parse(ReadDataStream(io.BytesIO(body)))
         except (struct.error, McapError, ValueError) as error:
             raise self._damaged(at, f"a record that cannot be read ({error})") from error
 

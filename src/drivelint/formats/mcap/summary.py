@@ -73,25 +73,25 @@ def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> boo
 
 
 def _records(view: memoryview, at: int, end: int) -> Summary:
-    found = Summary()
+    summary = Summary()
     while at + _RECORD.size <= end:
         opcode, length = _RECORD.unpack_from(view, at)
         body = view[at + _RECORD.size : min(at + _RECORD.size + length, end)]
         if opcode == Opcode.SCHEMA:
             schema = Schema.read(_stream(body))
-            found.schemas[schema.id] = schema
+            summary.schemas[schema.id] = schema
         elif opcode == Opcode.CHANNEL:
             channel = Channel.read(_stream(body))
-            found.channels[channel.id] = channel
+            summary.channels[channel.id] = channel
         elif opcode == Opcode.CHUNK_INDEX:
             chunk = ChunkIndex.read(_stream(body))
             times = chunk.message_start_time, chunk.message_end_time
-            found.chunks[chunk.chunk_start_offset] = (chunk.chunk_length, *times)
-            found.message_indexes[chunk.chunk_start_offset] = chunk.message_index_offsets
+            summary.chunks[chunk.chunk_start_offset] = (chunk.chunk_length, *times)
+            summary.message_indexes[chunk.chunk_start_offset] = chunk.message_index_offsets
         elif opcode == Opcode.METADATA_INDEX:
-            found.metadata.append(MetadataIndex.read(_stream(body)).offset)
+            summary.metadata.append(MetadataIndex.read(_stream(body)).offset)
         at += _RECORD.size + length
-    return found
+    return summary
 
 
 def _stream(body: memoryview) -> ReadDataStream:

@@ -19,31 +19,31 @@ if TYPE_CHECKING:
 class UnreadTopics:
     """Topics with messages that are passed over: topic -> kind, encoding and number of its messages."""
 
-    found: dict[str, tuple[str, str, int]] = field(default_factory=dict)
+    topics: dict[str, tuple[str, str, int]] = field(default_factory=dict)
 
     def add(self, channel: Channel, kind: str) -> None:
         """Count a message of a kind that would be read."""
-        n = self.found.get(channel.topic, ("", "", 0))[2]
-        self.found[channel.topic] = kind, channel.message_encoding, n + 1
+        n = self.topics.get(channel.topic, ("", "", 0))[2]
+        self.topics[channel.topic] = kind, channel.message_encoding, n + 1
 
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
         return [
-            QualityFinding("unread_topic", "error", f"{_told(topic, *what)}: what it says is unknown", what[2])
-            for topic, what in sorted(self.found.items())
+            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: what it says is unknown", what[2])
+            for topic, what in sorted(self.topics.items())
         ]
 
-    def refuse(self, path: Path, kinds: Collection[str], read: Collection[str]) -> None:
+    def refuse(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
         """Refuse a log with a topic of these kinds, of road users: who is on it is not known.
 
-        `read`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
+        `read_topics`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
         """
-        for topic, what in sorted(self.found.items()):
+        for topic, what in sorted(self.topics.items()):
             if what[0] in kinds:
-                choice = f", or judge without it: --topic {min(read)}" if read else ""
-                raise TraceError(f"{path}: {_told(topic, *what)}: who is on it is unknown: convert it{choice}")
+                choice = f", or judge without it: --topic {min(read_topics)}" if read_topics else ""
+                raise TraceError(f"{path}: {_topic_text(topic, *what)}: who is on it is unknown: convert it{choice}")
 
 
-def _told(topic: str, kind: str, encoding: str, n: int) -> str:
+def _topic_text(topic: str, kind: str, encoding: str, n: int) -> str:
     messages = "1 message" if n == 1 else f"{n} messages"
     return f"topic {topic!r} ({messages} of {kind}) is in {encoding or 'no encoding'!r}, which is not read"

@@ -191,12 +191,12 @@ class Sink:
         )
 
 
-def free_id(taken: Mapping[int, object], least: int, what: str) -> int:
+def free_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
     """Return the id after the highest one, or the lowest that nobody has."""
-    after = max(taken, default=least - 1) + 1
+    after = max(used_ids, default=least - 1) + 1
     if after < ID_LIMIT:
         return max(after, least)
     for number in range(least, ID_LIMIT):
-        if number not in taken:
+        if number not in used_ids:
             return number
-    raise DriveLintError(f"all {ID_LIMIT} {what} ids of the log are taken: it cannot be annotated, use --no-annotate")
+    raise DriveLintError(f"all {ID_LIMIT} {kind} ids of the log are taken: it cannot be annotated, use --no-annotate")

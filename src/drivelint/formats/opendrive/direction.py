@@ -61,7 +61,7 @@ class DrivingSideStatement(NamedTuple):
 class DrivingSideStatements:
     """All statements about the side that is driven on, the most trusted first."""
 
-    said: tuple[DrivingSideStatement, ...]
+    statements: tuple[DrivingSideStatement, ...]
     rules: Counter[str]
     travel: str | None
 
@@ -70,7 +70,7 @@ class DrivingSideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
         junctions, travel = _junction_votes(net), _travel_votes(net)
-        found = [
+        candidates = [
             ("option", request.side, "--handedness says", False),
             ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
             ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
@@ -78,13 +78,13 @@ class DrivingSideStatements:
             ("traces", request.voted_handedness, "the traces fit", True),
         ]
         said = tuple(
-            DrivingSideStatement(source, side, text, of) for source, side, text, of in found if side is not None
+            DrivingSideStatement(source, side, text, of) for source, side, text, of in candidates if side is not None
         )
         return cls(said, roads, _winner(travel))
 
     def two_way_direction(self) -> Direction:
         """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
-        return self._direction("rht", self.said[0] if self.said else None)
+        return self._direction("rht", self.statements[0] if self.statements else None)
 
     def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:
         """Return the direction by the most trusted statement, and report the statements that disagree.
@@ -97,52 +97,57 @@ class DrivingSideStatements:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
             message = f"roads of both rules in one map ({counts}): one is taken for all"
             quality.add("handedness_mixed", "warning", None, message)
-        found = (
+        direction = (
             self._without_opposing(quality)
             if side_by_lanes is None
             else self._with_side_by_lanes(side_by_lanes, quality)
         )
-        if found.source == "default":
+        if direction.source == "default":
             message = (
                 "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
             )
-            if side_by_lanes is None and found.forward_source != "default":
+            if side_by_lanes is None and direction.forward_source != "default":
                 message = (
-                    f"which way the lanes run is known by {found.forward_source}, but none has one of the other direction beside it: "
+                    f"which way the lanes run is known by {direction.forward_source}, but none has one of the other direction beside it: "
                     "that right-hand traffic drives on them is a guess; give --handedness"
                 )
             quality.add("handedness_default", "warning", None, message)
-        return found
+        return direction
 
     def _with_side_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> Direction:
-        said = list(self.said)
+        statements = list(self.statements)
         if side_by_lanes == "lht" and (
-            rule := next((w for w in said if w.source == "attribute" and not w.of_lanes), None)
+            rule := next((w for w in statements if w.source == "attribute" and not w.of_lanes), None)
         ):
-            said.remove(rule)  # by it, the lanes run so that the other side is driven on
+            statements.remove(rule)  # by it, the lanes run so that the other side is driven on
             message = (
                 f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
                 "not counted; give --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
-        said = [
-            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side)) for w in said
+        statements = [
+            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side))
+            for w in statements
         ]
-        _disagreements(said, quality, "every direction")
-        return self._direction(side_by_lanes, said[0] if said else None)
+        _disagreements(statements, quality, "every direction")
+        return self._direction(side_by_lanes, statements[0] if statements else None)
 
     def _without_opposing(self, quality: MapQuality) -> Direction:
-        side = next((w for w in self.said if not w.of_lanes), None)
-        option = next((w for w in self.said if w.source == "option"), None)
-        rule = next((w for w in self.said if w.source == "attribute" and not w.of_lanes), None)
+        side = next((w for w in self.statements if not w.of_lanes), None)
+        option = next((w for w in self.statements if w.source == "option"), None)
+        rule = next((w for w in self.statements if w.source == "attribute" and not w.of_lanes), None)
         # the rule defines the direction, unless the user says that it is wrong
         ways = [w for w in (rule,) if w and (option is None or option.side == w.side)]
-        ways += [w for w in self.said if w.of_lanes]
+        ways += [w for w in self.statements if w.of_lanes]
         way = ways[0] if ways else side
         if side is None:  # then no option says anything of the lanes' direction
-            _disagreements(self.said, quality, "every direction", "give a map whose roads have the rule attribute")
+            _disagreements(
+                self.statements, quality, "every direction", "give a map whose roads have the rule attribute"
+            )
         else:
-            _disagreements(self.said, quality, "the side for overtaking" if way and way.of_lanes else "every direction")
+            _disagreements(
+                self.statements, quality, "the side for overtaking" if way and way.of_lanes else "every direction"
+            )
         forward = way is None or way.side == "rht"
         return Direction(
             side.side if side else "rht",
@@ -152,22 +157,22 @@ class DrivingSideStatements:
             self.travel == ("rht" if forward else "lht"),
         )
 
-    def _direction(self, side_by_lanes: str, said: DrivingSideStatement | None) -> Direction:
-        side, source = (said.side, said.source) if said else (side_by_lanes, "default")
+    def _direction(self, side_by_lanes: str, statement: DrivingSideStatement | None) -> Direction:
+        side, source = (statement.side, statement.source) if statement else (side_by_lanes, "default")
         forward = side == side_by_lanes
         return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
 def _disagreements(
-    said: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
+    statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
     """Report statements that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do if no given side helps."""
-    if len({w.side for w in said}) > 1:
-        first, second = said[:2]
+    if len({w.side for w in statements}) > 1:
+        first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing
-        found = advice or correction_hint(first.side, first.source if second.side != first.side else "")
-        opinions = ", ".join(f"{w.text} {w.side}" for w in said)
-        message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {found}."
+        remedy = advice or correction_hint(first.side, first.source if second.side != first.side else "")
+        opinions = ", ".join(f"{w.text} {w.side}" for w in statements)
+        message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {remedy}."
         quality.add("handedness_disagrees", "warning", None, message)
 
 

@@ -100,12 +100,12 @@ def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], q
 
 def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality) -> tuple[Rows, Rows]:
     """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
-    found: dict[str, Rows] = {"stop_line": [], "crossing": []}
-    flat = [(p, p.outline) for p in objects if p.kind in found and p.outline is not None and len(p.outline) > 1]
+    rows_by_kind: dict[str, Rows] = {"stop_line": [], "crossing": []}
+    flat = [(p, p.outline) for p in objects if p.kind in rows_by_kind and p.outline is not None and len(p.outline) > 1]
     if not flat:
         return [], []
     tree = shapely.STRtree([_valid(np.vstack([lane.line.right, lane.line.left[::-1]])) for lane in lanes])
-    for placed, corners in flat:
+    for flat_object, corners in flat:
         rows = []
         shape = _shape(corners)
         for i in sorted(int(i) for i in tree.query(shape)):
@@ -115,16 +115,16 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
             points = shapely.get_coordinates(common)
             centre = shapely.LineString(lanes[i].line.centre)
             s = np.atleast_1d(shapely.line_locate_point(centre, shapely.points(points)))
-            if placed.kind == "crossing" and float(shapely.area(common)) >= MIN_CROSSING_AREA_M2:
-                rows.append(crossing_row(placed.object_id, lanes[i].lanelet_id, s, _crossing_kind(placed)))
-            if placed.kind == "stop_line" and _lies_across(lanes[i], corners, points, float(np.mean(s))):
-                rows.append(stop_line_row(placed.object_id, lanes[i].lanelet_id, float(s.min())))
+            if flat_object.kind == "crossing" and float(shapely.area(common)) >= MIN_CROSSING_AREA_M2:
+                rows.append(crossing_row(flat_object.object_id, lanes[i].lanelet_id, s, _crossing_kind(flat_object)))
+            if flat_object.kind == "stop_line" and _lies_across(lanes[i], corners, points, float(np.mean(s))):
+                rows.append(stop_line_row(flat_object.object_id, lanes[i].lanelet_id, float(s.min())))
         if not rows:
-            name = f"{placed.kind} {placed.object_id} of road {placed.road.road_id}"
+            name = f"{flat_object.kind} {flat_object.object_id} of road {flat_object.road.road_id}"
             message = f"{name} lies across no lane that vehicles drive on"
-            quality.add("object_without_lane", "info", placed.road.road_id, message)
-        found[placed.kind] += rows
-    return found["stop_line"], found["crossing"]
+            quality.add("object_without_lane", "info", flat_object.road.road_id, message)
+        rows_by_kind[flat_object.kind] += rows
+    return rows_by_kind["stop_line"], rows_by_kind["crossing"]
 
 
 def _valid(corners: Floats) -> shapely.Geometry:
@@ -155,30 +155,30 @@ def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) 
     return not (d.max() - d.min() < MIN_STOP_LINE_SHARE * 2.0 * half or across < np.sin(MIN_STOP_LINE_ANGLE_RAD))
 
 
-def _crossing_kind(placed: PlacedObject) -> str | None:
-    said = f"{placed.element.get('subtype', '')} {placed.element.get('name', '')}".lower()
+def _crossing_kind(crossing: PlacedObject) -> str | None:
+    said = f"{crossing.element.get('subtype', '')} {crossing.element.get('name', '')}".lower()
     return "zebra" if "zebra" in said else "signalled" if "signal" in said else None
 
 
 def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuality) -> list[PlacedObject]:
     """Return every object, repetitions one by one; one that cannot be placed is a row of `quality`."""
-    placed: list[PlacedObject] = []
+    objects: list[PlacedObject] = []
     for road in net.roads.values():
         for element in road.element.iterfind("objects/object"):
             try:
-                placed += _placed(road, element, offset)
+                objects += _placements(road, element, offset)
             except MalformedError as error:
                 message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
                 quality.add("invalid_object", "warning", road.road_id, message)
-    return sorted(placed, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
+    return sorted(objects, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
 
 
-def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
+def _placements(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
     repeats = element.findall("repeat")
     if not repeats:
         s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])
         yield from _instances(road, element, s, t, offset, numbered=False)
-    counted = 0
+    n_repeats = 0
     for repeat in repeats:
         distance, length = number(repeat, "distance", 0.0), number(repeat, "length", 0.0)
         start = number(repeat, "s", number(element, "s"))
@@ -187,8 +187,8 @@ def _placed(road: Road, element: etree._Element, offset: tuple[float, float]) ->
             yield _band(road, element, repeat, offset)
             continue
         steps = np.arange(min(int(length / distance + 1e-6) + 1, MAX_REPEATS + 1)) * distance
-        counted += len(steps)
-        if counted > MAX_REPEATS:
+        n_repeats += len(steps)
+        if n_repeats > MAX_REPEATS:
             raise MalformedError(f"it is repeated more than {MAX_REPEATS} times")
         t = np.interp(steps, [0.0, max(length, 1e-9)], ends)
         yield from _instances(road, element, start + steps.astype(np.float64), t, offset, numbered=True)

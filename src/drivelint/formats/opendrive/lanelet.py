@@ -91,11 +91,11 @@ def speed_rows(lanelet: Lanelet) -> Rows:
     rows: Rows = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
-        if i >= 0 and lanelet.lane.speeds[i].known:
+        if i >= 0 and lanelet.lane.speeds[i].is_stated:
             rows += _speed_row(lanelet, a, b, lanelet.lane.speeds[i], "lane")
             continue
         for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
-            if j >= 0 and lanelet.road.speeds[j].known:
+            if j >= 0 and lanelet.road.speeds[j].is_stated:
                 rows += _speed_row(lanelet, c, d, lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 

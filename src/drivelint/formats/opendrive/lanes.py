@@ -104,7 +104,7 @@ class _StripBuilder:
     def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:
         """Make a lanelet between each lane's edges, from left to right, and adjoin each to the next."""
         row = {number: i for i, number in enumerate(evaluator.numbers)}
-        made: list[Lanelet] = []
+        lanelets: list[Lanelet] = []
         for lane in self.strip.lanes[::-1]:
             key = self._key(lane)
             if key in self.lanes.failed:
@@ -115,10 +115,10 @@ class _StripBuilder:
                 message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_M} m: left out, its neighbours adjoin"
                 self.quality.add("narrow_lane", "info", lanelet_id(key), message)
                 continue
-            made.append(self._lanelet(lane, edges, s, (min(outer, inner), max(outer, inner))))
-        for a, b in pairwise(made):
+            lanelets.append(self._lanelet(lane, edges, s, (min(outer, inner), max(outer, inner))))
+        for a, b in pairwise(lanelets):
             _adjoin(a, b)
-        self.lanes.built.update((lanelet.key, lanelet) for lanelet in made)
+        self.lanes.built.update((lanelet.key, lanelet) for lanelet in lanelets)
 
     def _lanelet(self, lane: Lane, edges: Edges, s: Floats, rows: tuple[int, int]) -> Lanelet:
         """Return one lane as arrays; `rows` are those of its left and right edge, seen along the reference line."""

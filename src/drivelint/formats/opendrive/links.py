@@ -26,7 +26,7 @@ TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same dir
 TOUCH_HEADING_COS = 0.98
 LaneEnd = tuple[LaneKey, str]
 Link = tuple[Lanelet, Lanelet]  # the second continues the first
-_OTHER = {START: END, END: START}
+_OPPOSITE_END = {START: END, END: START}
 
 
 def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
@@ -37,20 +37,20 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
         if b[0] in declared:
             touching.add((min(a, b), max(a, b)))
         else:
-            _missing(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
-    found: dict[tuple[str, str], Link] = {}
+            _report_missing_link(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
+    link_by_ids: dict[tuple[str, str], Link] = {}
     for a, b in sorted(_through_short(touching, lanes.short)):
         link = _directed(a, b, lanes, quality)
         if link is not None:
-            found[link[0].lanelet_id, link[1].lanelet_id] = link
-    result = [found[key] for key in sorted(found)]
+            link_by_ids[link[0].lanelet_id, link[1].lanelet_id] = link
+    result = [link_by_ids[key] for key in sorted(link_by_ids)]
     for source, target in result:
         gap = float(np.hypot(*(source.line.centre[-1] - target.line.centre[0])))
         if gap > GAP_M:
             name = source.lanelet_id
             message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
             quality.add("link_gap", "warning" if source.drivable else "info", name, message)
-    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), found, quality)
+    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
     return result
 
 
@@ -75,16 +75,16 @@ def _contacts_at(
     key, end = at
     if beside is not None:
         for target in targets:
-            yield (key, end), ((road.road_id, beside.section, target), _OTHER[end])
+            yield (key, end), ((road.road_id, beside.section, target), _OPPOSITE_END[end])
         return
     join = road.joins.get(end)
     if join is None or join.is_junction or not targets:
         return
-    other = net.roads.get(join.element_id)
-    if other is None:
+    other_road = net.roads.get(join.element_id)
+    if other_road is None:
         yield from (((key, end), ((join.element_id, 0, target), START)) for target in targets)
         return
-    back = [e for e, link in other.joins.items() if not link.is_junction and link.element_id == road.road_id]
+    back = [e for e, link in other_road.joins.items() if not link.is_junction and link.element_id == road.road_id]
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
@@ -92,7 +92,7 @@ def _contacts_at(
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:
-        yield (key, end), (_lane_at(other, contact, target), contact)
+        yield (key, end), (_lane_at(other_road, contact, target), contact)
 
 
 def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
@@ -152,7 +152,7 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) ->
     if first is None or second is None:
         for end, other in ((a, b), (b, a)):
             if other[0] in lanes.failed and end[0] in lanes.built:
-                _missing(lanes, end, f"lane {lanelet_id(other[0])}, which could not be built", quality)
+                _report_missing_link(lanes, end, f"lane {lanelet_id(other[0])}, which could not be built", quality)
         return None
     leaves, enters = _exit(first) == a[1], _exit(second) != b[1]
     if leaves and enters:
@@ -171,16 +171,16 @@ def _exit(lane: Lanelet) -> str:
     return END if lane.along > 0 else START
 
 
-def _missing(lanes: BuiltLanes, end: LaneEnd, what: str, quality: MapQuality) -> None:
+def _report_missing_link(lanes: BuiltLanes, end: LaneEnd, target: str, quality: MapQuality) -> None:
     lane = lanes.built.get(end[0])
     if end[0] in lanes.narrow:
         return
     severity = "error" if lane is None or lane.drivable else "warning"
     name = lanelet_id(end[0])
-    quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {what}")
+    quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {target}")
 
 
-def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], quality: MapQuality) -> None:
+def _check_unlinked(lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality) -> None:
     """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:
@@ -190,6 +190,6 @@ def _check_unlinked(lanes: list[Lanelet], found: dict[tuple[str, str], Link], qu
     for i, j in sorted(touching.T.tolist()):
         a, b = lanes[i], lanes[j]
         same = float((a.line.tangent[-1] * b.line.tangent[0]).sum()) > TOUCH_HEADING_COS
-        if same and (a.lanelet_id, b.lanelet_id) not in found:
+        if same and (a.lanelet_id, b.lanelet_id) not in links:
             message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
             quality.add("unlinked_end", "error", a.lanelet_id, message)

@@ -46,12 +46,12 @@ class RoadMark:
 class SpeedLimit:
     """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit.
 
-    `known` False: not said; `readable` False: said, but not in a way that can be read.
+    `is_stated` False: not said; `readable` False: said, but not in a way that can be read.
     """
 
     start_m: float
     limit_mps: float | None
-    known: bool
+    is_stated: bool
     readable: bool = True
 
 
@@ -184,8 +184,8 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
         return None
 
 
-def _road(element: etree._Element, others: dict[str, Road], quality: MapQuality) -> Road:
-    if element.get("id") in others:
+def _road(element: etree._Element, roads: dict[str, Road], quality: MapQuality) -> Road:
+    if element.get("id") in roads:
         raise MalformedError("another road has the same id")
     length = number(element, "length")
     if not 0.0 < length <= MAX_ROAD_M:
@@ -331,13 +331,13 @@ def _speeds(
         speed = element.find(child) if child else element
         word = "undefined" if speed is None else speed.get("max", "undefined").strip().lower()
         if speed is None or word == "undefined":
-            speeds.append(SpeedLimit(start, None, known=False))
+            speeds.append(SpeedLimit(start, None, is_stated=False))
         elif word in {"no limit", "nolimit", "unlimited"}:
-            speeds.append(SpeedLimit(start, None, known=True))
+            speeds.append(SpeedLimit(start, None, is_stated=True))
         else:
             limit = _limit(speed)
             posted = None if limit is None else quality.posted_limit(limit)
-            speeds.append(SpeedLimit(start, posted, known=True, readable=posted is not None))
+            speeds.append(SpeedLimit(start, posted, is_stated=True, readable=posted is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
                 message = f"line {speed.sourceline}: {said} is no speed limit: taken as unknown"

@@ -36,18 +36,18 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     if not lanes.built:
         first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    joined = links(net, lanes, quality)
+    lane_links = links(net, lanes, quality)
     side = direction.handedness, direction.source
     turned = direction.forward != (direction.handedness == "rht")
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
     recorded = [row for lane in built for row in speed_rows(lane)]
     beside = furniture(net, built, request.offset, quality)
-    limits = speed_limits(built, joined, beside["traffic_signal"], recorded, quality)
+    limits = speed_limits(built, lane_links, beside["traffic_signal"], recorded, quality)
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet_row(lane) for lane in built],
         "lane_point": lane_points(built),
-        "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in joined],
+        "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in lane_links],
         "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
         "speed_limit": sorted(limits, key=lambda row: places[row["lanelet_id"]]),
         **beside,

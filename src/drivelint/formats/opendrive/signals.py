@@ -83,7 +83,7 @@ class _Reader:
         kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
         turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
         value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
-        said = {
+        signal_columns = {
             "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
             "type": signal.get("type"), "subtype": signal.get("subtype"),
             "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
@@ -91,8 +91,8 @@ class _Reader:
             "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
         }  # fmt: skip
         self.signals += [
-            {**said, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
-            for lane in self._held(listing, lanes)
+            {**signal_columns, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
+            for lane in self._lanelets_of_signal(listing, lanes)
         ]
         if kind == "stop_line":
             self.stop_lines += [
@@ -100,7 +100,7 @@ class _Reader:
                 for lane in self._stopped(listing, signal, s, lanes)
             ]
 
-    def _held(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
+    def _lanelets_of_signal(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
         """Return the lanelets that a signal holds for.
 
         By direction (orientation + or -: traffic along or against the reference line) among the lanes of its validity,
@@ -111,11 +111,11 @@ class _Reader:
         if valid:
             lanes = [lane for lane in lanes if any(low <= lane.lane.number <= high for low, high in valid)]
         along = {"+": 1, "-": -1}.get(listing.get("orientation", "none"))
-        held = [lane for lane in lanes if along is None or lane.along == along or lane.bidirectional]
-        if valid and lanes and not held:
+        lanelets = [lane for lane in lanes if along is None or lane.along == along or lane.bidirectional]
+        if valid and lanes and not lanelets:
             self.contradictions.append(listing.get("id", ""))
             return lanes
-        return held
+        return lanelets
 
     def _stopped(
         self, listing: etree._Element, signal: etree._Element, s: float, lanes: list[Lanelet]
@@ -127,20 +127,20 @@ class _Reader:
         and drawn beside it. A line that lies across lanes of the other direction only holds for those: its orientation
         is then the way that it faces.
         """
-        held = self._held(listing, lanes)
+        lanelets = self._lanelets_of_signal(listing, lanes)
         width = number(signal, "width", 0.0)
         oriented = listing.get("orientation") in {"+", "-"}
         if listing.find("validity") is not None or (oriented and width < MIN_LINE_M):
-            return held
+            return lanelets
         t, half = number(listing, "t", 0.0), max(0.5 * width, 1e-3)
         ranges = [(lane, *lane.lateral_range(s)) for lane in lanes]
         shared = [(lane, min(high, t + half) - max(low, t - half), high - low) for lane, low, high in ranges]
         across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
-        if not across or any(lane in held for lane in across):
-            return [lane for lane in across if lane in held] or held
-        same_way_m = sum(common for lane, common, _ in shared if lane in held and common > 0.0)
+        if not across or any(lane in lanelets for lane in across):
+            return [lane for lane in across if lane in lanelets] or lanelets
+        same_way_m = sum(common for lane, common, _ in shared if lane in lanelets and common > 0.0)
         if same_way_m > MIN_SAME_DIRECTION_SHARE * width:
-            return held
+            return lanelets
         self.contradictions.append(listing.get("id", ""))
         return across
 

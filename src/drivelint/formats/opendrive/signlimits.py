@@ -40,27 +40,27 @@ class _Stretch(NamedTuple):
 
 
 def speed_limits(
-    lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, recorded: Rows, quality: MapQuality
+    lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, recorded: Rows, quality: MapQuality
 ) -> Rows:
     """Return the rows of `speed_limit`; `recorded`: those of the records of lanes and roads, `signals`: rows of `traffic_signal`."""
     records: dict[str, Rows] = {lane.lanelet_id: [] for lane in lanes}
     for row in recorded:
         records[row["lanelet_id"]].append(row)
     signed: dict[str, Rows] = {}
-    for row in _sign_rows(lanes, joined, signals, records):
+    for row in _sign_rows(lanes, links, signals, records):
         signed.setdefault(row["lanelet_id"], []).append(row)
     rows: Rows = []
     contradicted = []
-    for name, own in records.items():
+    for name, own_rows in records.items():
         of_signs = signed.get(name, [])
-        known = [row for row in of_signs if row["source"] == "sign"]
-        of_lane = [row for row in own if row["source"] == "lane"]
+        sign_rows = [row for row in of_signs if row["source"] == "sign"]
+        of_lane = [row for row in own_rows if row["source"] == "lane"]
         unread = [row for row in of_signs if row["source"] != "sign"]
-        rows += known
+        rows += sign_rows
         rows += [part for row in unread for part in _outside(row, of_lane)]
-        rows += [part for row in of_lane for part in _outside(row, known)]
-        rows += [part for row in own if row["source"] != "lane" for part in _outside(row, of_signs)]
-        if any(_contradict(sign, lane) for sign in known for lane in of_lane):
+        rows += [part for row in of_lane for part in _outside(row, sign_rows)]
+        rows += [part for row in own_rows if row["source"] != "lane" for part in _outside(row, of_signs)]
+        if any(_contradict(sign, lane) for sign in sign_rows for lane in of_lane):
             contradicted.append(name)
     if contradicted:
         message = f"signs give other limits than the lanes that they hold for, the first {contradicted[0]}: those of the signs count"
@@ -69,12 +69,12 @@ def speed_limits(
 
 
 def _sign_rows(
-    lanes: Sequence[Lanelet], joined: Sequence[Link], signals: Rows, records: Mapping[str, Rows]
+    lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, records: Mapping[str, Rows]
 ) -> Iterable[dict[str, Any]]:
     """Return a row for each stretch of a lanelet over which a sign holds."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     after: dict[str, list[str]] = {}
-    for a, b in joined:
+    for a, b in links:
         after.setdefault(a.lanelet_id, []).append(b.lanelet_id)
     posts: dict[str, list[float]] = {}
     for row in signals:
@@ -118,10 +118,10 @@ def _same_record(before: Rows, behind: Rows) -> bool:
     return first is None or first == last
 
 
-def _outside(row: Mapping[str, Any], others: Rows) -> Rows:
+def _outside(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
     """Return the parts of a row's span over which none of the others holds."""
     parts, at = [], float(row["s_start_m"])
-    for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in others):
+    for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in covering_rows):
         if end <= at:
             continue
         parts.append((at, min(start, row["s_end_m"])))

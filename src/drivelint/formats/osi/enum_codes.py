@@ -108,20 +108,22 @@ def _headlights(dipped: Codes, main: Codes) -> Codes:
     return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
-def bulbs_of(words: EnumCodes, truth: pa.Array, joined: Mapping[str, str]) -> pa.Table:
+def bulbs_of(words: EnumCodes, truth: pa.Array, light_of_bulb: Mapping[str, str]) -> pa.Table:
     """Return the bulbs of traffic lights, one row per message and bulb: frame, the signal's id, the bit of what it shows.
 
-    Each belongs to the OpenDRIVE signal it refers to, else to the light that `joined` names. Of others each is its own.
+    Each belongs to the OpenDRIVE signal it refers to, else to the light that `light_of_bulb` names. Of others each is its own.
     """
     bulbs, frame = list_items(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
     mode, color = (words.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
     shown = np.where(mode == LIT, color, mode)
     bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
-    return pa.table({"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, joined), pa.string()), "bits": bits})
+    return pa.table(
+        {"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, light_of_bulb), pa.string()), "bits": bits}
+    )
 
 
-def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
+def _signal_ids(bulbs: pa.Array, light_of_bulb: Mapping[str, str]) -> list[str]:
     own = integers(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
     references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
@@ -129,7 +131,7 @@ def _signal_ids(bulbs: pa.Array, joined: Mapping[str, str]) -> list[str]:
         names = [
             s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
         ]
-        ids.append(names[0] if names else joined.get(str(number), str(number)))
+        ids.append(names[0] if names else light_of_bulb.get(str(number), str(number)))
     return ids
 
 
@@ -138,14 +140,14 @@ def signal_states(bulbs: pa.Table, t_ns: NDArray[np.int64]) -> pa.Table | None:
     if not bulbs.num_rows:
         return None
     different = bulbs.group_by(["frame", "signal_id", "bits"]).aggregate([])
-    shown = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
+    shown_bits = different.group_by(["frame", "signal_id"]).aggregate([("bits", "sum")])
     states = [
         None if value & UNKNOWN else "flashing" if value & FLASHING else _LIT.get(value) for value in range(2 * UNKNOWN)
     ]
     return pa.table(
         {
-            "signal_id": shown["signal_id"],
-            "t_ns": pa.array(t_ns[shown["frame"].to_numpy()]),
-            "state": pa.array(states, pa.string()).take(shown["bits_sum"]),
+            "signal_id": shown_bits["signal_id"],
+            "t_ns": pa.array(t_ns[shown_bits["frame"].to_numpy()]),
+            "state": pa.array(states, pa.string()).take(shown_bits["bits_sum"]),
         }
     )

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 def forget_copied_heights(states: States) -> QualityFinding | None:
     """Make the heights unknown where each one that is known is the width of its object, and say so; None: they are not copies."""
     height, width = states.numbers["height_m"], states.numbers["width_m"]
-    known = np.isfinite(height)
-    if not known.any() or (height[known] != width[known]).any():
+    has_height = np.isfinite(height)
+    if not has_height.any() or (height[has_height] != width[has_height]).any():
         return None
     states.numbers["height_m"] = np.full(len(states), np.nan)
     message = (
         "every height of an object is its width, as omega-prime 0.3.7 writes an MCAP file of its Parquet: heights are taken as unknown; "
         "give the Parquet file, or write the log anew"
     )
-    return QualityFinding("copied_height", "warning", message, int(known.sum()))
+    return QualityFinding("copied_height", "warning", message, int(has_height.sum()))

@@ -41,16 +41,16 @@ def read(
     stops: list[Row] = []
     crossings: list[Row] = []
     for mark in truth.road_marking:
-        said = mark.classification
-        if said.is_out_of_service:
+        classification = mark.classification
+        if classification.is_out_of_service:
             continue
-        symbol = said.traffic_main_sign_type if said.type == kinds.SYMBOL_MARKING else None
+        symbol = classification.traffic_main_sign_type if classification.type == kinds.SYMBOL_MARKING else None
         if not np.isfinite(_outline(mark, road)).all():
             message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
             quality.add("road_marking_without_place", "warning", None, message)
         elif symbol == kinds.ZEBRA:
             crossings += _zebra(mark, road)
-        elif symbol == kinds.STOP_SIGN or _code(said) == "stop_line":
+        elif symbol == kinds.STOP_SIGN or _code(classification) == "stop_line":
             stops += _stop_line(mark, road, quality)
     return {
         "traffic_signal": sorted(signals, key=lambda r: (r["signal_id"], r["type"] or "", r["lanelet_id"])),
@@ -72,20 +72,20 @@ class _Road:
         at = np.array([base.position.x + self.offset[0], base.position.y + self.offset[1], base.position.z])
         return at if base.HasField("position") and np.isfinite(at).all() else None
 
-    def assigned(self, said: Any, base: Any) -> list[BoundedLane]:
+    def assigned_lanes(self, classification: Any, base: Any) -> list[BoundedLane]:
         """Return the lanes that a sign, light or marking is assigned to; of the logical lanes on a physical one those beside it."""
         by_id = {lane.lanelet_id: lane for lane in self.lanes}
-        names = [str(each.assigned_lane_id.value) for each in said.logical_lane_assignment]
-        found = [by_id[name] for name in names if name in by_id]
-        if found:
-            return _once(found)
-        for ref in said.assigned_lane_id:
+        names = [str(each.assigned_lane_id.value) for each in classification.logical_lane_assignment]
+        lanes = [by_id[name] for name in names if name in by_id]
+        if lanes:
+            return _once(lanes)
+        for ref in classification.assigned_lane_id:
             if ref.value in self.logical_by_physical:
                 held = [by_id[str(name)] for name in self.logical_by_physical[ref.value] if str(name) in by_id]
-                found += _facing(base, self._beside(held, self.place(base)))
+                lanes += _facing(base, self._beside(held, self.place(base)))
             elif str(ref.value) in by_id:
-                found.append(by_id[str(ref.value)])
-        return _once(found)
+                lanes.append(by_id[str(ref.value)])
+        return _once(lanes)
 
     def _beside(self, lanes: list[BoundedLane], stands: Floats | None) -> list[BoundedLane]:
         """Return the lanes that begin before and end after a place, or else the nearest ones; all where it is not known."""
@@ -128,23 +128,30 @@ def rotation(base: Any) -> Floats:
     )
 
 
-def _code(said: Any) -> str | None:
-    return kind_of(said.country, said.code, "") if said.country and said.code else None
+def _code(classification: Any) -> str | None:
+    return (
+        kind_of(classification.country, classification.code, "")
+        if classification.country and classification.code
+        else None
+    )
 
 
 def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
-    said, base = sign.main_sign.classification, sign.main_sign.base
-    if said.is_out_of_service:
+    classification, base = sign.main_sign.classification, sign.main_sign.base
+    if classification.is_out_of_service:
         return []
-    value = said.value.value if said.value.value > 0 else None
+    value = classification.value.value if classification.value.value > 0 else None
     row = {
-        "signal_id": str(sign.id.value), "kind": kinds.SIGN_KINDS.get(said.type) or _code(said),
-        "country": said.country.lower() or None if said.code else "osi", "type": said.code or str(said.type),
-        "subtype": said.sub_code or None, "value": value,
-        "unit": None if value is None else kinds.UNITS.get(said.value.value_unit),
-        "dynamic": said.variability in kinds.VARIABLE_SIGN,
+        "signal_id": str(sign.id.value), "kind": kinds.SIGN_KINDS.get(classification.type) or _code(classification),
+        "country": classification.country.lower() or None if classification.code else "osi",
+        "type": classification.code or str(classification.type),
+        "subtype": classification.sub_code or None, "value": value,
+        "unit": None if value is None else kinds.UNITS.get(classification.value.value_unit),
+        "dynamic": classification.variability in kinds.VARIABLE_SIGN,
     }  # fmt: skip
-    return _placed(f"traffic sign {sign.id.value}", row, road.assigned(said, base), road.place(base), quality)
+    return _signal_rows(
+        f"traffic sign {sign.id.value}", row, road.assigned_lanes(classification, base), road.place(base), quality
+    )
 
 
 def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
@@ -159,7 +166,7 @@ def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
 
 
 def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) -> Iterable[Row]:
-    lanes = _once([lane for bulb in bulbs for lane in road.assigned(bulb.classification, bulb.base)])
+    lanes = _once([lane for bulb in bulbs for lane in road.assigned_lanes(bulb.classification, bulb.base)])
     icons = {int(bulb.classification.icon) for bulb in bulbs}
     arrows = icons - {kinds.FULL_LIGHT_ICON}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS.get(icon, ())}
@@ -168,15 +175,15 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
         "country": "osi", "dynamic": True, "turns": sorted(turns) if turns and icons <= kinds.TURNS.keys() else None,
     }  # fmt: skip
     place = next((at for bulb in bulbs if (at := road.place(bulb.base)) is not None), None)
-    return _placed(f"traffic light {name}", row, lanes, place, quality)
+    return _signal_rows(f"traffic light {name}", row, lanes, place, quality)
 
 
-def _placed(
-    what: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
+def _signal_rows(
+    description: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
 ) -> Iterable[Row]:
     """Return the rows of a signal for its lanes; where it stands is the lane's end if the log does not say it."""
     if not lanes:
-        message = f"{what} is assigned to no lane of the map: nobody knows for whom it holds"
+        message = f"{description} is assigned to no lane of the map: nobody knows for whom it holds"
         quality.add("signal_without_lane", "warning", None, message)
     if place is None:
         return [signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row) for lane in lanes]
@@ -198,7 +205,7 @@ def _outline(mark: Any, road: _Road) -> Floats:
 
 def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
     """Return the lanes for driving that an area is painted on, and the area's station on each."""
-    found = []
+    lane_stations = []
     z = mark.base.position.z
     for lane in road.lanes:
         common = shapely.intersection(lane.line.polygon, area)
@@ -206,8 +213,8 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
             continue
         s = lane.line.station(shapely.get_coordinates(common.centroid)[0])
         if abs(float(np.interp(s, lane.line.s, lane.z)) - z) <= _ON_ROAD_M:
-            found.append((lane, s))
-    return found
+            lane_stations.append((lane, s))
+    return lane_stations
 
 
 def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
@@ -217,7 +224,7 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
     way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # the longer side of its outline
     reach = float(np.abs((corners - middle) @ way).max())
     line = shapely.LineString([middle - way * reach, middle + way * reach])
-    held = {lane.lanelet_id for lane in road.assigned(mark.classification, mark.base)}
+    lane_ids = {lane.lanelet_id for lane in road.assigned_lanes(mark.classification, mark.base)}
     upwards = rotation(mark.base)[:2, 2]
     across: list[tuple[BoundedLane, float, float]] = []
     for lane, s in _over(mark, line, road):
@@ -226,8 +233,8 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
         enough = shapely.intersection(lane.line.polygon, line).length > 0.5 * min(width, 2 * reach)
         if enough and abs(way[0] * tangent[1] - way[1] * tangent[0]) > _ACROSS:
             across.append((lane, s, float(upwards @ tangent)))
-    if held & {lane.lanelet_id for lane, _, _ in across}:
-        across = [each for each in across if each[0].lanelet_id in held]
+    if lane_ids & {lane.lanelet_id for lane, _, _ in across}:
+        across = [each for each in across if each[0].lanelet_id in lane_ids]
     elif any(along > _ACROSS for _, _, along in across):  # the symbol reads upright for the traffic that it is for
         across = [each for each in across if each[2] > 0]
     name = str(mark.id.value)

@@ -54,16 +54,16 @@ class LogicalLane:
 def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
     """Return the logical lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
-    found: dict[int, LogicalLane] = {}
+    lanes: dict[int, LogicalLane] = {}
     for message in truth.logical_lane:
         if message.type == kinds.CURB:
             continue
         try:
-            found[message.id.value] = _lane(message, bounds)
+            lanes[message.id.value] = _lane(message, bounds)
         except UnbuildableError as error:
             name = str(message.id.value)
             quality.add("invalid_lane", "error", name, f"logical lane {name} is left out: {error}")
-    return found
+    return lanes
 
 
 def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLane]:
@@ -71,7 +71,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     types = {bound.id.value: int(bound.classification.type) for bound in truth.lane_boundary}
     areas = {lane.id.value for lane in truth.lane if lane.classification.type == kinds.INTERSECTION}
-    told = any(bound.physical_boundary_id for bound in bounds.values())
+    log_has_markings = any(bound.physical_boundary_id for bound in bounds.values())
     linked = _linked(lanes)
     for name, lane in lanes.items():
         kind = kinds.LANE_KINDS.get(lane.message.type, "none")
@@ -82,7 +82,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
             junction_id=next((f"j{i}" for i in lane.physical_lane_ids if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
-            marks=tuple(_marks(lane, bounds, types, told=told)), limits=tuple(_limits(lane)), limit_source="lane",
+            marks=tuple(_marks(lane, bounds, types, log_has_markings=log_has_markings)), limits=tuple(_limits(lane)), limit_source="lane",
         )  # fmt: skip
 
 
@@ -128,37 +128,39 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
         if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
             raise UnbuildableError(f"its {word} boundary {name} has fewer than two points with finite coordinates")
         parts.append(points)
-    joined = np.vstack(parts)
-    if (np.diff(joined[:, 3]) < -1e-3).any() or joined[0, 3] >= joined[-1, 3]:
+    side_points = np.vstack(parts)
+    if (np.diff(side_points[:, 3]) < -1e-3).any() or side_points[0, 3] >= side_points[-1, 3]:
         raise UnbuildableError(f"the s positions of its {word} boundary do not ascend")
     # where a boundary steps aside, two points have one station
-    joined[:, 3] = np.maximum.accumulate(joined[:, 3])
-    joined[1:, 3] += np.cumsum(np.diff(joined[:, 3]) == 0) * 1e-9
-    return joined
+    side_points[:, 3] = np.maximum.accumulate(side_points[:, 3])
+    side_points[1:, 3] += np.cumsum(np.diff(side_points[:, 3]) == 0) * 1e-9
+    return side_points
 
 
-def _sides(lane: LogicalLane, what: str) -> tuple[Any, Any]:
+def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
     """Return what the message says on the driver's left and right."""
-    both = getattr(lane.message, f"left_{what}"), getattr(lane.message, f"right_{what}")
+    both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 
 
 def _linked(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
     """Return (a, b) where b follows a, as either of the two says."""
-    said = {
+    stated_links = {
         pair
         for name, lane in lanes.items()
         for field in ("predecessor_lane", "successor_lane")
         for other in getattr(lane.message, field)
         for pair in ((name, other.other_lane_id.value), (other.other_lane_id.value, name))
     }
-    return sorted((a, b) for a, b in said if a in lanes and b in lanes and a != b and _follows(lanes[a], lanes[b]))
+    return sorted(
+        (a, b) for a, b in stated_links if a in lanes and b in lanes and a != b and _leads_into(lanes[a], lanes[b])
+    )
 
 
-def _follows(lane: LogicalLane, other: LogicalLane) -> bool:
+def _leads_into(lane: LogicalLane, next_lane: LogicalLane) -> bool:
     """Say whether a lane ends where another begins and not, as two that run towards each other, where it ends."""
     end = lane.centre[-1, :2]
-    to_begin, to_end = (float(np.linalg.norm(end - other.centre[k, :2])) for k in (0, -1))
+    to_begin, to_end = (float(np.linalg.norm(end - next_lane.centre[k, :2])) for k in (0, -1))
     return to_begin < MAX_LINK_GAP_M and to_begin <= to_end
 
 
@@ -175,17 +177,19 @@ def _neighbour(
     if not length:
         return None, None
     longest = min(length, key=lambda name: (-length[name], name))
-    other = lanes[longest]
-    if lane.message.reference_line_id.value == other.message.reference_line_id.value:
-        against = lane.along != other.along
+    neighbour = lanes[longest]
+    if lane.message.reference_line_id.value == neighbour.message.reference_line_id.value:
+        against = lane.along != neighbour.along
     else:
-        ways = [each.centre[-1, :2] - each.centre[0, :2] for each in (lane, other)]
+        ways = [each.centre[-1, :2] - each.centre[0, :2] for each in (lane, neighbour)]
         against = float(np.dot(*ways)) < 0
-    return str(longest), against or other.message.move_direction == kinds.BOTH
+    return str(longest), against or neighbour.message.move_direction == kinds.BOTH
 
 
-def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, told: bool) -> Iterator[Mark]:
-    """Yield the markings of both sides. `told`: the log says which markings the boundaries have, so that one without has none."""
+def _marks(
+    lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, log_has_markings: bool
+) -> Iterator[Mark]:
+    """Yield the markings of both sides. `log_has_markings`: the log says which boundaries have markings, so that one without has none."""
     sides = _sides(lane, "boundary_id")
     for word, ids, nearest_first in (("left", sides[0], lane.along > 0), ("right", sides[1], lane.along < 0)):
         for i in ids:
@@ -196,21 +200,25 @@ def _marks(lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int
                 continue
             # from right to left of the reference line
             physical = [types.get(p.value) for p in bound.physical_boundary_id]
-            marking = kinds.marking(physical if nearest_first else physical[::-1]) if physical or not told else "none"
+            marking = (
+                kinds.marking(physical if nearest_first else physical[::-1])
+                if physical or not log_has_markings
+                else "none"
+            )
             yield Mark(word, begin, end, marking, kinds.LANE_CHANGES.get(bound.passing_rule))
 
 
 def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
     """Yield the speed limits for all vehicles: from and to which share of the lane, and the limit in m/s."""
     for rule in lane.message.traffic_rule:
-        said = rule.speed_limit.speed_limit_value
-        unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(said.value_unit, ""))
+        limit_value = rule.speed_limit.speed_limit_value
+        unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(limit_value.value_unit, ""))
         where = rule.traffic_rule_validity
         # for vehicles of any type: it names none, or vehicles as such
         valid = where.valid_for_type
         for_all = not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)
-        if rule.traffic_rule_type or unit is None or said.value <= 0 or not for_all:
+        if rule.traffic_rule_type or unit is None or limit_value.value <= 0 or not for_all:
             continue
         begin, end = sorted((lane.lane_fraction(where.start_s), lane.lane_fraction(where.end_s)))
         if end > begin:
-            yield begin, end, said.value * unit
+            yield begin, end, limit_value.value * unit

@@ -50,26 +50,26 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     directions = [lane.classification for lane in truth.lane if lane.classification.HasField(_DIRECTION)]
     # if lanes say true or nothing, and never false, the writer leaves false out
     drops = {said.centerline_is_driving_direction for said in directions} == {True}
-    found: dict[int, PhysicalLane] = {}
+    lanes: dict[int, PhysicalLane] = {}
     for lane in truth.lane:
         said = lane.classification
         if said.type == kinds.INTERSECTION and (len(said.lane_pairing) > 1 or len(said.centerline) < 2):
             continue
         try:
-            found[lane.id.value] = _turned(lane, bounds, drops=drops)
+            lanes[lane.id.value] = _turned(lane, bounds, drops=drops)
         except UnbuildableError as error:
             name = str(lane.id.value)
             quality.add("invalid_lane", "error", name, f"lane {name} is left out: {error}")
-    return found
+    return lanes
 
 
-def _ascending(said: Any, *, drops: bool) -> bool:
+def _ascending(classification: Any, *, drops: bool) -> bool:
     """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
-    if said.HasField(_DIRECTION):
-        return bool(said.centerline_is_driving_direction)
+    if classification.HasField(_DIRECTION):
+        return bool(classification.centerline_is_driving_direction)
     if drops:
         return False
-    if _kind(said)[1]:
+    if _kind(classification)[1]:
         raise UnbuildableError(
             "nothing says in which direction it is driven (centerline_is_driving_direction is not set)"
         )
@@ -82,15 +82,15 @@ def _xyz(points: Iterable[Any]) -> Floats:
 
 def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLane:
     """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
-    said = lane.classification
-    ids = said.left_lane_boundary_id, said.right_lane_boundary_id
+    classification = lane.classification
+    ids = classification.left_lane_boundary_id, classification.right_lane_boundary_id
     lines = [
         [_xyz(p.position for p in bounds[i.value].boundary_line) for i in side if i.value in bounds] for side in ids
     ]
     if not (lines[0] and lines[1]):
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
         raise UnbuildableError(f"it has {lacks}, and so no width")
-    centre = _xyz(said.centerline)
+    centre = _xyz(classification.centerline)
     if not all((np.abs(points) < FARTHEST_M).all() for points in (centre, *lines[0], *lines[1])):
         raise UnbuildableError("a point of it has a coordinate that cannot be")
     if len(centre) < 2:
@@ -100,7 +100,7 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
         centre, left, right = (first + second) / 2, first[:, :2], second[:, :2]
     else:
         left, right = (_bound(centre[:, :2], np.vstack(side)[:, :2]) for side in lines)
-    if _ascending(said, drops=drops):
+    if _ascending(classification, drops=drops):
         return PhysicalLane(lane, centre, left, right, turned=False)
     return PhysicalLane(lane, centre[::-1], right[::-1], left[::-1], turned=True)
 
@@ -133,11 +133,11 @@ def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
-def _along(side: Floats, other: Floats) -> Floats:
+def _along(side: Floats, opposite_side: Floats) -> Floats:
     """Return the part of a boundary that another lies beside. Errors: `UnbuildableError` where there is none."""
     s = stations(side)
     line = shapely.LineString(side[:, :2])
-    begin, end = (float(line.project(shapely.Point(p))) for p in (other[0, :2], other[-1, :2]))
+    begin, end = (float(line.project(shapely.Point(p))) for p in (opposite_side[0, :2], opposite_side[-1, :2]))
     if end - begin < 1e-3:
         raise UnbuildableError("its two boundaries do not lie beside each other in the same order")
     at = np.unique(np.concatenate([[begin, end], s[(s > begin) & (s < end)]]))
@@ -182,12 +182,12 @@ def _nearest(points: Floats, to: Floats) -> Floats:
     return points[np.argsort(np.hypot(*(points - to).T), kind="stable")[:1]]
 
 
-def _kind(said: Any) -> tuple[str, bool]:
-    if said.type in {_DRIVING, kinds.INTERSECTION}:
-        kind = kinds.LANE_KINDS.get(said.subtype, "driving")
+def _kind(classification: Any) -> tuple[str, bool]:
+    if classification.type in {_DRIVING, kinds.INTERSECTION}:
+        kind = kinds.LANE_KINDS.get(classification.subtype, "driving")
         return (kind if kind in kinds.DRIVABLE else "driving"), True
-    kind = kinds.LANE_KINDS.get(said.subtype, "none")
-    return kind if said.type == _NONDRIVING and kind != "driving" else "none", False
+    kind = kinds.LANE_KINDS.get(classification.subtype, "none")
+    return kind if classification.type == _NONDRIVING and kind != "driving" else "none", False
 
 
 def lanelets(
@@ -197,16 +197,16 @@ def lanelets(
     bounds = {b.id.value: b for b in truth.lane_boundary}
     linked = _linked(physical)
     for i, lane in physical.items():
-        said = lane.message.classification
-        kind, drivable = _kind(said)
-        ids = [said.left_lane_boundary_id, said.right_lane_boundary_id]
-        beside = [said.left_adjacent_lane_id, said.right_adjacent_lane_id]
+        classification = lane.message.classification
+        kind, drivable = _kind(classification)
+        ids = [classification.left_lane_boundary_id, classification.right_lane_boundary_id]
+        beside = [classification.left_adjacent_lane_id, classification.right_adjacent_lane_id]
         if lane.turned:
             ids, beside = ids[::-1], beside[::-1]
         neighbours = [_neighbour(lane, side, physical) for side in beside]
         yield BoundedLane(
             str(i), lane.left, lane.right, kind, drivable,
-            junction_id=f"j{i}" if said.type == kinds.INTERSECTION else None,
+            junction_id=f"j{i}" if classification.type == kinds.INTERSECTION else None,
             successors=(
                 *(str(b) for a, b in linked if a == i),
                 *(way.lanelet_id for way in through_lanes if way.lanelet_id.split(".")[1] == str(i)),
@@ -229,7 +229,7 @@ def _linked(physical: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
                 pairs.add((getattr(pair, before).value, i))
             if pair.HasField(after):
                 pairs.add((i, getattr(pair, after).value))
-    return sorted((a, b) for a, b in pairs if a in physical and b in physical and _follows(physical[a], physical[b]))
+    return sorted((a, b) for a, b in pairs if a in physical and b in physical and _leads_into(physical[a], physical[b]))
 
 
 def _neighbour(
@@ -249,13 +249,13 @@ def _marking(ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
     return kinds.marking(sorted(found)) if len(found) == 1 else None
 
 
-def _follows(lane: PhysicalLane, other: PhysicalLane) -> bool:
-    return bool(np.linalg.norm((lane.centre[-1] - other.centre[0])[:2]) < MAX_LINK_GAP_M)
+def _leads_into(lane: PhysicalLane, next_lane: PhysicalLane) -> bool:
+    return bool(np.linalg.norm((lane.centre[-1] - next_lane.centre[0])[:2]) < MAX_LINK_GAP_M)
 
 
 def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:
     """Return a lane through the intersection for each pair of lanes that it joins, and the two points (2, 3) between which it rises."""
-    found = []
+    joining_lanes = []
     for area in truth.lane:
         if area.classification.type != kinds.INTERSECTION or area.id.value in physical:
             continue
@@ -268,8 +268,8 @@ def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list
             left, right = (_curve(p[-1], p[-1] - p[-2], q[0], q[1] - q[0]) for p, q in sides)
             name = f"{area.id.value}.{into}.{out}"
             lane = BoundedLane(name, left, right, junction_id=f"j{area.id.value}", successors=(str(out),))
-            found.append((lane, np.vstack([a.centre[-1], b.centre[0]])))
-    return found
+            joining_lanes.append((lane, np.vstack([a.centre[-1], b.centre[0]])))
+    return joining_lanes
 
 
 def _curve(start: Floats, leaving: Floats, end: Floats, arriving: Floats) -> Floats:

@@ -46,7 +46,7 @@ class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     is_ego: bool = False
 
 
-class _Said(msgspec.Struct, frozen=True, kw_only=True):
+class _TraceFacts(msgspec.Struct, frozen=True, kw_only=True):
     """The record `drivelint.trace`: MCAP keeps texts, each of these is JSON. Unknown keys are of newer versions."""
 
     map_offset_m: tuple[float, float] | None = None
@@ -71,7 +71,7 @@ class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
 
 
 # decoders are built at import: building one later in several threads is unsafe, see formats/tables/mapping.py
-DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _Said, Event))
+DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _TraceFacts, Event))
 EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
 
 
@@ -79,7 +79,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
     """Return the metadata records of a trace; `numbers`: actor id -> OSI id, `as_recorded`: its states are those that were recorded."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
-    said: dict[str, Any] = {
+    trace_facts: dict[str, Any] = {
         "source": log["file_name"],
         "source_sha256": log["sha256"],
         "source_format": log["format"],
@@ -93,10 +93,10 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
         "geo_reference": trace.geo_reference, "geo_offset": trace.geo_offset if trace.geo_reference else None,
         "as_recorded": as_recorded or None, "nobody_ns": trace.nobody_ns.tolist() or None,
     }  # fmt: skip
-    said |= {name: value for name, value in optional.items() if value is not None}
+    trace_facts |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
     return {
-        TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in said.items()},
+        TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in trace_facts.items()},
         ACTORS_RECORD: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
     }
 
@@ -110,7 +110,7 @@ def ego_independent_quality(trace: Trace) -> pa.Table:
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
     """Add what the metadata records say to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
     if TRACE_RECORD in metadata:
-        _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _Said), recording)
+        _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceFacts), recording)
     if ACTORS_RECORD in metadata:
         rows = {
             number: _read(path, f"{ACTORS_RECORD}, actor {number}", text, _Actor)
@@ -136,16 +136,16 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
 
     Errors: `TraceError` for what is not understood.
     """
-    found: dict[str, str] = {}
+    condition_words: dict[str, str] = {}
     for given in rows:
         if given[0] is None or given[1] is None:
             raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
         name, word = conditions.canonical_spelling(given[0], given[1])
         if wrong := conditions.condition_problem(name) or conditions.value_problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")
-        if found.setdefault(name, word) != word:
-            raise TraceError(f"{path}: the drive's {name} is both {found[name]!r} and {word!r}: give one")
-    return found
+        if condition_words.setdefault(name, word) != word:
+            raise TraceError(f"{path}: the drive's {name} is both {condition_words[name]!r} and {word!r}: give one")
+    return condition_words
 
 
 def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
@@ -156,21 +156,21 @@ def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[Quali
     return list(findings)
 
 
-def _apply_trace(path: Path, said: _Said, recording: Recording) -> None:
-    recording.conditions |= parse_conditions(path, said.conditions.items())
-    if said.map_offset_m is not None:
-        dx, dy = recording.map_offset = said.map_offset_m
+def _apply_trace(path: Path, facts: _TraceFacts, recording: Recording) -> None:
+    recording.conditions |= parse_conditions(path, facts.conditions.items())
+    if facts.map_offset_m is not None:
+        dx, dy = recording.map_offset = facts.map_offset_m
         recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
-    if said.geo_reference is not None:
-        recording.geo_reference, recording.geo_offset = said.geo_reference, said.geo_offset
-    if said.utc_start_ns is not None:
-        recording.utc_start_ns = said.utc_start_ns
-    recording.sensor_range_m = said.sensor_range_m
-    for name in set(said.unknown) & set(OPTIONAL_COORDINATES):
+    if facts.geo_reference is not None:
+        recording.geo_reference, recording.geo_offset = facts.geo_reference, facts.geo_offset
+    if facts.utc_start_ns is not None:
+        recording.utc_start_ns = facts.utc_start_ns
+    recording.sensor_range_m = facts.sensor_range_m
+    for name in set(facts.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     # a frame that holds traffic lights alone was none of the log that was converted
-    recording.frames_ns = np.array(said.nobody_ns, np.int64)
-    kept = [f for f in said.quality if not said.as_recorded or f.check_id not in FOUND_ANEW]
+    recording.frames_ns = np.array(facts.nobody_ns, np.int64)
+    kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in FOUND_ANEW]
     recording.findings += known_findings(path, kept)
 
 
@@ -190,7 +190,7 @@ def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) 
     recording.ego_ids = [row.actor_id for row in known if row.is_ego]
 
 
-def _read(path: Path, what: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:
+def _read(path: Path, record_name: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:
     try:
         if isinstance(text, str):
             value = msgspec.json.decode(text, type=kind)
@@ -198,10 +198,10 @@ def _read(path: Path, what: str, text: Mapping[str, str] | str, kind: type[Any])
             value = msgspec.convert({key: msgspec.json.decode(item) for key, item in text.items()}, kind)
     except (msgspec.ValidationError, msgspec.DecodeError) as error:
         raise TraceError(
-            f"{path}: the metadata record {what} cannot be read ({error}): convert the log again"
+            f"{path}: the metadata record {record_name} cannot be read ({error}): convert the log again"
         ) from error
-    if isinstance(value, _Said) and not all(map(math.isfinite, value.map_offset_m or ())):
+    if isinstance(value, _TraceFacts) and not all(map(math.isfinite, value.map_offset_m or ())):
         raise TraceError(
-            f"{path}: the metadata record {what} has the map offset {value.map_offset_m}: convert the log again"
+            f"{path}: the metadata record {record_name} has the map offset {value.map_offset_m}: convert the log again"
         )
     return value

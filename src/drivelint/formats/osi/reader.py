@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
 takes_mapping: Final = False
-_READ: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
+_READ_MESSAGES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
 
 
 def accepts(probe: Probe) -> bool:
@@ -66,7 +66,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     log_ns: list[int] = []
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
-    lost: list[QualityFinding] = []
+    lost_findings: list[QualityFinding] = []
     unread = UnreadTopics()
     for kind, packets in message_batches(container, partial(_kind, truths, topic, unread)):
         if kind in FIELD_TREES:
@@ -87,20 +87,25 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
                 if isinstance(text, bytes):
                     maps.setdefault(text, packet.channel.topic)
                 else:
-                    lost.append(text)
+                    lost_findings.append(text)
         else:
             events += [packet.data for packet in packets]
     _check_topics(container, truths, topic)
     unread.refuse(path, FIELD_TREES if topic is None else (), truths)
     _refuse_lost_end_of_converted(container)
     if not batches:
-        raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.what})")
+        raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.cause})")
     recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
     if maps:
         recording.embedded_map = own
-    recording.findings += [*container.findings, *unread.findings(), *lost[:1], *(several if maps else head.findings)]
-    recording.lost += container.losses.times(path)
+    recording.findings += [
+        *container.findings,
+        *unread.findings(),
+        *lost_findings[:1],
+        *(several if maps else head.findings),
+    ]
+    recording.lost_times += container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
@@ -108,16 +113,16 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
 
 def _refuse_lost_end_of_converted(container: Container) -> None:
     """Refuse a log of `drivelint convert` that lost its end: its declared events, of any time, stand there."""
-    if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.found):
+    if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
         raise TraceError(
             f"{container.path}: the end of this converted log is lost, where its declared events stand "
-            f"({container.losses.last.what}): convert it again"
+            f"({container.losses.last.cause}): convert it again"
         )
 
 
 def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
     """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
-    if schema.name not in _READ:
+    if schema.name not in _READ_MESSAGES:
         return None
     encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
     if channel.message_encoding != encoding or (encoding == "protobuf" and schema.encoding != encoding):
@@ -151,15 +156,15 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
     """Refuse a log in which the topic of ground truth is missing or not the only one. Errors: `TraceError`."""
     path, topics = container.path, ", ".join(sorted(truths))
     if topic is not None and topic not in truths:
-        found = f"ground truth is on {topics}" if truths else _nothing(container)
+        found = f"ground truth is on {topics}" if truths else _foreign_content(container)
         raise TraceError(f"{path}: no OSI ground truth on topic {topic!r}: {found}")
     if not truths:
-        raise TraceError(f"{path}: no OSI ground truth in this file: {_nothing(container)}")
+        raise TraceError(f"{path}: no OSI ground truth in this file: {_foreign_content(container)}")
     if topic is None and len(truths) > 1:
         raise TraceError(f"{path}: ground truth on {len(truths)} topics ({topics}): choose one with --topic")
 
 
-def _nothing(container: Container) -> str:
+def _foreign_content(container: Container) -> str:
     """Say what an MCAP file without OSI messages holds instead: other kinds of messages, or a topic without any."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
@@ -196,14 +201,14 @@ def read(probe: Probe) -> Recording:
             if frames is not None:
                 batches.append(frames)
     if not batches:
-        raise TraceError(f"{path}: {losses.first.what if losses else 'no message'}: copy or record it again")
+        raise TraceError(f"{path}: {losses.first.cause if losses else 'no message'}: copy or record it again")
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
     if untimed:
         raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
     recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
     recording.frame_times = None
-    recording.lost += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
+    recording.lost_times += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
     recording.findings += head.findings
     return recording
 
@@ -255,7 +260,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
     if len(nameless):
         message = f"moving objects without an id: {len(nameless)}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
-    lost = times_of_lost_rows(
+    lost_times = times_of_lost_rows(
         log_ns.astype(np.int64) if name == "osi-mcap" else t_ns,
         np.ones(len(t_ns), np.bool_),
         np.isin(np.arange(len(t_ns)), nameless),
@@ -267,7 +272,7 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         signals=signal_states(bulbs, t_ns),
         ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
-        lost=lost,
+        lost_times=lost_times,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         frames_ns=t_ns,
@@ -307,18 +312,18 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
 
 def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
     """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
-    said = Counter(host for host in hosts if host is not None)
-    if not said:
+    host_counts = Counter(host for host in hosts if host is not None)
+    if not host_counts:
         return []
     first: dict[int, int] = {}
     for host, at in zip(hosts, t_ns.tolist(), strict=True):
         if host is not None:
             first[host] = min(first.get(host, at), at)
-    ego = min(said, key=lambda host: (-said[host], first[host], host))
-    if len(said) > 1:
-        frames, n = said.total(), said.total() - said[ego]
-        names = listed(sorted(map(str, said)))
-        message = f"the log names {len(said)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
+    ego = min(host_counts, key=lambda host: (-host_counts[host], first[host], host))
+    if len(host_counts) > 1:
+        frames, n = host_counts.total(), host_counts.total() - host_counts[ego]
+        names = listed(sorted(map(str, host_counts)))
+        message = f"the log names {len(host_counts)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
         since = min(at for host, at in first.items() if host != ego)
         findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]

@@ -40,19 +40,19 @@ def enum_numbers(name: str) -> dict[str, int]:
 def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
     declared = _declared(*parts)
-    made: dict[str, Any] = {}
+    types: dict[str, Any] = {}
     for name in [*declared.messages, *declared.enums]:
         outer, _, own = name.rpartition(".")
-        home = made[outer] if outer else file
+        home = types[outer] if outer else file
         kind = "enum_type" if name in declared.enums else "nested_type" if outer else "message_type"
-        made[name] = getattr(home, kind).add(name=own)
+        types[name] = getattr(home, kind).add(name=own)
     for name, values in declared.enums.items():
-        prefix = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", made[name].name).upper()
+        prefix = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", types[name].name).upper()
         for word, number in values:
-            made[name].value.add(name=f"{prefix}_{word}", number=int(number))
+            types[name].value.add(name=f"{prefix}_{word}", number=int(number))
     for name, fields in declared.messages.items():
         for field in fields:
-            add_field(made[name], field, PACKAGE, declared.enums)
+            add_field(types[name], field, PACKAGE, declared.enums)
     return file
 
 

@@ -25,15 +25,15 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
     """Group the bulbs into traffic lights, and return each grouped bulb's id with its light's id."""
     rows: dict[Any, list[Any]] = {}
     for bulb in bulbs:
-        said = bulb.classification
+        classification = bulb.classification
         refers = any(ref.type == OPEN_DRIVE_REFERENCE and ref.identifier for ref in bulb.source_reference)
         lanes = (
-            tuple(sorted(i.value for i in said.assigned_lane_id)),
-            tuple(sorted(each.assigned_lane_id.value for each in said.logical_lane_assignment)),
+            tuple(sorted(i.value for i in classification.assigned_lane_id)),
+            tuple(sorted(each.assigned_lane_id.value for each in classification.logical_lane_assignment)),
         )
         if not refers and bulb.base.HasField("position"):
-            rows.setdefault((lanes, said.icon), []).append(bulb)
-    found: dict[str, str] = {}
+            rows.setdefault((lanes, classification.icon), []).append(bulb)
+    light_ids: dict[str, str] = {}
     for row in rows.values():
         waiting = sorted(row, key=lambda bulb: bulb.id.value)
         while waiting:
@@ -43,21 +43,21 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
                 light += near
                 waiting = [each for each in waiting if each not in near]
             if len(light) > 1:
-                found |= {str(bulb.id.value): str(light[0].id.value) for bulb in light}
-    return found
+                light_ids |= {str(bulb.id.value): str(light[0].id.value) for bulb in light}
+    return light_ids
 
 
 def bulb_for_map(bulb: Any, names: Mapping[str, str]) -> Any:
     """Return a copy of a bulb for a map, with its light's id and without its state."""
-    kept = type(bulb).FromString(bulb.SerializeToString())
+    map_bulb = type(bulb).FromString(bulb.SerializeToString())
     for field in ("color", "mode"):
-        kept.classification.ClearField(field)
+        map_bulb.classification.ClearField(field)
     light = names.get(str(bulb.id.value))
     if light is not None:
-        reference = kept.source_reference.add()
+        reference = map_bulb.source_reference.add()
         reference.type = LIGHT_REFERENCE
         reference.identifier.append(light)
-    return kept
+    return map_bulb
 
 
 def _beside(a: Any, b: Any) -> bool:

@@ -57,12 +57,14 @@ def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Ite
     if waiting:
         yield waiting
     if at < len(content):
-        while losses.found and losses.found[-1].end == at:  # nothing vouches for the length of what cannot be decoded
-            at = losses.found.pop().start
+        while (
+            losses.lost_bytes and losses.lost_bytes[-1].end == at
+        ):  # nothing vouches for the length of what cannot be decoded
+            at = losses.lost_bytes.pop().start
         since = losses.last_ns
         if since is not None and len(content) > at + LENGTH and content[at + LENGTH] not in _FIRST_TAGS:
             since -= 1  # no message begins here: the last one may be longer than its length said, and so may say less than was recorded
-        losses.found.append(LostBytes(at, len(content), str(why), since))
+        losses.lost_bytes.append(LostBytes(at, len(content), str(why), since))
 
 
 def _doubt(content: mmap.mmap, at: int) -> str | None:
@@ -96,11 +98,11 @@ def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
     steps = np.diff(t_ns)
     late = -min(int(steps.min(initial=0)), 0)
     if len(steps) and not steps.any():
-        return [each._replace(since_ns=None, until_ns=None) for each in losses.times(path)]
+        return [lost_time._replace(since_ns=None, until_ns=None) for lost_time in losses.times(path)]
     return [
-        each._replace(
-            since_ns=None if each.since_ns is None else each.since_ns - late,
-            until_ns=None if each.until_ns is None else each.until_ns + late,
+        lost_time._replace(
+            since_ns=None if lost_time.since_ns is None else lost_time.since_ns - late,
+            until_ns=None if lost_time.until_ns is None else lost_time.until_ns + late,
         )
-        for each in losses.times(path)
+        for lost_time in losses.times(path)
     ]

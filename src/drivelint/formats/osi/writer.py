@@ -79,16 +79,16 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
     states = trace.tables["actor_state"]
     t_ns = states["t_ns"].to_numpy()
     lights = _lights(trace.tables["signal_state"])
-    others = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.nobody_ns])
+    actorless_ns = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.nobody_ns])
     if trace.in_log_order:
         order = np.arange(len(t_ns))
         starts = np.flatnonzero(np.r_[True, np.diff(t_ns) != 0])
-        others = np.setdiff1d(others, t_ns)
-        times = np.r_[t_ns[starts], others]
-        bounds = np.r_[starts, np.full(len(others) + 1, len(t_ns))]
+        actorless_ns = np.setdiff1d(actorless_ns, t_ns)
+        times = np.r_[t_ns[starts], actorless_ns]
+        bounds = np.r_[starts, np.full(len(actorless_ns) + 1, len(t_ns))]
     else:
         order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
-        times = np.unique(np.concatenate([t_ns, others]))
+        times = np.unique(np.concatenate([t_ns, actorless_ns]))
         bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
     objects = _objects(trace, numbers)
     egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]

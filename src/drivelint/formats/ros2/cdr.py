@@ -144,17 +144,17 @@ class _Compiler:
         if not members:  # an empty message is sent as one byte
             self._primitive("u1", None, None)
         for member in members:
-            wanted = tree is not None and member.name in tree
-            subtree = tree[member.name] if tree is not None and wanted else None
+            keep_member = tree is not None and member.name in tree
+            subtree = tree[member.name] if tree is not None and keep_member else None
             path = f"{prefix}{member.name}"
             if member.count == SEQUENCE:
-                self._sequence(member.kind, path, subtree, wanted=wanted)
+                self._sequence(member.kind, path, subtree, keep_items=keep_member)
             elif member.kind in NUMPY_CODES:
-                self._primitive(NUMPY_CODES[member.kind], path if wanted else None, member.count)
+                self._primitive(NUMPY_CODES[member.kind], path if keep_member else None, member.count)
             else:
                 for _ in range(1 if member.count is None else member.count):
                     if member.kind in TEXT_TYPES:
-                        self._then(_Numbers(_TEXT, 1, path if wanted and member.count is None else None))
+                        self._then(_Numbers(_TEXT, 1, path if keep_member and member.count is None else None))
                     else:
                         self._members(member.kind, subtree if member.count is None else None, f"{path}.")
 
@@ -173,12 +173,12 @@ class _Compiler:
         block.size += length
         self._rest = (self._rest + length) % self._modulus
 
-    def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, wanted: bool) -> None:
-        keep = path if wanted else None
+    def _sequence(self, kind: str, path: str, subtree: FieldTree | None, *, keep_items: bool) -> None:
+        keep = path if keep_items else None
         if kind in NUMPY_CODES:
             self._then(_Numbers(NUMPY_CODES[kind], 1, keep))
             return
-        sizes = [] if wanted or kind in TEXT_TYPES else self._sizes(kind)
+        sizes = [] if keep_items or kind in TEXT_TYPES else self._sizes(kind)
         if 0 not in sizes and len(set(sizes)) == 1:
             self._then(_Numbers(f"u{sizes[0]}", len(sizes), None))
         elif kind in TEXT_TYPES:
@@ -188,14 +188,14 @@ class _Compiler:
 
     def _sizes(self, kind: str) -> list[int]:
         """Return the sizes of all primitives of a type, 0 for texts and sequences."""
-        found: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
+        sizes: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
         for member in self._types[kind]:
             if member.count == SEQUENCE:
-                found.append(0)
+                sizes.append(0)
                 continue
             inner = [_SIZES[member.kind]] if member.kind in _SIZES else self._sizes(member.kind)
-            found += inner * (1 if member.count is None else member.count)
-        return found
+            sizes += inner * (1 if member.count is None else member.count)
+        return sizes
 
     def _then(self, step: Any) -> None:
         """Add a step behind which nothing is known of the alignment."""
@@ -300,7 +300,7 @@ class _Batch:
         for i, step in enumerate(program):
             if isinstance(step, _Block):
                 for path, code, offset, count in step.keep:
-                    table.columns[path] = self._taken(code, walk.start[i] + offset, count)
+                    table.columns[path] = self._values_at(code, walk.start[i] + offset, count)
             elif isinstance(step, _Numbers) and step.keep is not None:
                 table.columns[step.keep] = self._numbers(step, walk.start[i], walk.length[i])
             elif isinstance(step, _Items) and step.keep is not None:
@@ -313,10 +313,10 @@ class _Batch:
         first = np.full((len(start), MAX_KEPT_NUMBERS), np.nan)
         for k in range(MAX_KEPT_NUMBERS):
             has = np.flatnonzero(length > k)
-            first[has, k] = self._taken(step.code, start[has] + k * step.size, None)
+            first[has, k] = self._values_at(step.code, start[has] + k * step.size, None)
         return first
 
-    def _taken(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
+    def _values_at(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
         view, index = self._views[code], at // int(code[1])
         return view[index] if count is None else view[index[:, None] + np.arange(count)]
 
@@ -324,7 +324,7 @@ class _Batch:
         """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
         cursor += -cursor & 3
         self._check(cursor + 4, end, message)
-        length = self._taken("u4", cursor, None).astype(np.int64)
+        length = self._values_at("u4", cursor, None).astype(np.int64)
         cursor += 4
         self._check(cursor + length * item_bytes, end, message)
         return length
@@ -342,8 +342,8 @@ class _Batch:
         if beyond.any():
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
-    def _misfit(self, i: int, what: str) -> TraceError:
-        return self._packets[i].error(self._path, f"the {self._name} {what}")
+    def _misfit(self, i: int, problem: str) -> TraceError:
+        return self._packets[i].error(self._path, f"the {self._name} {problem}")
 
 
 def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:
@@ -353,13 +353,13 @@ def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]
     """
     parent = place[np.concatenate([part.parent + offset for part, offset in zip(parts, offsets, strict=False)])]
     order = np.argsort(parent, kind="stable")
-    moved = np.empty_like(order)
-    moved[order] = np.arange(len(order))
+    new_index = np.empty_like(order)
+    new_index[order] = np.arange(len(order))
     below = np.cumsum([0, *(part.n for part in parts)]).tolist()
     return _Walk(
         len(parent),
         parent[order],
         {i: np.concatenate([part.start[i] for part in parts])[order] for i in parts[0].start},
         {i: np.concatenate([part.length[i] for part in parts])[order] for i in parts[0].length},
-        {i: _stacked([part.children[i] for part in parts], below, moved) for i in parts[0].children},
+        {i: _stacked([part.children[i] for part in parts], below, new_index) for i in parts[0].children},
     )

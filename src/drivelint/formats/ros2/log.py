@@ -38,16 +38,16 @@ Topics = dict[str, list[Any]]
 
 
 class Log:
-    """What a drive's messages hold. `asked`: the topics that the user chose."""
+    """What a drive's messages hold. `requested_topics`: the topics that the user chose."""
 
-    def __init__(self, path: Path, asked: list[str]) -> None:
+    def __init__(self, path: Path, requested_topics: list[str]) -> None:
         self.path = path
-        self.asked = asked
+        self.requested_topics = requested_topics
         self.topics: dict[str, Topics] = {}  # by the type of their messages
         self.detections: dict[str, int] = {}  # topic of detections without ids -> messages
         self.findings: list[QualityFinding] = []
         self.notes: list[str] = []
-        self.lost: list[LostTime] = []
+        self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
         self.carla = False
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
@@ -73,7 +73,7 @@ class Log:
             self.findings += container.findings
             parts.append(container)
         self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
-        self.lost = times_of_parts([(part.path, part.losses) for part in parts])
+        self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
 
     def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
         """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
@@ -86,7 +86,7 @@ class Log:
         if MESSAGES[kind].role == EGO_SIZE and (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
             return None  # the drive is whole without it: its size is not known then
         if channel.message_encoding != "cdr":
-            if kind not in OBJECT_ROWS or not self.asked or channel.topic in self.asked:
+            if kind not in OBJECT_ROWS or not self.requested_topics or channel.topic in self.requested_topics:
                 self.unread.add(channel, kind)
             return None
         if channel.schema_id not in decoders:
@@ -100,16 +100,16 @@ class Log:
 
     def refuse_unknown_topics(self) -> None:
         """Refuse what was chosen and is not read. Errors: `TraceError`."""
-        known = {topic for topics in self.topics.values() for topic in topics}
-        for topic in self.asked:
+        read_topics = {topic for topics in self.topics.values() for topic in topics}
+        for topic in self.requested_topics:
             if topic in self.detections:
                 raise TraceError(
                     f"{self.path}: the detections on topic {topic!r} have no ids, so they are nobody's track: choose a topic of "
                     f"{' or '.join(SAME_BODIES)}"
                 )
-            if topic not in known:
+            if topic not in read_topics:
                 raise TraceError(
-                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(known)) or 'nothing'}"
+                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(read_topics)) or 'nothing'}"
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
@@ -130,31 +130,31 @@ class Log:
         for topic, parts in sorted(self.topics.get(kind, {}).items()):
             yield from ((topic, part) for part in parts)
 
-    def one(self, kinds: Iterable[str], what: str) -> Topics:
+    def select_topic(self, kinds: Iterable[str], content: str) -> Topics:
         """Return the one topic with messages of some kinds, if any; a note names those that are left out.
 
         Of several, what was chosen counts, then the usual topic of its type; predictions count before tracks, which have the same
         bodies. Errors: `TraceError` where more than one is left.
         """
         of_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
-        found = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
-        chosen = [topic for topic in self.asked if topic in found]
-        if not chosen:
-            chosen = [usual] if (usual := _usual(of_kind)) else sorted(found)
-            if usual and len(found) > 1:
-                left = listed(sorted(found.keys() - {usual}))
-                self.notes.append(f"{what}: topic {usual} is read, {left} is left out: --topic chooses another")
-        if len(chosen) > 1:
+        candidates = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
+        selection = [topic for topic in self.requested_topics if topic in candidates]
+        if not selection:
+            selection = [usual] if (usual := _usual(of_kind)) else sorted(candidates)
+            if usual and len(candidates) > 1:
+                left = listed(sorted(candidates.keys() - {usual}))
+                self.notes.append(f"{content}: topic {usual} is read, {left} is left out: --topic chooses another")
+        if len(selection) > 1:
             raise TraceError(
-                f"{self.path}: {what} on {len(chosen)} topics ({', '.join(chosen)}): choose with --topic (several: A,B)"
+                f"{self.path}: {content} on {len(selection)} topics ({', '.join(selection)}): choose with --topic (several: A,B)"
             )
-        return {topic: found[topic] for topic in chosen}
+        return {topic: candidates[topic] for topic in selection}
 
 
 def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
     """Return what is kept of a batch: of road users and lights what they say, of others their fields and times."""
     if kind in LIGHTS:
-        return traffic_lights.shown(table, log_ns, decoder.constants)
+        return traffic_lights.group_states(table, log_ns, decoder.constants)
     if kind not in OBJECT_ROWS:
         return table, log_ns
     rows = OBJECT_ROWS[kind](table)

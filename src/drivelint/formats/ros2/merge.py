@@ -32,20 +32,20 @@ def merge_ego(
     `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `carla`: the objects are the bridge's; `is_centre`: the
     odometry's places are known to be those of the centre of the ego's box.
     """
-    names = _said_egos(infos, odometry)
+    names = _carla_ego_ids(infos, odometry)
     if carla and objects is not None:
         _carla_origins(*objects, findings)
     if odometry is None:
         assert objects is not None  # noqa: S101 (the reader refuses a log with neither)
         return Recording(FORMAT, objects[1], ego_ids=names, findings=findings)
     ego = odometry[1]
-    found: list[str] = []
+    ids_in_objects: list[str] = []
     if objects is None:
         ego.ids = names[:1] or [DEFAULT_EGO_ID]
     else:
-        others = objects[1]
-        found = [name for name in names if name in others.ids] or ids_at_ego(ego, others)
-        ego.ids = found[:1] or [_free(names[0] if names else DEFAULT_EGO_ID, others.ids)]
+        object_states = objects[1]
+        ids_in_objects = [name for name in names if name in object_states.ids] or ids_at_ego(ego, object_states)
+        ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
             f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
@@ -53,33 +53,33 @@ def merge_ego(
         )
         first = int(ego.t_ns.min())
         findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
-    if objects is not None and found:
-        return _once(ego, objects[1], objects[0], findings)
+    if objects is not None and ids_in_objects:
+        return _with_one_ego_track(ego, objects[1], objects[0], findings)
     states = ego if objects is None else concatenate_states(ego, objects[1])
     return Recording(FORMAT, states, ego_ids=list(ego.ids), findings=findings)
 
 
-def _once(ego: States, others: States, topic: str, findings: list[QualityFinding]) -> Recording:
+def _with_one_ego_track(ego: States, object_states: States, topic: str, findings: list[QualityFinding]) -> Recording:
     """Keep of the ego's two tracks the one with more states, in the log's own order, and the size that is known."""
     (name,) = ego.ids
-    twin = others.actor == others.ids.index(name)
+    twin = object_states.actor == object_states.ids.index(name)
     n = int(twin.sum())
-    both = f"the ego is {name!r} on {topic} too"
+    message_start = f"the ego is {name!r} on {topic} too"
     if n >= len(ego):
-        message = f"{both}: its {n} states there count, not the odometry's"
+        message = f"{message_start}: its {n} states there count, not the odometry's"
         findings.append(QualityFinding("ego_twice", "info", message, len(ego)))
-        return Recording(FORMAT, others, ego_ids=[name], findings=findings)
+        return Recording(FORMAT, object_states, ego_ids=[name], findings=findings)
     for size in SIZE_COLUMNS:
-        known = np.sort(others.numbers[size][twin])
+        known = np.sort(object_states.numbers[size][twin])
         known = known[known > 0.0]
         if len(known):
             ego.numbers[size][:] = known[(len(known) - 1) // 2]
-    kinds = others.codes["actor_class"][twin]
+    kinds = object_states.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
-    message = f"{both}: its size there counts, its {len(ego)} states are the odometry's"
+    message = f"{message_start}: its size there counts, its {len(ego)} states are the odometry's"
     findings.append(QualityFinding("ego_twice", "info", message, n))
-    return Recording(FORMAT, concatenate_states(ego, others.take(~twin)), ego_ids=[name], findings=findings)
+    return Recording(FORMAT, concatenate_states(ego, object_states.take(~twin)), ego_ids=[name], findings=findings)
 
 
 def concatenate_states(first: States, second: States) -> States:
@@ -87,21 +87,21 @@ def concatenate_states(first: States, second: States) -> States:
     ids = list(dict.fromkeys([*first.ids, *second.ids]))
     place = {name: i for i, name in enumerate(ids)}
     moved = np.array([place[name] for name in second.ids], np.int32)
-    return States.joined([replace(first, ids=ids), replace(second, ids=ids, actor=moved[second.actor])])
+    return States.concatenate([replace(first, ids=ids), replace(second, ids=ids, actor=moved[second.actor])])
 
 
-def _free(name: str, taken: list[str]) -> str:
-    while name in taken:
+def _free_id(name: str, ids: list[str]) -> str:
+    while name in ids:
         name += "_odometry"
     return name
 
 
-def _said_egos(found: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
+def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
     """Return the ids that the CARLA bridge gives its egos; of several, that of the odometry's vehicle."""
-    if odometry is not None and len(set(found.values())) > 1:
+    if odometry is not None and len(set(ego_by_topic.values())) > 1:
         beside = odometry[0].rpartition("/")[0]
-        found = {topic: name for topic, name in found.items() if topic.rpartition("/")[0] == beside}
-    return sorted(set(found.values()))
+        ego_by_topic = {topic: name for topic, name in ego_by_topic.items() if topic.rpartition("/")[0] == beside}
+    return sorted(set(ego_by_topic.values()))
 
 
 def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:

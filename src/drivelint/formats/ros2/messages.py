@@ -52,7 +52,7 @@ class MessageType(NamedTuple):
     fields: FieldTree
 
 
-def _autoware_objects(prefix: str, **others: FieldTree | None) -> FieldTree:
+def _autoware_objects(prefix: str, **kinematics: FieldTree | None) -> FieldTree:
     """Return the fields of Autoware's road users; those of the kinematics begin with `prefix`."""
     return {
         "header": HEADER,
@@ -62,7 +62,7 @@ def _autoware_objects(prefix: str, **others: FieldTree | None) -> FieldTree:
                 f"{prefix}pose_with_covariance": {"pose": POSE},
                 f"{prefix}twist_with_covariance": {"twist": {"linear": XYZ}},
                 f"{prefix}acceleration_with_covariance": {"accel": {"linear": XYZ}},
-                **others,
+                **kinematics,
             },
             "shape": {"type": None, "footprint": {"points": {"x": None, "y": None}}, "dimensions": XYZ},
         },

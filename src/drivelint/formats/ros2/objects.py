@@ -100,7 +100,7 @@ def _derived(top: Table) -> RecordedPoses:
     round_ = np.stack([2.0 * numbers[:, 1], 2.0 * numbers[:, 1], numbers[:, 0]], axis=1)  # height, radius
     rows.size = np.where((form == _CYLINDER)[:, None], round_, rows.size)
     rows.size = np.where((form == _SPHERE)[:, None], 2.0 * numbers[:, :1], rows.size)
-    rows.classes = _looked_up(_DERIVED, items.column("classification"))
+    rows.classes = _codes_of(_DERIVED, items.column("classification"))
     return rows
 
 
@@ -118,7 +118,7 @@ def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
     rows.velocity, rows.acceleration = vectors(items, f"{twist}.twist.linear"), vectors(items, f"{accel}.accel.linear")
     rows.size = vectors(items, "shape.dimensions")
     _fit_boxes(rows, items)
-    rows.classes = _looked_up(_AUTOWARE, _likeliest(items, "classification", "label", "probability", 0))
+    rows.classes = _codes_of(_AUTOWARE, _likeliest(items, "classification", "label", "probability", 0))
     said = items.columns.get("kinematics.orientation_availability")
     if said is not None:
         rows.turn[said == _NO_ORIENTATION] = np.nan
@@ -136,15 +136,17 @@ def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
         return
     points = items.items("shape.footprint.points")
     of_polygon = np.flatnonzero(rows.outlined[points.parent])
-    which, first = np.unique(points.parent[of_polygon], return_index=True)
-    if not len(which):
+    polygon_rows, first = np.unique(points.parent[of_polygon], return_index=True)
+    if not len(polygon_rows):
         return
     corners = vectors(points, "", "xy")[of_polygon]
     low, high = np.minimum.reduceat(corners, first), np.maximum.reduceat(corners, first)
-    rows.size[which, :2] = np.where(high > low, high - low, np.nan)
-    middle = np.column_stack([0.5 * (low + high), np.zeros(len(which))])
-    shift = rotated(unit_quaternions(rows.turn[which]), middle)
-    rows.place[which] += np.where(np.isfinite(shift), shift, 0.0)  # a body without any orientation stays where it is
+    rows.size[polygon_rows, :2] = np.where(high > low, high - low, np.nan)
+    middle = np.column_stack([0.5 * (low + high), np.zeros(len(polygon_rows))])
+    shift = rotated(unit_quaternions(rows.turn[polygon_rows]), middle)
+    rows.place[polygon_rows] += np.where(
+        np.isfinite(shift), shift, 0.0
+    )  # a body without any orientation stays where it is
 
 
 def _detections(top: Table) -> RecordedPoses:
@@ -161,20 +163,20 @@ def _detections(top: Table) -> RecordedPoses:
     return rows
 
 
-def _likeliest(items: Table, path: str, label: str, score: str, none: Any) -> NDArray[Any]:
-    """Return, per item, the label with the highest score of those listed in it, the first of equals; `none` for none."""
+def _likeliest(items: Table, path: str, label: str, score: str, default: Any) -> NDArray[Any]:
+    """Return, per item, the label with the highest score of those listed in it, the first of equals; `default` for none."""
     listed = items.items(path)
     labels = listed.column(label)
-    result = np.full(items.n, none, labels.dtype)
+    result = np.full(items.n, default, labels.dtype)
     order = np.lexsort((np.arange(listed.n), -listed.column(score), listed.parent))
     parents, first = np.unique(listed.parent[order], return_index=True)
     result[parents] = labels[order[first]]
     return result
 
 
-def _looked_up(known: Codes, numbers: NDArray[Any]) -> Codes:
-    inside = (numbers >= 0) & (numbers < len(known))
-    result: Codes = np.where(inside, known[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
+def _codes_of(code_table: Codes, numbers: NDArray[Any]) -> Codes:
+    inside = (numbers >= 0) & (numbers < len(code_table))
+    result: Codes = np.where(inside, code_table[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
     return result
 
 

@@ -69,12 +69,12 @@ _REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "m
 
 def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` for damage, for nothing that can be judged, for topics to choose from."""
-    asked = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
-    log = Log(path, asked)
+    requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
+    log = Log(path, requested_topics)
     log.read(bag.mcap_files(path))
     log.refuse_unknown_topics()
-    objects = log.one(OBJECT_ROWS, "road users")
-    odometry = log.one([ODOMETRY], "odometry")
+    objects = log.select_topic(OBJECT_ROWS, "road users")
+    odometry = log.select_topic([ODOMETRY], "odometry")
     log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
     own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
@@ -93,23 +93,23 @@ def read(path: Path, options: IngestOptions) -> Recording:
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     for topic in objects:
-        parts[topic] = _named(parts[topic], topic, log)
+        parts[topic] = _rows_with_ids(parts[topic], topic, log)
         findings += _outlined(parts[topic], topic)
     used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     states: dict[str, States] = {}
     for topic in (*objects, *odometry):
-        states[topic], found = states_in_fixed_frame(parts[topic], frames, fixed, topic)
-        findings += found
+        states[topic], new_findings = states_in_fixed_frame(parts[topic], frames, fixed, topic)
+        findings += new_findings
     if not any(np.isfinite(part.numbers["x_m"]).any() for part in states.values()):
         raise TraceError(f"{path}: nothing can be placed: {findings[-1].message if findings else 'no positions'}")
-    others, own = (
+    object_states, odometry_states = (
         next(((topic, states[topic]) for topic in source if len(states[topic])), None) for source in (objects, odometry)
     )
     carla = log.carla and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
     # the id of the ego that each topic of the CARLA bridge's ego info gives last
     infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
-    recording = merge_ego(others, own, infos, findings, carla=carla, is_centre=is_centre)
+    recording = merge_ego(object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre)
     reports = _reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
@@ -118,12 +118,12 @@ def read(path: Path, options: IngestOptions) -> Recording:
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
             all_states.codes["indicator"][mine] = ros_ego.indicators(all_states.t_ns[mine], reports)
         recording.events = ros_ego.engagement(reports, ego)
-    for topic, batches in log.one(LIGHTS, "traffic lights").items():
+    for topic, batches in log.select_topic(LIGHTS, "traffic lights").items():
         t_ns = recording.states.t_ns
         span_ns = int(t_ns.min()), int(t_ns.max())
-        recording.signals, found = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
-        recording.findings += found
-    recording.lost = [*log.lost, *log.silences(objects, odometry)]
+        recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
+        recording.findings += new_findings
+    recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
@@ -175,13 +175,13 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
 def _no_road_users(log: Log) -> QualityFinding:
     """Return the finding that nobody else is known: a detection without an id may be the one before it, or somebody else."""
     n = sum(log.detections.values())
-    what = "no topic of this log has road users"
+    cause = "no topic of this log has road users"
     if n:
-        what = (
+        cause = (
             f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, so nobody's track: "
             f"record {' or '.join(SAME_BODIES)} too"
         )
-    message = f"{what}: rules that look at others than the ego are unknown"
+    message = f"{cause}: rules that look at others than the ego are unknown"
     return QualityFinding("no_road_users", "warning", message, max(n, 1))
 
 
@@ -193,24 +193,24 @@ def _outlined(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
     return [QualityFinding("polygon_box", "info", message, n, int(rows.t_ns[rows.outlined].min()))]
 
 
-def _named(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
+def _rows_with_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
         return rows
     n = int(nameless.sum())
-    what = f"{topic}: objects without an id"
+    cause = f"{topic}: objects without an id"
     finding = QualityFinding(
-        "dropped_row", "error", f"{what}: {n}: they are not judged", n, int(rows.t_ns[nameless].min())
+        "dropped_row", "error", f"{cause}: {n}: they are not judged", n, int(rows.t_ns[nameless].min())
     )
     log.findings.append(finding)
-    log.lost += times_of_lost_rows(rows.log_ns, np.ones(len(rows), np.bool_), nameless, what)
+    log.lost_times += times_of_lost_rows(rows.log_ns, np.ones(len(rows), np.bool_), nameless, cause)
     return rows.take(~nameless)
 
 
 def _reports(log: Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
     for kind, column in _REPORTS.items():
-        for parts in log.one([kind], kind.split("/")[1]).values():
+        for parts in log.select_topic([kind], kind.split("/")[1]).values():
             t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in parts]
             values = [table.column(column) for table, _ in parts]
             reports[kind] = (np.concatenate(t_ns), np.concatenate(values))

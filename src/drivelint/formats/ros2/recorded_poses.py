@@ -114,11 +114,11 @@ def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
 
 
 def states_in_fixed_frame(
-    rows: RecordedPoses, frames: TransformTree, fixed: str, what: str
+    rows: RecordedPoses, frames: TransformTree, fixed: str, topic: str
 ) -> tuple[States, list[QualityFinding]]:
     """Bring poses into the fixed frame. Those whose frame cannot be followed at their time stay in without a place.
 
-    `what` they are is said in the findings.
+    The findings name the `topic` of the poses.
     """
     ids, actor = distinct(rows.ids)
     place, turn = rows.place.copy(), unit_quaternions(rows.turn)
@@ -140,7 +140,7 @@ def states_in_fixed_frame(
             vectors[here] = rotated(outer.turn, vectors[here])
         lost = np.isnan(outer.place[:, 0])
         if lost.any():
-            findings.append(_lost(what, frame, fixed, frames, rows.t_ns[here[lost]]))
+            findings.append(_unresolved_frame(topic, frame, fixed, frames, rows.t_ns[here[lost]]))
     states = States(
         ids,
         actor,
@@ -157,11 +157,11 @@ def states_in_fixed_frame(
     )  # fmt: skip
     for name, values in states.numbers.items():
         states.numbers[name] = np.where(np.isfinite(values), values, np.nan)
-    findings += _other_frame(states, swapped, rows.along, what)
+    findings += _other_frame(states, swapped, rows.along, topic)
     return states, findings
 
 
-def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
+def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
     if frame in frames.ambiguous:
         why = f"several frames say that they hold {frame!r}"
     elif frames.chain(frame, fixed) is None:
@@ -169,11 +169,11 @@ def _lost(what: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times)
     else:
         why = f"the transform from {frame!r} to {fixed!r} is not recorded at their time"
     first = int(t_ns.min())
-    message = f"{what}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, since {why}: they are present but not placed"
+    message = f"{topic}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, since {why}: they are present but not placed"
     return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 
-def _other_frame(states: States, swapped: Vectors, along: Mask, what: str) -> list[QualityFinding]:
+def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> list[QualityFinding]:
     """Take velocities as given in the other frame if they fit the positions there, and do not in the frame that they should be in."""
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
@@ -200,7 +200,7 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, what: str) -> li
     ways = ("along the actor's axes", "in the frame of the positions")
     given, is_ = ways if bool(along[0]) else reversed(ways)
     message = (
-        f"{what}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
+        f"{topic}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
         f"they are {is_} ({fit:.2f} m/s), and are read so"
     )
     return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
@@ -213,26 +213,26 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
     """
     why = None
     ranges = []
-    for what, rows in parts.items():
+    for topic, rows in parts.items():
         if not len(rows):
             continue
         # 0 is a time where a simulation's clock starts, and none where the others count from 1970
         missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= LEAST_UTC_NS))
         if missing.any():
-            why = f"{what}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
+            why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
-            why = f"the time stamps of {what} stand still"
+            why = f"the time stamps of {topic} stand still"
         else:
-            ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), what))
+            ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), topic))
     if why is None and len(ranges) > 1:
         latest, earliest = max(ranges), min(ranges, key=lambda item: item[1])
         if latest[0] > earliest[1]:
             why = f"the time stamps of {latest[2]} and {earliest[2]} have no moment in common: two clocks"
-    for what, rows in parts.items():
+    for topic, rows in parts.items():
         rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
         if len(rows):
             messages = np.r_[0, np.flatnonzero(np.diff(rows.log_ns)) + 1]
-            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), f" of {what}")
+            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), topic)
     if why is not None:
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)
@@ -250,16 +250,16 @@ def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | Non
     return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= LEAST_UTC_NS else None
 
 
-def ids_at_ego(ego: States, others: States) -> list[str]:
+def ids_at_ego(ego: States, object_states: States) -> list[str]:
     """Return the ids of the objects whose positions are almost always the ego's."""
     times, first = np.unique(ego.t_ns, return_index=True)
-    if len(times) < 2 or not len(others):
+    if len(times) < 2 or not len(object_states):
         return []
     with np.errstate(invalid="ignore"):
-        x = np.interp(others.t_ns, times, ego.numbers["x_m"][first], left=np.nan, right=np.nan)
-        y = np.interp(others.t_ns, times, ego.numbers["y_m"][first], left=np.nan, right=np.nan)
-        off = np.hypot(others.numbers["x_m"] - x, others.numbers["y_m"] - y)
+        x = np.interp(object_states.t_ns, times, ego.numbers["x_m"][first], left=np.nan, right=np.nan)
+        y = np.interp(object_states.t_ns, times, ego.numbers["y_m"][first], left=np.nan, right=np.nan)
+        off = np.hypot(object_states.numbers["x_m"] - x, object_states.numbers["y_m"] - y)
     known = np.isfinite(off)
-    n = np.bincount(others.actor[known], minlength=len(others.ids))
-    near = np.bincount(others.actor[known & (off < 0.5)], minlength=len(others.ids))
-    return [others.ids[i] for i in np.flatnonzero((n >= 2) & (near >= 0.95 * n))]
+    n = np.bincount(object_states.actor[known], minlength=len(object_states.ids))
+    near = np.bincount(object_states.actor[known & (off < 0.5)], minlength=len(object_states.ids))
+    return [object_states.ids[i] for i in np.flatnonzero((n >= 2) & (near >= 0.95 * n))]

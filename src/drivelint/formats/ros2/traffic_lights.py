@@ -33,13 +33,13 @@ NUMBERS: Final = {
 _COLOURS: Final = ("RED", "AMBER", "GREEN")
 _FULL, _DARK, _ARROW = 1, 8, 64
 """The bits of red, of which amber's and green's are the next: a full lamp is lit, a full lamp is dark, an arrow is lit."""
-_ALL: Final = 7
+_ALL_COLOURS: Final = 7
 _FLASHING, _DOUBT = 512, 1024
 _FULL_STATES: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
 _GROUPS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals", "traffic_signal_id"))
 
 
-class Shown(NamedTuple):
+class GroupStates(NamedTuple):
     """What the groups of a batch of messages show: for each message its times, for each group its message, its id and its state."""
 
     stamp_ns: Times
@@ -49,12 +49,12 @@ class Shown(NamedTuple):
     state: Codes
 
 
-def shown(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> Shown:
+def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> GroupStates:
     """Return what the groups of messages show, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
     path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
     groups = table.items(path)
     state = _states(groups, _element_numbers(constants))
-    return Shown(stamps(table, "stamp")[0], log_ns, groups.parent, groups.column(name).astype(np.int64), state)
+    return GroupStates(stamps(table, "stamp")[0], log_ns, groups.parent, groups.column(name).astype(np.int64), state)
 
 
 def _element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
@@ -88,7 +88,7 @@ def _state(bits: int) -> int:
     decides nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Of arrows alone
     nobody else knows whether they may go.
     """
-    full, dark, arrows = bits & _ALL, bits // _DARK & _ALL, bits // _ARROW & _ALL
+    full, dark, arrows = bits & _ALL_COLOURS, bits // _DARK & _ALL_COLOURS, bits // _ARROW & _ALL_COLOURS
     word = None
     if bits & _DOUBT:
         word = None
@@ -96,7 +96,7 @@ def _state(bits: int) -> int:
         word = "flashing" if not (full or arrows) else None
     elif full:
         word = _FULL_STATES.get(full) if arrows in {0, full} else None
-    elif dark == _ALL and not arrows:  # a lamp that is not listed may be lit
+    elif dark == _ALL_COLOURS and not arrows:  # a lamp that is not listed may be lit
         word = "off"
     return -1 if word is None else SIGNAL_STATES.index(word)
 
@@ -105,7 +105,7 @@ _STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], n
 
 
 def signal_states(
-    batches: Sequence[Shown], span_ns: tuple[int, int], topic: str, *, own_times: bool
+    batches: Sequence[GroupStates], span_ns: tuple[int, int], topic: str, *, own_times: bool
 ) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return `signal_id`, `t_ns` and `state` of all groups, and what cannot be used.
 

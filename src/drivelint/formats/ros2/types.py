@@ -66,8 +66,8 @@ def short_type_name(name: str) -> str:
 def parse(path: Path, name: str, text: bytes) -> Types:
     """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
 
-    def wrong(what: str) -> TraceError:
-        return TraceError(f"{path}: the definition of {name} in the log {what}")
+    def wrong(problem: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {problem}")
 
     sections = _sections(name, text, wrong)
     defined = {title for title, _ in sections}
@@ -81,8 +81,8 @@ def parse(path: Path, name: str, text: bytes) -> Types:
 def whole_number_constants(path: Path, name: str, text: bytes) -> dict[str, dict[str, int]]:
     """Return the constants of `name` and of all it uses that are whole numbers: full name of the message -> constant -> its value."""
 
-    def wrong(what: str) -> TraceError:
-        return TraceError(f"{path}: the definition of {name} in the log {what}")
+    def wrong(problem: str) -> TraceError:
+        return TraceError(f"{path}: the definition of {name} in the log {problem}")
 
     found: dict[str, dict[str, int]] = {}
     for title, body in _sections(name, text, wrong):
@@ -138,15 +138,15 @@ def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) ->
 
 
 def _refuse_loops(name: str, types: Types, wrong: MakeError) -> None:
-    done: set[str] = set()
+    checked_kinds: set[str] = set()
 
     def visit(kind: str, inside: tuple[str, ...]) -> None:
         if kind in inside:
             raise wrong(f"contains itself ({kind}): record it again")
-        if kind in done:
+        if kind in checked_kinds:
             return
         for field in types.get(kind, []):
             visit(field.kind, (*inside, kind))
-        done.add(kind)
+        checked_kinds.add(kind)
 
     visit(name, ())

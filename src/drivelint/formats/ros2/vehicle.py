@@ -80,14 +80,14 @@ def vehicle_box(
 
 def _by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]:
     """Return node -> length -> metres, the value that was set last."""
-    found: dict[str, dict[str, float]] = {}
+    values_by_node: dict[str, dict[str, float]] = {}
     for events in parameters:
         nodes = events.column("node")
         for change in ("new_parameters", "changed_parameters"):
             items = events.items(change)
             for i, name, value in _lengths(items):
-                found.setdefault(nodes[items.parent[i]].decode("utf-8", "replace"), {})[name] = value
-    return found
+                values_by_node.setdefault(nodes[items.parent[i]].decode("utf-8", "replace"), {})[name] = value
+    return values_by_node
 
 
 def _lengths(items: Table) -> Iterator[tuple[int, str, float]]:

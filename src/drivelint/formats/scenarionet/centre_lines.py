@@ -71,17 +71,17 @@ class CentreLine:
 
 def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
     """Return the lanes that have a centre line, without widths; report in `quality` those that have none."""
-    found = {}
+    centre_lines = {}
     for name, feature in scenario.features.items():
         kind = KINDS.get(str(feature.get("type")))
         if kind is None:
             continue
         try:
             line = points(feature.get("polyline"), f"map_features[{name[:100]!r}]['polyline']")
-            found[name] = _centre_line(name, feature, kind, line, heights=scenario.dataset.heights)
+            centre_lines[name] = _centre_line(name, feature, kind, line, heights=scenario.dataset.heights)
         except PickleError as error:
             quality.add("invalid_lane", "error", name, f"lane {name} is left out: {error}")
-    return found
+    return centre_lines
 
 
 def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats, *, heights: bool) -> CentreLine:
@@ -90,9 +90,9 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     line = line[np.r_[True, np.hypot(*np.diff(line[:, :2], axis=0).T) > 0.01]]
     if len(line) < 2:
         raise PickleError("its centre line has fewer than two points")
-    own = stations(line)
-    if own[-1] > _LONGEST_M:
-        raise PickleError(f"its centre line is {own[-1] / 1000.0:.0f} km long")
+    line_stations = stations(line)
+    if line_stations[-1] > _LONGEST_M:
+        raise PickleError(f"its centre line is {line_stations[-1] / 1000.0:.0f} km long")
     whole = shapely.LineString(line[:, :2])
     corners = np.unique(
         shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
@@ -101,10 +101,10 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     s = np.concatenate(
         [
             *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
-            own[-1:],
+            line_stations[-1:],
         ]
     )
-    at = np.column_stack([np.interp(s, own, column) for column in line.T])
+    at = np.column_stack([np.interp(s, line_stations, column) for column in line.T])
     apart = np.r_[
         True, np.hypot(*np.diff(at[:, :2], axis=0).T) > 1e-3
     ]  # of far coordinates the digits may not tell two points
@@ -207,25 +207,27 @@ def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float)
     lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
 
 
-def _of_parallel_lanes(lanes: Sequence[CentreLine], others: Sequence[CentreLine]) -> None:
+def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
     """Take the middle between two lanes that run beside each other, whichever way, for the bound of which nobody tells.
 
     Lanes that fork or join run beside each other, too, but share ground.
     """
-    tree = shapely.STRtree([shapely.LineString(lane.line) for lane in others])
-    least, most = _LANES_APART_M
+    tree = shapely.STRtree([shapely.LineString(lane.line) for lane in all_lanes])
+    least, farthest = _LANES_APART_M
     for lane in lanes:
         for side in (0, 1):
             unknown = np.flatnonzero(np.isnan(lane.half[:, side]))
-            rays = _rays(lane, side, most, lane.line)[unknown]
+            rays = _rays(lane, side, farthest, lane.line)[unknown]
             for k, i in tree.query(rays, predicate="intersects").T:
-                other, at = others[i], int(unknown[k])
-                if other is lane or not {*lane.before, *lane.after}.isdisjoint((*other.before, *other.after)):
+                parallel_lane, at = all_lanes[i], int(unknown[k])
+                if parallel_lane is lane or not {*lane.before, *lane.after}.isdisjoint(
+                    (*parallel_lane.before, *parallel_lane.after)
+                ):
                     continue
                 place = shapely.intersection(rays[k], tree.geometries[i])
                 far = float(shapely.distance(shapely.Point(lane.line[at]), place))
-                near = int(np.argmin(np.hypot(*(other.line - lane.line[at]).T)))
-                if least <= far <= most and abs(float(lane.normal[at] @ other.normal[near])) > _PARALLEL:
+                near = int(np.argmin(np.hypot(*(parallel_lane.line - lane.line[at]).T)))
+                if least <= far <= farthest and abs(float(lane.normal[at] @ parallel_lane.normal[near])) > _PARALLEL:
                     lane.half[at, side] = np.fmin(lane.half[at, side], far / 2.0)
 
 

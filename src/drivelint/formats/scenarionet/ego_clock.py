@@ -37,7 +37,7 @@ class EgoTrack(NamedTuple):
 
     place: Floats
     heading: Floats
-    lost: int
+    lost_messages: int
     shift_s: float
 
 
@@ -54,13 +54,13 @@ def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -
     moving = usual > _LEAST_MPS
     longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_s
     whole = np.round(longer)
-    lost = np.where((whole >= 1) & (whole <= _MOST_LOST) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
+    n_lost = np.where((whole >= 1) & (whole <= _MOST_LOST) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
     seam = _seam(place, usual * period, moving)
-    lost[seam - 1 :] = 0.0
-    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * lost)][:seam]
+    n_lost[seam - 1 :] = 0.0
+    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * n_lost)][:seam]
     shift = t_s[seam] - _time_at(place[seam], place[:seam], stream) if seam < n else np.nan
     shift = shift if abs(shift) <= _MOST_SHIFT_S else np.nan
-    if not lost.any() and np.isnan(shift):
+    if not n_lost.any() and np.isnan(shift):
         return EgoTrack(place, heading, 0, np.nan)
     stream += np.nan_to_num(shift)
     inside = (t_s >= stream[0] - 1e-9) & (t_s <= stream[-1] + 1e-9)
@@ -68,7 +68,7 @@ def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -
     timed = np.column_stack([np.where(inside, np.interp(t_s, stream, column), np.nan) for column in columns])
     later = (t_s > stream[-1]) & (np.arange(n) >= seam)  # the stream has ended, the frames go on
     timed[later] = np.column_stack([place, heading])[later]
-    return EgoTrack(timed[:, :2], timed[:, 2], int(lost.sum()), float(shift))
+    return EgoTrack(timed[:, :2], timed[:, 2], int(n_lost.sum()), float(shift))
 
 
 def _usual(speed: Floats) -> Floats:

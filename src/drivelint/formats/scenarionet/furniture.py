@@ -42,24 +42,24 @@ def _lights(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     """Return a row for each light: it is called as its states are, and holds from its stop point, or without one the lane's begin."""
-    rows, lost = [], []
+    rows, lost_names = [], []
     for name, light in scenario.lights.items():
         lane = lanes.get(str(light.get("lane", name)))
         if lane is None:
-            lost.append(name)
+            lost_names.append(name)
             continue
         place = _place(light.get("stop_point"), offset) if scenario.dataset.stop_points else None
         s = 0.0 if place is None else lane.line.station(place)
         where = lane.line.centre[0] if place is None else place
         rows.append(signal_row(lane, s, where, signal_id=name, kind="traffic_light", dynamic=True))
-    _report_lost(lost, "lights", quality)
+    _report_lost(lost_names, "lights", quality)
     return rows
 
 
 def _stop_signs(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    rows, lost = [], []
+    rows, lost_names = [], []
     for name, feature in scenario.features.items():
         if str(feature.get("type")) != "STOP_SIGN":
             continue
@@ -68,10 +68,10 @@ def _stop_signs(
         held = [lanes[str(i)] for i in held if str(i) in lanes] if isinstance(held, (list, tuple)) else []
         near = [lane for lane in held if place is not None and _far(lane, place) <= _STANDS_FAR_M]
         if place is None or not near:
-            lost.append(name)
+            lost_names.append(name)
             continue
         rows += [signal_row(lane, lane.line.station(place), place, signal_id=name, kind="stop") for lane in near]
-    _report_lost(lost, "stop signs", quality)
+    _report_lost(lost_names, "stop signs", quality)
     return rows
 
 
@@ -88,9 +88,9 @@ def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
     return place + offset if len(place) == 2 and bool((np.abs(place) < FARTHEST_M).all()) else None
 
 
-def _report_lost(names: list[str], what: str, quality: MapQuality) -> None:
+def _report_lost(names: list[str], kind: str, quality: MapQuality) -> None:
     if names:
-        message = f"{what} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
+        message = f"{kind} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
         quality.add("signal_without_lane", "warning", None, message, len(names))
 
 
@@ -98,8 +98,8 @@ def _crossings(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     """Return a row for each crossing and lane for driving that it lies across."""
-    driven = [lane for lane in lanes if lane.drivable]
-    lines = [shapely.LineString(lane.line.centre) for lane in driven]
+    drivable_lanes = [lane for lane in lanes if lane.drivable]
+    lines = [shapely.LineString(lane.line.centre) for lane in drivable_lanes]
     tree = shapely.STRtree(lines)
     rows: Rows = []
     for name, feature in scenario.features.items():
@@ -121,5 +121,5 @@ def _crossings(
         for i in crossed:
             common = shapely.get_coordinates(shapely.intersection(area, lines[i]))
             s = shapely.line_locate_point(lines[i], shapely.points(common))
-            rows.append(crossing_row(name, driven[i].lanelet_id, s, None))
+            rows.append(crossing_row(name, drivable_lanes[i].lanelet_id, s, None))
     return sorted(rows, key=lambda row: (row["crossing_id"], row["lanelet_id"]))

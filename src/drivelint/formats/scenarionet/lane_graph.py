@@ -17,7 +17,7 @@ _JOINED_M: Final = 0.3  # the end of a lane and the begin of the next are one po
 _ONWARDS: Final = float(np.cos(np.radians(45.0)))
 _OUTSIDE_M: Final = 0.4  # so far beyond a bound one looks for the lane beside
 _SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_MOST: Final = 3  # of these places, where the same lane lies beside
+_LEAST_PLACES: Final = 3  # of these places, where the same lane lies beside
 _ALONG: Final = float(np.cos(np.radians(25.0)))
 _LEVEL_M: Final = 3.0
 
@@ -94,25 +94,25 @@ def _beside(
     places = np.column_stack([x, y]) + sign * _OUTSIDE_M * np.column_stack([nx, ny])
     votes: dict[int, list[int]] = defaultdict(list)
     for k, i in tree.query(shapely.points(places), predicate="within").T:
-        other = lanes[i]
-        near = int(np.argmin(np.hypot(*(other.line - places[k]).T)))
-        along = float(other.normal[near] @ (nx[k], ny[k]))
-        if other is not lane and abs(along) > _ALONG and not abs(other.z[near] - z[k]) >= _LEVEL_M:
+        neighbour = lanes[i]
+        near = int(np.argmin(np.hypot(*(neighbour.line - places[k]).T)))
+        along = float(neighbour.normal[near] @ (nx[k], ny[k]))
+        if neighbour is not lane and abs(along) > _ALONG and not abs(neighbour.z[near] - z[k]) >= _LEVEL_M:
             votes[int(i)].append(1 if along > 0 else -1)
     for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
-        other = lanes[i]
-        joined = not {*lane.after}.isdisjoint(other.after) or not {*lane.before}.isdisjoint(other.before)
-        if len(votes[i]) >= _MOST and not joined:
-            return other.lane_id, sum(votes[i]) < 0
+        neighbour = lanes[i]
+        joined = not {*lane.after}.isdisjoint(neighbour.after) or not {*lane.before}.isdisjoint(neighbour.before)
+        if len(votes[i]) >= _LEAST_PLACES and not joined:
+            return neighbour.lane_id, sum(votes[i]) < 0
     return None, None
 
 
-def _mutual(name: str, found: Mapping[str, Neighbours]) -> Neighbours:
+def _mutual(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
     """Return the neighbours of a lane that have it or nobody on that side: a short lane is beside a long one, but not its neighbour."""
-    mine = found[name]
+    mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):
-        other = found.get(getattr(mine, f"{side}_id") or "")
-        theirs = side if getattr(mine, f"{side}_against") else opposite
+        other = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")
+        theirs = side if getattr(mutual_neighbours, f"{side}_against") else opposite
         if other is not None and getattr(other, f"{theirs}_id") not in {None, name}:
-            mine = mine._replace(**{f"{side}_id": None, f"{side}_against": None})
-    return mine
+            mutual_neighbours = mutual_neighbours._replace(**{f"{side}_id": None, f"{side}_against": None})
+    return mutual_neighbours

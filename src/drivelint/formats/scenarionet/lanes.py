@@ -76,13 +76,13 @@ def _stations_on(centre: CentreLine, places: Floats) -> Floats:
 
 def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
     """Return the lanes with their bounds; report in `quality` those of which nothing tells the width."""
-    found, beside = [], find_neighbours(centres)
+    bounded_lanes, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
         if np.isnan(lane.half).any():
             message = f"lane {name} is left out: neither it nor what it joins has bounds, and so it has no width"
             quality.add("invalid_lane", "error", name, message)
             continue
-        found.append(
+        bounded_lanes.append(
             BoundedLane(
                 name,
                 *lane.bounds,
@@ -96,7 +96,7 @@ def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: Map
                 **beside[name]._asdict(),
             )
         )
-    return found
+    return bounded_lanes
 
 
 def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:

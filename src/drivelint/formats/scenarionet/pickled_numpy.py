@@ -82,7 +82,7 @@ def array_of(state: Any) -> np.ndarray[Any, Any]:
     return _view(raw, kind, shape, "F" if is_fortran else "C")
 
 
-def made(meaning: str, arguments: tuple[Any, ...]) -> Any:
+def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
     """Return what a name with these arguments stands for, but for arrays without content and bytes from texts."""
     if meaning == "number type":
         return NumberType(arguments[0])

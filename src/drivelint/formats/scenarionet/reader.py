@@ -88,7 +88,7 @@ def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[Qua
         timed = timed_track(tracks.place[ego, :, :2], tracks.heading[ego], tracks.t_s, dataset.ego_message_s)
         tracks.place[ego, :, :2], tracks.heading[ego] = timed.place, timed.heading
         tracks.present[ego] = np.isfinite(timed.heading)
-        findings = _of_clock(tracks.ids[ego], timed.lost, timed.shift_s, dataset.ego_message_s)
+        findings = _of_clock(tracks.ids[ego], timed.lost_messages, timed.shift_s, dataset.ego_message_s)
     if dataset.ego_ahead_m:
         heading = tracks.heading[ego]
         tracks.place[ego, :, 0] += dataset.ego_ahead_m * np.cos(heading)
@@ -101,11 +101,11 @@ def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[Qua
     return findings, notes
 
 
-def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[QualityFinding]:
-    if not lost and not np.isfinite(shift_s):
+def _of_clock(ego: str, lost_messages: int, shift_s: float, message_s: float) -> list[QualityFinding]:
+    if not lost_messages and not np.isfinite(shift_s):
         return []
-    steps = f"{lost} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
-    parts = [steps] if lost else []
+    steps = f"{lost_messages} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
+    parts = [steps] if lost_messages else []
     if np.isfinite(shift_s):
         parts.append(
             f"its last positions, which are of the annotated frames, tell that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
@@ -114,7 +114,7 @@ def _of_clock(ego: str, lost: int, shift_s: float, message_s: float) -> list[Qua
         f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
         "which are known to about 0.1 s against the others'"
     )
-    return [QualityFinding("ego_clock", "warning", message, max(lost, 1), actor_id=ego)]
+    return [QualityFinding("ego_clock", "warning", message, max(lost_messages, 1), actor_id=ego)]
 
 
 def _states(tracks: Tracks) -> States:
@@ -146,7 +146,7 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
     """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
     scenario.refuse_more(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
-    seen: set[Any] = set()
+    known_words: set[Any] = set()
     for name, light in scenario.lights.items():
         state = light.get("state")
         words = state.get("object_state") if isinstance(state, dict) else None
@@ -156,8 +156,8 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
             raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
         ids.append(name)
         codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
-        seen.update(words)
-    unread = {word[:100] for word in seen - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
+        known_words.update(words)
+    unread = {word[:100] for word in known_words - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
     if not ids:
         return None, []
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))

@@ -70,10 +70,10 @@ class Scenario(NamedTuple):
         """The name of the place, such as singapore-onenorth; empty: not known."""
         return str(self.metadata.get("map", ""))
 
-    def refuse_more(self, n: int, what: str) -> None:
+    def refuse_more(self, n: int, kind: str) -> None:
         """Refuse so many values: a file that names one of them again and again would grow beyond any bound. Errors: `PickleError`."""
         if n > self.size:
-            raise PickleError(f"its {n} {what} are more than the file can hold: write the scenario again")
+            raise PickleError(f"its {n} {kind} are more than the file can hold: write the scenario again")
 
 
 def read_scenario(content: bytes) -> Scenario:
@@ -98,10 +98,10 @@ def _n_points(feature: Mapping[str, Any]) -> int:
     return n
 
 
-def _part(found: Any, name: str) -> dict[str, Any]:
-    if not isinstance(found, dict) or not isinstance(found.get(name), dict):
+def _part(content: Any, name: str) -> dict[str, Any]:
+    if not isinstance(content, dict) or not isinstance(content.get(name), dict):
         raise PickleError(f"it holds no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
-    return dict(found[name])
+    return dict(content[name])
 
 
 def _each_a_dict(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:

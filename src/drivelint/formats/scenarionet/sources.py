@@ -25,7 +25,7 @@ _DISTINCT_MPS: Final = 0.05
 _SAME_MPS: Final = 0.02
 _SAME_SHARE: Final = 0.01
 """A velocity is a difference of the positions if it is this near to it: clocks that were rounded to a step change it by less than 0.1 %."""
-_MOST: Final = 0.9
+_LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
 _EVEN_M: Final = 1e-4
 _WIDER: Final = 1.2
@@ -41,13 +41,13 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
     """
     is_ego = np.arange(len(tracks.ids)) == tracks.ego
     findings = []
-    for group, whose in ((is_ego, "the ego"), (~is_ego, "the others")):
+    for group, owner in ((is_ego, "the ego"), (~is_ego, "the others")):
         if (when := _difference(tracks, group)) is None:
             continue
         n = int((group[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
         tracks.velocity[group] = np.nan
         message = (
-            f"velocities of {whose} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
+            f"velocities of {owner} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
             "they are derived anew"
         )
         findings.append(QualityFinding("velocity_dropped", "warning", message, n))
@@ -67,7 +67,7 @@ def _difference(tracks: Tracks, group: Mask) -> str | None:
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
         same = off < _SAME_MPS + _SAME_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
-        if same[tells].mean() > _MOST:
+        if same[tells].mean() > _LEAST_SAME_SHARE:
             return when
     return None
 
@@ -124,8 +124,8 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     )
     between[~tracks.present[rows]] = np.nan
     tracks.velocity[rows] = between
-    moved = [tracks.ids[i] for i in np.flatnonzero(rows & (_spread_m(tracks) > _MOVED_M))]
-    if not moved:
+    moving_ids = [tracks.ids[i] for i in np.flatnonzero(rows & (_spread_m(tracks) > _MOVED_M))]
+    if not moving_ids:
         return []
     period_s = float(np.median(np.diff(t_s)))
     text = (
@@ -134,8 +134,8 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     )
     # the check velocity_filtered, one for each actor, is what tells that an acceleration is not known
     return [
-        QualityFinding.of_actors("interpolated", "warning", text.format(listed(moved)), moved),
-        *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moved),
+        QualityFinding.of_actors("interpolated", "warning", text.format(listed(moving_ids)), moving_ids),
+        *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moving_ids),
     ]
 
 
@@ -155,7 +155,7 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     long_kind = np.isin(tracks.kinds, list(_LONG_KINDS))
     n = np.maximum(tracks.present.sum(axis=1), 1)
     length, width = (np.nansum(tracks.size[..., k], axis=1) / n for k in (0, 1))
-    told: dict[str, list[str]] = {}
+    ids_by_reason: dict[str, list[str]] = {}
     for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
         if _moves_ahead(tracks, int(i)):
             why = "length and width of {} are in each other's place, as its motion along the short side shows: they are exchanged"
@@ -164,9 +164,10 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
         else:
             why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]
-        told.setdefault(why, []).append(tracks.ids[i])
+        ids_by_reason.setdefault(why, []).append(tracks.ids[i])
     return [
-        QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids) for why, ids in told.items()
+        QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids)
+        for why, ids in ids_by_reason.items()
     ]
 
 

@@ -13,7 +13,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from drivelint.formats.scenarionet.pickle_shortcuts import Points, array_at, points_at
-from drivelint.formats.scenarionet.pickled_numpy import Array, Name, NumberType, PickleError, array_of, made, name_of
+from drivelint.formats.scenarionet.pickled_numpy import (
+    Array,
+    Name,
+    NumberType,
+    PickleError,
+    array_of,
+    build_value,
+    name_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -118,7 +126,7 @@ class _Machine:
     def frame(self, at: int) -> int:
         return at + 8
 
-    def none(self, at: int) -> int:
+    def push_none(self, at: int) -> int:
         self.stack.append(None)
         return at
 
@@ -139,7 +147,7 @@ class _Machine:
         return at + width
 
     def long(self, at: int, width: int) -> int:
-        begin, end = self._counted(at, width)
+        begin, end = self._span_after_length(at, width)
         self.stack.append(int.from_bytes(self.content[begin:end], "little", signed=True))
         return end
 
@@ -148,16 +156,16 @@ class _Machine:
         return at + 8
 
     def text(self, at: int, width: int) -> int:
-        begin, end = self._counted(at, width)
+        begin, end = self._span_after_length(at, width)
         self.stack.append(str(self.content[begin:end], "utf-8", "surrogatepass"))
         return end
 
     def raw(self, at: int, width: int) -> int:
-        begin, end = self._counted(at, width)
+        begin, end = self._span_after_length(at, width)
         self.stack.append(self.content[begin:end])
         return end
 
-    def _counted(self, at: int, width: int) -> tuple[int, int]:
+    def _span_after_length(self, at: int, width: int) -> tuple[int, int]:
         """Return begin and end of what a length of `width` bytes stands before."""
         begin = at + width
         end = begin + int.from_bytes(self._part(at, width), "little")
@@ -330,7 +338,7 @@ class _Machine:
         elif name.meaning == "encode":
             value = self._encoded(arguments[0])
         else:
-            value = made(name.meaning, arguments)
+            value = build_value(name.meaning, arguments)
         self.stack.append(value)
         return at
 
@@ -365,7 +373,7 @@ class _Machine:
 
 _OPERATIONS: Final = {
     0x80: "protocol", 0x95: "frame", 0x2E: "stop",
-    0x4E: "none", 0x88: "true", 0x89: "false",
+    0x4E: "push_none", 0x88: "true", 0x89: "false",
     0x4B: "unsigned 1", 0x4D: "unsigned 2", 0x4A: "signed 4", 0x8A: "long 1", 0x8B: "long 4", 0x47: "real",
     0x8C: "text 1", 0x58: "text 4", 0x8D: "text 8", 0x43: "raw 1", 0x42: "raw 4", 0x8E: "raw 8", 0x96: "raw 8",
     0x94: "memoize", 0x71: "put 1", 0x72: "put 4", 0x68: "get 1", 0x6A: "get 4",

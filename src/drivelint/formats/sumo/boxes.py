@@ -49,14 +49,17 @@ class Boxes(NamedTuple):
 
 def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
     """Return the boxes, by what is known of the `types` and what the user says of the ego."""
-    found = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
-    said = [kind for kind, _ in found]
-    classes = np.array([-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in said], np.int8)
+    types_with_originals = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
+    vehicle_types = [kind for kind, _ in types_with_originals]
+    classes = np.array(
+        [-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in vehicle_types], np.int8
+    )
     actor_class = classes[tracks.type_code]
     for kind, word in ((PERSON, "pedestrian"), (CONTAINER, "object")):
         actor_class[tracks.kind == kind] = ACTOR_CLASSES.index(word)
     length, width = (
-        np.array([getattr(t, side) for t in said], np.float64)[tracks.type_code] for side in ("length_m", "width_m")
+        np.array([getattr(t, side) for t in vehicle_types], np.float64)[tracks.type_code]
+        for side in ("length_m", "width_m")
     )
     changing = _changing(tracks, length)
     length[changing] = width[changing] = np.nan
@@ -65,7 +68,9 @@ def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOp
     if options.ego_size is not None:
         ahead[sizeless & _is_ego(tracks, actor_class, options.ego)] = options.ego_size.length_m / 2
     findings = _findings(tracks, changing, sizeless)
-    copies = {name: base for name, (_, base) in zip(tracks.type_names, found, strict=True) if base is not None}
+    copies = {
+        name: base for name, (_, base) in zip(tracks.type_names, types_with_originals, strict=True) if base is not None
+    }
     if copies:
         findings.append(_copies(tracks, copies))
     return Boxes(actor_class, length, width, ahead, findings)
@@ -81,7 +86,7 @@ def _changing(tracks: Tracks, length: Floats) -> Mask:
     pairs, row, count = np.unique(
         tracks.actor.astype(np.int64) * n_types + tracks.type_code, return_inverse=True, return_counts=True
     )
-    other = np.zeros(len(pairs), np.bool_)
+    differs = np.zeros(len(pairs), np.bool_)
     lengths = np.full(len(pairs), np.nan)
     lengths[row] = length
     actors = pairs // n_types
@@ -90,8 +95,8 @@ def _changing(tracks: Tracks, length: Floats) -> Mask:
         known, at = np.unique(lengths[mine][np.isfinite(lengths[mine])], return_inverse=True)
         if len(known):
             most = known[np.argmax(np.bincount(at, count[mine][np.isfinite(lengths[mine])]))]
-            other[mine] = lengths[mine] != most
-    found: Mask = other[row]
+            differs[mine] = lengths[mine] != most
+    found: Mask = differs[row]
     return found
 
 

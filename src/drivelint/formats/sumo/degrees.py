@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.rows import Rows
 
 _FARTHEST: Final = np.array([180.0, 90.0])
-_MOVED: Final = 1e-7
+_LEAST_MOTION: Final = 1e-7
 """Less is no motion: a centimetre in degrees, a rounding error in metres."""
 _SLOW_PER_S: Final = 0.01
 """Nobody drives 0.01 degrees in a second; who moves by less than 0.01 metres in a second stands."""
@@ -68,10 +68,10 @@ def net_positions(
 
 
 def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
-    placed = xy[np.isfinite(xy).all(axis=1)]
-    if not len(placed):
+    points = xy[np.isfinite(xy).all(axis=1)]
+    if not len(points):
         return False
-    may_be = bool((np.abs(placed) <= _FARTHEST).all())
+    may_be = bool((np.abs(points) <= _FARTHEST).all())
     moves = _moves_in_degrees(rows, xy, actor) if may_be else False
     if moves is False and rows.geo_option:
         raise TraceError(
@@ -85,7 +85,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():
         return False
-    return bool(location.surrounds(frame.unproject(transform(placed, WGS84, frame.reference))).all())
+    return bool(location.surrounds(frame.unproject(transform(points, WGS84, frame.reference))).all())
 
 
 def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:
@@ -94,7 +94,7 @@ def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool 
     same = np.diff(actor[order]) == 0
     dt = np.diff(rows.numbers("time")[order])
     way = np.hypot(*np.diff(xy[order], axis=0).T)
-    moved = same & (dt > 0.0) & (way >= _MOVED)
+    moved = same & (dt > 0.0) & (way >= _LEAST_MOTION)
     if not moved.any():
         return None
     per_s = way[moved] / dt[moved]

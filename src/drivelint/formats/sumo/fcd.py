@@ -83,7 +83,7 @@ def read(probe: Probe) -> Recording:
     # a step at which nobody is there is a row with its time alone
     filled = np.any([np.isfinite(rows.numbers(name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
-    lost = _lost(rows.numbers("time"), nameless & filled, f"{path.name}: rows without an id")
+    lost_times = _lost_times(rows.numbers("time"), nameless & filled, f"{path.name}: rows without an id")
     rows = rows.take(~nameless)
     untimed = int((~(np.abs(rows.numbers("time")) < _LONGEST_S)).sum())
     if untimed:
@@ -100,20 +100,20 @@ def read(probe: Probe) -> Recording:
         message = f"rows of persons or containers that ride in a vehicle: {int(rides.sum())}: there they are no road users of their own"
         recording.findings.append(QualityFinding("riding", "info", message, int(rides.sum())))
     if rows.lacks_end:
-        recording.lost.append(
+        recording.lost_times.append(
             LostTime(last_ns, None, f"{path.name} ends without </{ROOT}>: its writer did not finish it")
         )
     add_light_states(recording, path, _is_log)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
-        recording.lost += lost
+        recording.lost_times += lost_times
     return recording
 
 
-def _lost(time_s: Floats, lost: Mask, what: str) -> list[LostTime]:
+def _lost_times(time_s: Floats, lost_rows: Mask, cause: str) -> list[LostTime]:
     timed = np.abs(time_s) < _LONGEST_S
-    return times_of_lost_rows(np.round(np.where(timed, time_s, 0.0) * 1e9).astype(np.int64), timed, lost, what)
+    return times_of_lost_rows(np.round(np.where(timed, time_s, 0.0) * 1e9).astype(np.int64), timed, lost_rows, cause)
 
 
 def _is_log(file: Path) -> bool:
@@ -222,11 +222,14 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
 
 
 def _lights(signals: Floats) -> dict[str, Codes]:
-    known = (signals >= 0) & (signals < 2**31)
-    bits = np.where(known, signals, 0).astype(np.int64)
+    has_signals = (signals >= 0) & (signals < 2**31)
+    bits = np.where(has_signals, signals, 0).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)
     for bit, word in ((_RIGHT, "right"), (_LEFT, "left"), (_EMERGENCY, "hazard")):
         indicator[bits & bit > 0] = INDICATORS.index(word)
     indicator[(bits & _RIGHT > 0) & (bits & _LEFT > 0)] = INDICATORS.index("hazard")
     brake = np.where(bits & _BRAKE > 0, BRAKE_LIGHTS.index("on"), BRAKE_LIGHTS.index("off")).astype(np.int8)
-    return {"indicator": np.where(known, indicator, np.int8(-1)), "brake_light": np.where(known, brake, np.int8(-1))}
+    return {
+        "indicator": np.where(has_signals, indicator, np.int8(-1)),
+        "brake_light": np.where(has_signals, brake, np.int8(-1)),
+    }

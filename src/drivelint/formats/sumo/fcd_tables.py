@@ -32,7 +32,7 @@ _PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's where all of these are there."""
 _INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Read as numbers at once; what another element has in columns behind the slope may be a text."""
-_READ: Final = (*ATTRIBUTES, "lane", "edge")
+_READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
 _NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
 _LIGHTS_AND_MORE: Final = ("signals", "acceleration")
 """What vehicles alone have."""
@@ -45,14 +45,14 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     """
     there = set(names)
     if there >= _PLAIN:
-        return {"": {name: name for name in ("time", *_READ) if name in there}}
-    found = {}
+        return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
+    groups = {}
     for kind in KINDS if _TIME in there else ():
         for prefix in (f"{kind}_", f"timestep_{kind}_"):
-            columns = {name: prefix + name for name in _READ if prefix + name in there}
+            columns = {name: prefix + name for name in _READ_COLUMNS if prefix + name in there}
             if {"id", "x", "y"} <= columns.keys():
-                found[kind] = {"time": _TIME, **columns}
-    return found
+                groups[kind] = {"time": _TIME, **columns}
+    return groups
 
 
 def read_parquet(path: Path) -> Rows:
@@ -118,15 +118,15 @@ def _of_one_group(
     """Return the kinds of the rows, and the columns without what belongs to another kind's attributes."""
     n = len(columns["time"])
     kind = _kinds_by_lane(n, columns)
-    none = pa.scalar(None, pa.string())
+    null_text = pa.scalar(None, pa.string())
     if "vehicle" in columns:
         carried = pa.array(kind == CARRIED)
-        columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), none)
+        columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), null_text)
     for name in _LIGHTS_AND_MORE:
         if name in columns and not (kind == VEHICLE).all():
             texts = columns[name].cast(pa.string())
             may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER))
-            columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, none)
+            columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, null_text)
     return kind, columns
 
 

@@ -56,28 +56,32 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
     if len(set(names)) < len(names):
         return None
     columns = [f"{i}" for i in range(len(parts))]
-    others: list[tuple[int, str]] = []
+    other_lines: list[tuple[int, str]] = []
 
-    def other(row: Any) -> str:
-        others.append((row.number, row.text.strip()))
+    def keep_other_line(row: Any) -> str:
+        other_lines.append((row.number, row.text.strip()))
         return "skip"
 
-    wanted = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in ATTRIBUTES]
+    read_columns = [c for i, c in enumerate(columns) if i % 2 == 0 or names[i // 2] in ATTRIBUTES]
     try:
         table = pa_csv.read_csv(
             pa.BufferReader(memoryview(content)[begin:]),
             # one thread: the numbers of lines are only known then
             pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
-            pa_csv.ParseOptions(delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=other),
+            pa_csv.ParseOptions(
+                delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=keep_other_line
+            ),
             pa_csv.ConvertOptions(
-                column_types=dict.fromkeys(wanted, pa.string()), include_columns=wanted, strings_can_be_null=False
+                column_types=dict.fromkeys(read_columns, pa.string()),
+                include_columns=read_columns,
+                strings_can_be_null=False,
             ),
         )
-        times = _times(others, len(table))
+        times = _times(other_lines, len(table))
     except pa.ArrowInvalid:
         return None
     alike = (pc.equal(table.column(column), part) for column, part in zip(columns[::2], parts[::2], strict=True))
-    more = content.count(b"<", begin) > len(table) + len(others)  # elements than lines
+    more = content.count(b"<", begin) > len(table) + len(other_lines)  # elements than lines
     if times is None or more or not all(pc.all(column).as_py() for column in alike):
         return None
     values = {name: table.column(f"{2 * i + 1}") for i, name in enumerate(names) if name in ATTRIBUTES}
@@ -97,14 +101,14 @@ def _is_plain(head: bytes) -> bool:
     return (root.getroottree().docinfo.encoding or "UTF-8").upper() in {"UTF-8", "US-ASCII"}
 
 
-def _times(others: list[tuple[int, str]], n: int) -> pa.Array | None:
+def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
     """Return the times of `n` vehicles, that of the step around each; None where the other lines are not those of steps alone.
 
-    `others`: number and text of each line that is no vehicle's. Errors: `pa.ArrowInvalid` for a time that is none.
+    `other_lines`: number and text of each line that is no vehicle's. Errors: `pa.ArrowInvalid` for a time that is none.
     """
     stamps, counts = [""], [0]
     order, above = "", 0
-    for number, line in others:
+    for number, line in other_lines:
         counts[-1] += number - above - 1
         order += "v" if number > above + 1 else ""
         above = number

@@ -46,18 +46,18 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     whether a file is one. Of others there is a note.
     """
     files = [file for file in sorted(log.parent.glob(_BESIDE)) if file != log and _has_states(file)]
-    named = [file for file in files if _first_part(file) == _first_part(log)]
+    log_files = [file for file in files if _first_part(file) == _first_part(log)]
     if (
-        not named
+        not log_files
         and len(files) == 1
         and not any(is_log(file) for file in log.parent.iterdir() if file.is_file() and file != log)
     ):
-        named = files
-    if len(named) == 1:
-        _read(named[0], recording)
+        log_files = files
+    if len(log_files) == 1:
+        _read(log_files[0], recording)
     elif files:
-        what = "which of them is its own is not known" if named else "none is named as it is"
-        names = listed([file.name for file in named or files])
+        what = "which of them is its own is not known" if log_files else "none is named as it is"
+        names = listed([file.name for file in log_files or files])
         note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
         recording.notes.append(note)
 
@@ -88,12 +88,12 @@ def _read(file: Path, recording: Recording) -> None:
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{what}: {n}: they are left out", n))
         timed = np.abs(times_s) < _LONGEST_S
         t_ns = np.round(np.where(timed, times_s, 0.0) * 1e9).astype(np.int64)
-        recording.lost += times_of_lost_rows(t_ns, timed, unread, what)
+        recording.lost_times += times_of_lost_rows(t_ns, timed, unread, what)
 
 
 def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
     """Return the rows of all connections, and of each state its time in seconds and whether it cannot be understood."""
-    found: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
+    states_by_light: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
     every: list[float] = []
     dropped: list[bool] = []
     for element in states:
@@ -103,18 +103,18 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Ma
         if not light or not letters or not letters.isascii() or not abs(at) < _LONGEST_S:
             dropped[-1] = True
             continue
-        times, shown = found.setdefault((light, len(letters)), ([], []))
+        times, state_texts = states_by_light.setdefault((light, len(letters)), ([], []))
         times.append(at)
-        shown.append(letters)
+        state_texts.append(letters)
     unread = np.array(every, np.float64), np.array(dropped, np.bool_)
-    if not found:
+    if not states_by_light:
         return None, *unread
     words = np.full(256, -1, np.int8)
     for letter, word in _LETTERS.items():
         words[ord(letter)] = SIGNAL_STATES.index(word)
     parts = [
-        _table(light, n, np.array(times), words[np.frombuffer("".join(shown).encode(), np.uint8)])
-        for (light, n), (times, shown) in sorted(found.items())
+        _table(light, n, np.array(times), words[np.frombuffer("".join(state_texts).encode(), np.uint8)])
+        for (light, n), (times, state_texts) in sorted(states_by_light.items())
     ]
     return pa.concat_tables(parts), *unread
 

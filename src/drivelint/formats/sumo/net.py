@@ -58,7 +58,7 @@ _KINDS: Final = (
     ("sidewalk", {"pedestrian", "wheelchair"}),
     ("restricted", {"emergency", "authority", "army", "vip", "custom1", "custom2", "container"}),
 )
-_EVERYBODY: Final = frozenset().union(*(classes for _, classes in _KINDS))
+_ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _KINDS))
 _DRIVABLE: Final = frozenset({"driving", "bus", "taxi", "HOV"})
 _ROADS: Final = {
     "motorway": "motorway",
@@ -115,12 +115,14 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     return location.frame()
 
 
-def _handedness(request: MapOptions, said: str | None, quality: MapQuality) -> tuple[str, str]:
-    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right. `said` None: lost."""
-    if said is not None and request.side not in {None, said}:
-        message = f"the option --handedness: {request.side}; the net: {said}; the option is taken"
+def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
+    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right. `net_side` None: lost."""
+    if net_side is not None and request.side not in {None, net_side}:
+        message = f"the option --handedness: {request.side}; the net: {net_side}; the option is taken"
         quality.add("handedness_disagrees", "warning", None, message)
-    return choose_side([("option", request.side), ("attribute", None if request.side else said)], quality, "the net")
+    return choose_side(
+        [("option", request.side), ("attribute", None if request.side else net_side)], quality, "the net"
+    )
 
 
 def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool, quality: MapQuality) -> _Net:
@@ -129,14 +131,14 @@ def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool,
         name, function = edge.get("id", ""), edge.get("function", "normal")
         if function in {"walkingarea", "connector"}:
             continue
-        made = []
+        lanes_by_index = []
         for element in edge.iterfind("lane"):
             try:
-                made.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
+                lanes_by_index.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
             except (ValueError, KeyError) as error:
                 lane = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
-        lanes = [lane for _, lane in sorted(made, key=lambda item: item[0])]
+        lanes = [lane for _, lane in sorted(lanes_by_index, key=lambda item: item[0])]
         if function == "crossing":
             net.walks += lanes
             continue
@@ -186,9 +188,9 @@ def _lane(
 
 def _kind(allow: str | None, disallow: str | None) -> str:
     if allow is not None:
-        may = _EVERYBODY if allow == "all" else set(allow.split())
+        may = _ALL_CLASSES if allow == "all" else set(allow.split())
     else:
-        may = _EVERYBODY - (_EVERYBODY if disallow == "all" else set((disallow or "").split()))
+        may = _ALL_CLASSES - (_ALL_CLASSES if disallow == "all" else set((disallow or "").split()))
     return next((kind for kind, classes in _KINDS if classes & may), "none")
 
 
@@ -251,9 +253,9 @@ def _bend(net: _Net) -> None:
         lane.left, lane.right = _beside(middle, half), _beside(middle, -half)
 
 
-def _begun(middle: Floats, other: BoundedLane, end: int) -> Floats:
+def _begun(middle: Floats, joined_lane: BoundedLane, end: int) -> Floats:
     """Return the line with one point added near its start (0) or end (-1), in the direction of the lane that it joins there."""
-    line = (other.left + other.right) / 2
+    line = (joined_lane.left + joined_lane.right) / 2
     step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
     step = step / np.hypot(*step)
     own = middle[1] - middle[0] if end == 0 else middle[-2] - middle[-1]

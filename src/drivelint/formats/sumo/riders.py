@@ -24,28 +24,31 @@ def riding(rows: Rows) -> Mask:
     Of several in one place whose kind is not known, all but the first ride: SUMO writes a vehicle before its passengers.
     """
     said = rows.table["vehicle"]
-    named: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
+    is_rider: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
     carried = np.isin(rows.kind, (PERSON, CONTAINER, CARRIED)) & pc.is_null(said).to_numpy()
-    asked = carried | (rows.kind == UNKNOWN)
-    if not asked.any():
-        return named
+    may_ride = carried | (rows.kind == UNKNOWN)
+    if not may_ride.any():
+        return is_rider
     time, x, y = (rows.numbers(name) for name in ("time", "x", "y"))
-    near = np.flatnonzero(np.isin(time, np.unique(time[asked])) & np.isfinite(x) & np.isfinite(y))
+    near = np.flatnonzero(np.isin(time, np.unique(time[may_ride])) & np.isfinite(x) & np.isfinite(y))
     there = np.stack([time, x, y, rows.numbers("angle"), rows.numbers("speed")], axis=1)[near] + 0.0
     _, place = np.unique(there.view(np.int64), axis=0, return_inverse=True)
     place = place.reshape(-1)
     kind = rows.kind[near]
-    first_vehicle, first_unknown = _first(place, kind == VEHICLE), _first(place, kind == UNKNOWN)
+    first_vehicle, first_unknown = (
+        _first_row_by_place(place, kind == VEHICLE),
+        _first_row_by_place(place, kind == UNKNOWN),
+    )
     # a vehicle stands before its passengers, and what is not known may be a vehicle
     beside = (first_vehicle[place] < len(near)) | (first_unknown[place] < np.arange(len(near)))
-    found = named.copy()
-    found[near] |= asked[near] & beside
-    return found
+    riders = is_rider.copy()
+    riders[near] |= may_ride[near] & beside
+    return riders
 
 
-def _first(place: np.ndarray, chosen: Mask) -> np.ndarray:
-    """Return for each place the first of the chosen rows that is there, the number of rows where none is."""
-    found = np.full(int(place.max(initial=-1)) + 1, len(place))
-    rows = np.flatnonzero(chosen)[::-1]
-    found[place[rows]] = rows
-    return found
+def _first_row_by_place(place: np.ndarray, candidates: Mask) -> np.ndarray:
+    """Return for each place the first of the candidate rows that is there, the number of rows where none is."""
+    first_rows = np.full(int(place.max(initial=-1)) + 1, len(place))
+    rows = np.flatnonzero(candidates)[::-1]
+    first_rows[place[rows]] = rows
+    return first_rows

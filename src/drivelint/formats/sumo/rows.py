@@ -55,16 +55,16 @@ class Rows(NamedTuple):
 def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind: Codes) -> Rows:
     """Return columns, `time` and some of `ATTRIBUTES`, as rows. Errors: `TraceError` for a cell that is no number or time."""
     n = len(kind)
-    made = {}
+    arrays = {}
     for name in ("time", *ATTRIBUTES):
         column = columns.get(name, pa.nulls(n))
         try:
-            made[name] = _typed(name, column)
+            arrays[name] = _typed(name, column)
         except pa.ArrowException as error:
             raise TraceError(
                 f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log anew"
             ) from error
-    return Rows(pa.table(made), kind)
+    return Rows(pa.table(arrays), kind)
 
 
 def _typed(name: str, column: pa.ChunkedArray | pa.Array) -> pa.ChunkedArray | pa.Array:

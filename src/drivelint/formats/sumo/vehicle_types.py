@@ -50,28 +50,30 @@ def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -
     Where a parameter of a single vehicle is changed while SUMO runs, its type is from then on a copy that is called BASE@ID, with
     the `ids` of the log for ID. No route file has it. Source: SUMO's documentation of "TraCI/Change Vehicle State".
     """
-    known = types.get(name) or _DEFAULTS.get(name)
-    if known is not None:
-        return known, None
+    known_type = types.get(name) or _DEFAULTS.get(name)
+    if known_type is not None:
+        return known_type, None
     at = name.find(_OF_ONE_VEHICLE)
     while at >= 0:
         base = name[:at]
-        if name[at + 1 :] in ids and (known := types.get(base) or _DEFAULTS.get(base)):
-            return known, base
+        if name[at + 1 :] in ids and (known_type := types.get(base) or _DEFAULTS.get(base)):
+            return known_type, base
         at = name.find(_OF_ONE_VEHICLE, at + 1)
     return UNKNOWN_TYPE, None
 
 
-def types_for(log: Path, given: str | None) -> tuple[dict[str, VehicleType], list[str]]:
-    """Return vType id -> what it says, and notes on where from: `given`, the user's file, else the files beside the log.
+def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
+    """Return vType id -> what it says, and notes on where from: `types_file`, the user's file, else the files beside the log.
 
     Errors: `UsageError` for a given file that has no vType.
     """
-    if given is not None:
-        found = _read(Path(given))
-        if not found:
-            raise UsageError(f"--mapping {given}: has no vType: give the route or additional file of the simulation")
-        return found, []
+    if types_file is not None:
+        file_types = _read(Path(types_file))
+        if not file_types:
+            raise UsageError(
+                f"--mapping {types_file}: has no vType: give the route or additional file of the simulation"
+            )
+        return file_types, []
     types: dict[str, VehicleType] = {}
     files: dict[str, str] = {}
     used = []
@@ -79,15 +81,15 @@ def types_for(log: Path, given: str | None) -> tuple[dict[str, VehicleType], lis
     for file in sorted({file for pattern in _BESIDE for file in log.parent.glob(pattern)}):
         here = _read(file)
         used += [file.name] if here else []
-        for name, said in here.items():
-            if name in types and types[name] != said:
+        for name, vehicle_type in here.items():
+            if name in types and types[name] != vehicle_type:
                 notes.append(
                     f"{log.name}: the type {name} is another in {file.name} than in {files[name]}, both beside it, and is taken for "
                     "unknown: give the file of the simulation with --mapping"
                 )
                 types[name] = UNKNOWN_TYPE
             else:
-                types[name], files[name] = said, file.name
+                types[name], files[name] = vehicle_type, file.name
     if used:
         notes.insert(0, f"{log.name}: sizes of vehicles are those of the vTypes in {listed(used)} beside it")
     return types, notes
@@ -99,15 +101,15 @@ def _read(file: Path) -> dict[str, VehicleType]:
     except OSError as error:
         raise UsageError(f"--mapping {file}: cannot be read: {error.strerror or error}") from error
     root = safe_xml.parse(content, f"--mapping {file}:", UsageError)
-    found = {}
+    types = {}
     for element in root.iter("vType"):
         default = _OF_CLASS.get(element.get("vClass", "passenger"), VehicleType("vehicle"))
-        found[element.get("id", "")] = VehicleType(
+        types[element.get("id", "")] = VehicleType(
             default.actor_class,
             _positive(element.get("length"), default.length_m),
             _positive(element.get("width"), default.width_m),
         )
-    return found
+    return types
 
 
 def _positive(text: str | None, default: float) -> float:

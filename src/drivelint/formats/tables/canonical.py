@@ -79,8 +79,8 @@ def read(probe: Probe) -> Recording:
     recording.signals = _every_cell(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
     recording.events = _every_cell(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value")
     conditions = path / "drive_condition.parquet"
-    if said := _extra(conditions, ("condition", "value")):
-        recording.conditions = parse_conditions(conditions, zip(*said.to_pydict().values(), strict=True))
+    if condition_rows := _extra(conditions, ("condition", "value")):
+        recording.conditions = parse_conditions(conditions, zip(*condition_rows.to_pydict().values(), strict=True))
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
@@ -95,9 +95,9 @@ def read(probe: Probe) -> Recording:
             dx, dy = recording.map_offset = _offset(path, offset)
             recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
         if geo := _extra(path / "data_log.parquet", (), ("geo_reference", "geo_x_m", "geo_y_m", "geo_yaw_rad")):
-            (said, *_) = geo.to_pylist()
-            x, y, yaw = (said.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))
-            recording.geo_reference, recording.geo_offset = said.get("geo_reference"), (x, y, yaw)
+            (geo_row, *_) = geo.to_pylist()
+            x, y, yaw = (geo_row.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))
+            recording.geo_reference, recording.geo_offset = geo_row.get("geo_reference"), (x, y, yaw)
     if (path / "map.xodr").is_file():
         recording.embedded_map = (path / "map.xodr").read_bytes()
     recording.findings += _quality(path / "quality.parquet")
@@ -158,8 +158,8 @@ def _states(path: Path) -> Recording:
     timed = times.is_valid().to_numpy(zero_copy_only=False)
     nameless = pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
     n = len(ids)
-    nobody = nameless & timed & _nothing_else(table, n) if nameless.any() else nameless
-    lost = (nameless | ~timed) & ~nobody
+    is_empty_frame = nameless & timed & _nothing_else(table, n) if nameless.any() else nameless
+    lost_rows = (nameless | ~timed) & ~is_empty_frame
     numbers, not_finite = {}, np.zeros(n, np.bool_)
     for name, column in _columns(path, table, (*STATE_COLUMNS, *SIZE_COLUMNS), pa.float64()).items():
         values = pc.fill_null(column, float("nan")).to_numpy(zero_copy_only=False)
@@ -177,14 +177,14 @@ def _states(path: Path) -> Recording:
     t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
     states = States(encoded.dictionary.to_pylist(), actor, t_ns, numbers, codes, not_finite)
     recording = Recording("canonical-parquet", states, ego_ids=egos)
-    if nobody.any():
+    if is_empty_frame.any():
         recording.frames_ns = t_ns[timed]
-    if nobody.any() or lost.any():
-        recording.states = states.take(~(lost | nobody))
-    if lost.any():
-        what, n_lost = f"{path.name}: rows without actor or time", int(lost.sum())
+    if is_empty_frame.any() or lost_rows.any():
+        recording.states = states.take(~(lost_rows | is_empty_frame))
+    if lost_rows.any():
+        what, n_lost = f"{path.name}: rows without actor or time", int(lost_rows.sum())
         recording.findings = [QualityFinding("dropped_row", "error", f"{what}: {n_lost}: they are not judged", n_lost)]
-        recording.lost = times_of_lost_rows(t_ns, timed, lost, what)
+        recording.lost_times = times_of_lost_rows(t_ns, timed, lost_rows, what)
     return recording
 
 
@@ -223,13 +223,13 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()
         return None
     table = parquet.table(path)
     _need(path, table, required)
-    found = {}
+    columns = {}
     for field in (arrow_schemas()[path.stem].field(name) for name in (*required, *optional)):
         if field.name in table.schema.names:
             column = _column(path, table, field.name, field.type)
             words = _WORDS.get(field.name)
-            found[field.name] = column if words is None else spelled(_codes(path, column, field.name), words)
-    return pa.table(found)
+            columns[field.name] = column if words is None else spelled(_codes(path, column, field.name), words)
+    return pa.table(columns)
 
 
 def _every_cell(path: Path, required: tuple[str, ...], optional: str) -> pa.Table | None:

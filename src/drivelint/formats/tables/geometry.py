@@ -27,7 +27,7 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
     yaw rate is the log's or, without one, the heading's derivative. Accelerations are kept as recorded.
     """
     log = states.numbers
-    nothing = np.full(len(states), np.nan)
+    unknown_values = np.full(len(states), np.nan)
     if mapping.frame.flip_y:
         for name in {"y", "vy", "ay"} & log.keys():
             log[name] = -log[name]
@@ -44,7 +44,7 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
                 log[east], log[north] = turned(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _to_centre(states, mapping)
-    states.numbers = {ours: log.get(theirs, nothing) for theirs, ours in _SOURCE.items()}
+    states.numbers = {ours: log.get(theirs, unknown_values) for theirs, ours in _SOURCE.items()}
 
 
 def _to_centre(states: States, mapping: Mapping) -> None:

@@ -63,16 +63,16 @@ def read(probe: Probe) -> Recording:
     path, name = probe.path, probe.options.mapping
     if name is None:
         name, mapping, sheet = _fitting(path)
-        said = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
+        notes = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
     else:
         name, mapping = mappings.load(name)
         sheet = open_sheet(path, mapping)
-        said = []
+        notes = []
     recording = _Body(path, mapping, sheet, _groups(path, name, mapping, sheet)).read()
     _refuse_misread(path, name, recording)
     recording.format = name
     recording.findings += _assumptions(name, mapping)
-    recording.notes = said
+    recording.notes = notes
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
         recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
@@ -81,15 +81,15 @@ def read(probe: Probe) -> Recording:
 
 def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
     """Return what the mapping says in place of the log: sizes, and that the log's frame is left-handed."""
-    found = []
+    findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
-        found.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
+        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
         message = f"{' and '.join(turned)} turned, as the mapping {name!r} says: the log's frame is left-handed"
-        found.append(QualityFinding(TURNED_FRAME, "info", message))
-    return found
+        findings.append(QualityFinding(TURNED_FRAME, "info", message))
+    return findings
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
@@ -174,19 +174,19 @@ class _Body:
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_lines(n)
         parts, texts = [], []
-        lost = bad_time & ~blank
+        lost_rows = bad_time & ~blank
         for k in self.groups:
             ids = self._ids(k, n)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
             # in a wide table, an actor that is absent has neither a name nor a place
-            nameless = absent & ~bad_time & ~blank & (True if k == "" else self._placed(k, n))
+            nameless = absent & ~bad_time & ~blank & (True if k == "" else self._has_place(k, n))
             self._report_rows(nameless, "the actor id is missing", "dropped_row")
-            lost |= nameless
+            lost_rows |= nameless
             keep = ~(absent | bad_time)
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._rows(k, n, t_ns, keep))
         ids = pc.dictionary_encode(pa.concat_arrays(texts))
-        states = States.joined(parts)
+        states = States.concatenate(parts)
         states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
         to_map_frame(states, self.mapping)
         return Recording(
@@ -194,7 +194,7 @@ class _Body:
             states=states,
             ego_ids=self._egos(states),
             findings=self.findings,
-            lost=self._lost(t_ns, ~bad_time, lost),
+            lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
             # a row of a wide table is a frame, whoever is in it
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
@@ -202,7 +202,7 @@ class _Body:
             names_indicator=self.mapping.indicator is not None,
         )
 
-    def _placed(self, k: str, n: int) -> Mask:
+    def _has_place(self, k: str, n: int) -> Mask:
         placed = np.ones(n, np.bool_)
         for name in ("x", "y"):
             column = mappings.fields(self.mapping)[name].column
@@ -210,14 +210,18 @@ class _Body:
                 placed &= self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
         return placed
 
-    def _lost(self, t_ns: Times, timed: Mask, lost: Mask) -> list[LostTime]:
+    def _lost_times(self, t_ns: Times, timed: Mask, lost_rows: Mask) -> list[LostTime]:
         """Return when the lost rows were recorded, and the lines that are no rows: what the cells of these mean is not known."""
-        what = f"{self.path.name}: rows that cannot be read"
+        cause = f"{self.path.name}: rows that cannot be read"
         if self.sheet.has_zeros_within:
-            return [LostTime(None, None, f"{what}, for zero bytes stand there")]
+            return [LostTime(None, None, f"{cause}, for zero bytes stand there")]
         places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
-        t_ns, timed, lost = np.insert(t_ns, places, 0), np.insert(timed, places, False), np.insert(lost, places, True)
-        return times_of_lost_rows(t_ns, timed, lost, what)
+        t_ns, timed, lost_rows = (
+            np.insert(t_ns, places, 0),
+            np.insert(timed, places, False),
+            np.insert(lost_rows, places, True),
+        )
+        return times_of_lost_rows(t_ns, timed, lost_rows, cause)
 
     def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
         numbers, not_finite = {}, np.zeros(n, np.bool_)
@@ -258,15 +262,15 @@ class _Body:
                 'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _codes(self, spec: WordMapping, allowed: tuple[str, ...], k: str) -> Codes:
-        """Translate texts to indices into `allowed`: each distinct text once."""
+    def _codes(self, spec: WordMapping, words: tuple[str, ...], k: str) -> Codes:
+        """Translate texts to indices into `words`: each distinct text once."""
         texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
 
         def code_of(text: str) -> int:
             word = _word(text, spec)
-            return -1 if word is None else allowed.index(word)
+            return -1 if word is None else words.index(word)
 
         return coded(texts[0], code_of)
 

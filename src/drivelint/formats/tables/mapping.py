@@ -277,30 +277,30 @@ def _validate_field(path: Path, name: str, spec: Field) -> None:
         raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
 
 
-def _contradictions(mapping: Mapping, given: AbstractSet[str]) -> list[tuple[bool, str]]:
-    """List what cannot go together, each with whether it is so here."""
+def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[bool, str]]:
+    """List what cannot go together, each with whether it is so here. `names`: the fields that the mapping gives."""
     point = mapping.reference.point
-    heading = "speed" in given or mapping.frame.velocity == "vehicle" or point != "centre"
-    grouped = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
+    heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
+    has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
     return [
-        (("vx" in given) != ("vy" in given) or ("ax" in given) != ("ay" in given), "vx and vy, and ax and ay, go in pairs"),
-        ("vx" in given and "speed" in given, "give vx and vy or speed, not both"),
-        (heading and "yaw" not in given,
+        (("vx" in names) != ("vy" in names) or ("ax" in names) != ("ay" in names), "vx and vy, and ax and ay, go in pairs"),
+        ("vx" in names and "speed" in names, "give vx and vy or speed, not both"),
+        (heading and "yaw" not in names,
          "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw"),
-        (point == "rear_axle" and "forward" not in given, "reference.point = 'rear_axle' needs reference.forward"),
-        (point == "front_bumper" and ("length" not in given or "forward" in given),
+        (point == "rear_axle" and "forward" not in names, "reference.point = 'rear_axle' needs reference.forward"),
+        (point == "front_bumper" and ("length" not in names or "forward" in names),
          "reference.point = 'front_bumper' needs columns.length and takes no reference.forward"),
-        (point == "centre" and not given.isdisjoint({"forward", "left", "up"}),
+        (point == "centre" and not names.isdisjoint({"forward", "left", "up"}),
          "reference.forward, left and up need reference.point = 'rear_axle'"),
-        (mapping.ego.otherwise is not None and not grouped,
+        (mapping.ego.otherwise is not None and not has_groups,
          "ego.otherwise = 'first' needs column groups ({k}): the rows of a long table have no first actor"),
     ]  # fmt: skip
 
 
-def _validate_words(path: Path, name: str, spec: WordMapping, allowed: tuple[str, ...]) -> None:
+def _validate_words(path: Path, name: str, spec: WordMapping, words: tuple[str, ...]) -> None:
     for word in (*spec.values.values(), *(p.word for p in spec.patterns), spec.default):
-        if word is not None and word not in allowed:
-            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {nearest(word, allowed)}")
+        if word is not None and word not in words:
+            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {nearest(word, words)}")
     for pattern in spec.patterns:
         try:
             re.compile(pattern.match)

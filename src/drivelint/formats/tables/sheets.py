@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
-_SHOWN = 5
+_MOST_PLACES = 5
 """How many places a message names."""
 
 
@@ -87,7 +87,7 @@ class CsvSheet:
 
         self._check_text()
         width = len(self.names) + self._spare
-        wanted = {str(self.names.index(name)): name for name in names}
+        column_names = {str(self.names.index(name)): name for name in names}
         options = (
             arrow_csv.ReadOptions(
                 skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
@@ -96,7 +96,9 @@ class CsvSheet:
                 delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
             ),
             arrow_csv.ConvertOptions(
-                include_columns=list(wanted), column_types=dict.fromkeys(wanted, pa.string()), strings_can_be_null=False
+                include_columns=list(column_names),
+                column_types=dict.fromkeys(column_names, pa.string()),
+                strings_can_be_null=False,
             ),
         )
         try:
@@ -106,7 +108,9 @@ class CsvSheet:
             if "Empty CSV" in str(error):
                 raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
             raise TraceError(f"{self._path}: not a CSV table: {' '.join(str(error).split())}") from error
-        self._columns = {name: _trimmed(table.column(key), self._layout.null_values) for key, name in wanted.items()}
+        self._columns = {
+            name: _trimmed(table.column(key), self._layout.null_values) for key, name in column_names.items()
+        }
         return int(table.num_rows)
 
     def rows_before_bad_lines(self) -> list[int]:
@@ -158,7 +162,7 @@ class CsvSheet:
 
     def describe_rows(self, rows: Indices) -> str:
         """Return the line numbers of the first of these rows."""
-        return describe_places("line", [self._line(int(row)) for row in rows[:_SHOWN]], len(rows))
+        return describe_places("line", [self._line(int(row)) for row in rows[:_MOST_PLACES]], len(rows))
 
     def _line(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
@@ -233,24 +237,24 @@ class ParquetSheet:
 
     def describe_rows(self, rows: Indices) -> str:
         """Return the numbers of the first of these rows."""
-        return describe_places("row", [int(row) + 1 for row in rows[:_SHOWN]], len(rows))
+        return describe_places("row", [int(row) + 1 for row in rows[:_MOST_PLACES]], len(rows))
 
 
 Sheet = CsvSheet | ParquetSheet
 """A table on disk whose columns are read by name; an empty cell gives NaN or null."""
 
 
-def describe_places(what: str, first: list[int], n: int) -> str:
+def describe_places(noun: str, first: list[int], n: int) -> str:
     """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
-    more = n - len(first[:_SHOWN])
-    return f"{what}{'s' * (n > 1)} {', '.join(map(str, first[:_SHOWN]))}" + (f" and {more} more" if more else "")
+    more = n - len(first[:_MOST_PLACES])
+    return f"{noun}{'s' * (n > 1)} {', '.join(map(str, first[:_MOST_PLACES]))}" + (f" and {more} more" if more else "")
 
 
-def _trimmed(column: pa.Array | pa.ChunkedArray, nothing: list[str]) -> pl.Series:
+def _trimmed(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Series:
     import polars as pl
 
     series = pl.Series(column).str.strip_chars()
-    return series.set(series.is_in(["", *nothing]) if nothing else series == "", None)
+    return series.set(series.is_in(["", *null_texts]) if null_texts else series == "", None)
 
 
 def _nanoseconds(values: Floats, bad: Mask, *, factor: int) -> tuple[Times, Mask]:

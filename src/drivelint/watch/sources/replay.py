@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.cut import cut_trace
+from drivelint.drive.time_span import cut_trace
 from drivelint.formats import read_trace
 from drivelint.watch.source import Frame
 

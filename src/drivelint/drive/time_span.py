@@ -26,13 +26,13 @@ def cut_trace(trace: Trace, from_ns: int, to_ns: int) -> Trace:
     states = _between(tables["actor_state"], from_ns, to_ns)
     if not states.num_rows:
         raise ValueError(f"no state from {from_ns} to {to_ns} ns")
-    seen = pc.unique(states["actor_id"])
+    actor_ids = pc.unique(states["actor_id"])
     tables["actor_state"] = states
-    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
+    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=actor_ids))
     for name, keys in _HOLDS.items():
         tables[name] = _with_what_holds(tables[name], keys, from_ns, to_ns)
     about = tables["quality"]["actor_id"]
-    tables["quality"] = tables["quality"].filter(pc.or_(pc.is_null(about), pc.is_in(about, value_set=seen)))
+    tables["quality"] = tables["quality"].filter(pc.or_(pc.is_null(about), pc.is_in(about, value_set=actor_ids)))
     tables["data_log"] = _log_of(tables["data_log"], states)
     return replace(trace, tables=tables, frame_times=None)
 
