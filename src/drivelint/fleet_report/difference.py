@@ -183,7 +183,7 @@ def _at_or_above(counts: dict[str, int], least: str) -> int:
 
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entries: int) -> AuditDifference:
-    """Return the difference of the audits of `opened`, with at most `max_entries` findings of each standing."""
+    """Return the difference of the audits of `open_audits`, with at most `max_entries` findings of each standing."""
     sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
     (gating,) = rows(con, "gating", None, **sides)

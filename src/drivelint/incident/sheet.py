@@ -34,17 +34,7 @@ from drivelint.incident.record import held_elements
 from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
-from drivelint.incident.words import (
-    amount,
-    closing,
-    contact,
-    how_sure,
-    measured_and_required,
-    minus,
-    profile,
-    story,
-    told_unit,
-)
+from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
 from drivelint.report.html.pictures import pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
@@ -178,15 +168,13 @@ def _finding_sentence(finding: NamedFinding) -> str:
     row, rule = finding.row, finding.rule
     if overlap := contact(row, rule):
         return f"{overlap[:1].upper()}{overlap[1:]}."
-    measurement = measured_and_required(row, rule)
-    if measurement and row["margin"] is not None:
-        measurement = (
-            f"{rule['observes'] or 'measured'}: {measurement}; missed by {amount(-row['margin'], row['unit'])}"
-        )
+    observed = measured_text(row, rule)
+    if observed and row["margin"] is not None:
+        observed = f"{rule['observes'] or 'measured'}: {observed}; missed by {amount(-row['margin'], row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
-        measurement += " (of the speed alone, not of its direction; from one step to the next)"
-    reason = "" if row["reason_measures"] and measurement else row["reason"]
-    text = "; ".join(part for part in (reason, measurement) if part)
+        observed += " (of the speed alone, not of its direction; from one step to the next)"
+    reason = "" if row["reason_measures"] and observed else row["reason"]
+    text = "; ".join(part for part in (reason, observed) if part)
     return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
 
 

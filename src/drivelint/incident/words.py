@@ -57,7 +57,7 @@ def minus(text: str) -> str:
     return text.replace(" -", " \u2212") if not text.startswith("-") else "\u2212" + minus(text[1:])
 
 
-def measured_and_required(row: Row, rule: Row) -> str:
+def measured_text(row: Row, rule: Row) -> str:
     """Return what was measured and what had to be; '' where the rule measures nothing."""
     if row["observed"] is None and row["required"] is None:
         return ""
