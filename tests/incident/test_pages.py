@@ -106,7 +106,7 @@ def crowded(case: Case) -> Case:
     ]  # fmt: skip
     judged = replace(case.again, verdicts=verdicts, findings=[*case.again.findings, *findings])
     asked = replace(case.run_options, env=("weather=wet", "light=night", "nation=gb-eng"), map_offset=(1.25, -3.5))
-    return replace(case, again=judged, other_judged=judged, run_options=asked)
+    return replace(case, again=judged, other_party=judged, run_options=asked)
 
 
 @pytest.mark.ci

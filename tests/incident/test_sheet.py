@@ -113,9 +113,9 @@ def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     settings: dict[str, Any] = {"traces": (str(OVERTAKE / "collision.csv"),), "profiles": ("relaxed", "nominal")}
     settings |= {"map": OVERTAKE / "road.xodr", "mapping": str(OVERTAKE / "mapping.toml"), "rules": ("ukhc",)}
     result = run_check(CheckOptions(**settings, ego="oncoming"), Silent())
-    assert not isinstance(case.other_judged, str)
-    assert case.other_judged is not None
-    assert case.other_judged.verdicts == result.verdicts.to_pylist()
+    assert not isinstance(case.other_party, str)
+    assert case.other_party is not None
+    assert case.other_party.verdicts == result.verdicts.to_pylist()
     told = content(case)["conduct"]
     assert [party["id"] for party in told] == ["ego", "oncoming"]
     failed = len(set(result.findings["rule_id"].to_pylist()))

@@ -96,7 +96,7 @@ def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None
 def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
-    assert "not examined" in content(replace(case, other_judged=None))["parties"][1]["lane"]
+    assert "not examined" in content(replace(case, other_party=None))["parties"][1]["lane"]
 
 
 @pytest.mark.ci
@@ -105,7 +105,7 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     case = case_of("no-collision@collision")
     parts = [*collision["conduct"], collision["of_both"]]
     assert [part["reasons"].more for part in parts] == [0, 0, 0]
-    for party, judged in zip(collision["conduct"], (case.again, case.other_judged), strict=True):
+    for party, judged in zip(collision["conduct"], (case.again, case.other_party), strict=True):
         assert isinstance(judged, Judged)
         undecided = {row["rule_id"] for row in judged.verdicts if row["verdict"] in {"unknown", "error"}}
         told = " ".join([*party["reasons"].texts, *collision["of_both"]["reasons"].texts])

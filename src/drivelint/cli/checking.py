@@ -142,14 +142,14 @@ def check(
     judged, or nothing could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the
     machine failed, try again; 130 interrupted: what was judged until then is kept.
     """
-    asked = dict(locals())
+    arguments = dict(locals())
 
     from drivelint.cli.receipts import CheckReceipts
 
     settings_file = _settings_file(quiet=quiet)
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
-    receipts = CheckReceipts(asked, day, settings_file)
+    receipts = CheckReceipts(arguments, day, settings_file)
     with tells_of_earlier(out):
         earlier = receipts.earlier()
     if earlier is not None:

@@ -34,7 +34,7 @@ LEAST_SHARE: Final = 0.9
 _WEIGHT = ("error", "fail", "unknown", "pass")
 """Of several verdicts at one moment the first of these is what is said."""
 _WHERE = ("drive_id", "ego_id", "rule_id", "profile")
-_VERDICTS_OF_FIXED = ("pass", "not_applicable")
+_FIXED_VERDICTS = ("pass", "not_applicable")
 
 
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
@@ -54,7 +54,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     known = set(same.values())
     for drive_id, stretches in had.findings.items():
         if drive_id not in known:
-            gone += [_finding_of_base_only(each, drive_id, has.verdict_at(None, each), had) for each in stretches]
+            gone += [_base_only_finding(each, drive_id, has.verdict_at(None, each), had) for each in stretches]
     return Difference(
         entries=(*entries, *gone),
         new_unknowns=tuple(_new_unknowns(base, new, same, has)),
@@ -89,7 +89,7 @@ def _drive(
     entries: list[ComparedFinding] = []
     for i, now in enumerate(ours):
         if i in pairs:
-            entries.append(_finding_of_both(now, theirs[pairs[i]], has))
+            entries.append(_matched_finding(now, theirs[pairs[i]], has))
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
@@ -106,7 +106,7 @@ def _drive(
             gone.append(_entry("changed", ours[wholes[0]], was, has, said))
         else:
             said = _noting_rule(has.verdict_at(drive_id, was), was, had, has)
-            gone.append(_finding_of_base_only(was, drive_id, said, had))
+            gone.append(_base_only_finding(was, drive_id, said, had))
     return entries, gone
 
 
@@ -118,7 +118,7 @@ def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has
     return outcome._replace(why=f"{outcome.why} The rule or its parameters changed.")
 
 
-def _finding_of_both(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
+def _matched_finding(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
     """Return a finding that both results have, and how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
@@ -144,9 +144,7 @@ def _is_less(now: float | None, was: float | None) -> bool:
     return now is not None and was is not None and now < was
 
 
-def _finding_of_base_only(
-    was: TimedFinding, drive_id: str, outcome: LookupResult, had: ResultLookup
-) -> ComparedFinding:
+def _base_only_finding(was: TimedFinding, drive_id: str, outcome: LookupResult, had: ResultLookup) -> ComparedFinding:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost", "fail": "elsewhere"}.get(
         outcome.verdict, "unknown"
@@ -281,7 +279,7 @@ class ResultLookup:
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
         found = min(said, key=lambda each: _WEIGHT.index(each.verdict), default=not_applicable)
-        if found.verdict in _VERDICTS_OF_FIXED and (missing := self._not_recorded(drive_id, at)):
+        if found.verdict in _FIXED_VERDICTS and (missing := self._not_recorded(drive_id, at)):
             return missing
         return found
 

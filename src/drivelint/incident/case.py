@@ -20,7 +20,7 @@ LETTERS: Final = ("A", "B")
 class Case:
     """A finding, its run, and what the sheet judged again.
 
-    `other_judged`: what was judged of the second party, or in a sentence why it was not; None: there is none.
+    `other_party`: what was judged of the second party, or in a sentence why it was not; None: there is none.
     """
 
     result: Result
@@ -28,5 +28,5 @@ class Case:
     finding: NamedFinding
     drive: Drive
     again: Judged
-    other_judged: Judged | str | None
+    other_party: Judged | str | None
     source: str

@@ -106,7 +106,7 @@ def _brake_lights(case: Case, actor_id: str) -> str:
 
 def _lane(case: Case, number: int, at: int | None) -> str:
     """Return in words in which lane a party is at a step of the first one."""
-    judged = (case.again, case.other_judged)[number]
+    judged = (case.again, case.other_party)[number]
     if at is None or not isinstance(judged, Judged) or not judged.steps.num_rows:
         return "not examined"
     t_ns = case.again.steps["t_ns"][at].as_py()

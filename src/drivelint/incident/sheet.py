@@ -281,7 +281,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
         for row in case.result.findings.to_pylist()
     }
     found: list[dict[str, Any]] = []
-    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.other_judged), strict=False):
+    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.other_party), strict=False):
         told: dict[str, Any] = {
             "letter": letter,
             "id": who,

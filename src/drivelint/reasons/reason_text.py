@@ -115,7 +115,7 @@ def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> Re
 def _filled(
     template: str, arguments: Mapping[str, Any], start_ns: int, rule_texts: Mapping[str, ReasonText] | None
 ) -> str:
-    argument_words = {name: _argument_in_words(name, value, start_ns, rule_texts) for name, value in arguments.items()}
+    argument_words = {name: _argument_words(name, value, start_ns, rule_texts) for name, value in arguments.items()}
     for part in _OPTIONAL.findall(template):
         absent = any(argument_words.get(name) is None for name, _ in _ARGUMENT.findall(part))
         template = template.replace(f"[{part}]", "" if absent else part, 1)
@@ -128,7 +128,7 @@ def _formatted(value: Any, spec: str) -> str:
     return format(value, spec) if isinstance(value, int | float) else str(value)
 
 
-def _argument_in_words(name: str, value: Any, start_ns: int, rule_texts: Mapping[str, ReasonText] | None) -> Any:
+def _argument_words(name: str, value: Any, start_ns: int, rule_texts: Mapping[str, ReasonText] | None) -> Any:
     """Return an argument as it is put into words: a time from the start, a reason in its words, a value in those of its name."""
     if name.endswith("_ns") and isinstance(value, int):
         return f"{(value - start_ns) / 1e9:.3f} s"
