@@ -122,7 +122,7 @@ def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
     assert partial.margins_file is not None
     assert alone.margins_file is not None
     assert partial.margins_file.read_bytes() == alone.margins_file.read_bytes()
-    assert partial.asked is not None
+    assert partial.run_options is not None
     write(partial, tmp_path / "out")
     assert load_result(tmp_path / "out").interrupted
 
@@ -282,9 +282,9 @@ class Watcher(Silent):
         if "copies" in name:
             self.told += [name, f"of {total}"]
 
-    def doing(self, what: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, part: float = 0.0) -> None:
         """Note what is done."""
-        self.told += [what, f"{part:g}"] if part else [what]
+        self.told += [activity, f"{part:g}"] if part else [activity]
 
     def advance(self, n: int = 1) -> None:
         """Note the units done."""

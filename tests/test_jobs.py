@@ -109,9 +109,9 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
 
 def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     judged = alone.result
-    assert judged.asked is not None
-    drives = sorted(judged.asked.traces)
-    notes = tuple(run.LogNote(Path(judged.asked.traces[drive]), "said", once=True) for drive in drives)
+    assert judged.run_options is not None
+    drives = sorted(judged.run_options.traces)
+    notes = tuple(run.LogNote(Path(judged.run_options.traces[drive]), "said", once=True) for drive in drives)
     one = run.JudgedLogs(replace(judged, **_of(judged, drives[:2], inside=True)), notes[:2], (), {})
     first, second = parallel._without_copies([one, run.JudgedLogs(judged, notes, (), {})])
     assert first is one

@@ -82,11 +82,11 @@ class MemoryShortError(DriveLintError):
 
     exit_code = ExitCode.NOT_JUDGED
 
-    def __init__(self, what: str) -> None:
+    def __init__(self, task: str) -> None:
         if least_limit_bytes() is None:
-            super().__init__(f"{what}: needs more memory than this machine has: use a larger one, or fewer --rules")
+            super().__init__(f"{task}: needs more memory than this machine has: use a larger one, or fewer --rules")
         else:
-            super().__init__(f"{what}: {_LIMITED}")
+            super().__init__(f"{task}: {_LIMITED}")
             self.exit_code = ExitCode.TEMPFAIL
 
 

@@ -145,10 +145,10 @@ def asked_pack(
     return request
 
 
-def parse_pack_date(given: str | None) -> str | None:
+def parse_pack_date(day: str | None) -> str | None:
     """Return the day of the pack: given, or that of SOURCE_DATE_EPOCH; None: neither says one. Errors: `UsageError`."""
-    if given is not None:
-        return parse_day("--date", given)
+    if day is not None:
+        return parse_day("--date", day)
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
@@ -156,9 +156,9 @@ def parse_pack_date(given: str | None) -> str | None:
         raise UsageError(f"SOURCE_DATE_EPOCH={epoch}: no day: write it in seconds since 1970") from error
 
 
-def parse_day(option: str, given: str) -> str:
+def parse_day(option: str, day: str) -> str:
     """Return a day as an option names it. Errors: `UsageError`."""
     try:
-        return datetime.strptime(given, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
+        return datetime.strptime(day, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
     except ValueError as error:
-        raise UsageError(f"{option} {given}: no day: write it as 2026-11-26") from error
+        raise UsageError(f"{option} {day}: no day: write it as 2026-11-26") from error

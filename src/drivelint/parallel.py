@@ -91,7 +91,7 @@ def check(
     progress: Progress,
     *,
     interruption: Interruption | None = None,
-    deaf: DeafRules | None = None,
+    deaf_rules: DeafRules | None = None,
     keep: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive as `run.check` does, by at most `jobs` processes at a time; one writes margins, or keeps a database.
@@ -104,7 +104,7 @@ def check(
         if len(parts := _cut(paths, jobs)) > 1:
             joined = _judged_by_workers(settings, paths, parts, progress, interruption or Interruption())
             return run.conclude(paths, joined, keep)
-    return run.check(settings, progress, interruption, deaf, keep)
+    return run.check(settings, progress, interruption, deaf_rules, keep)
 
 
 def _judged_by_workers(
@@ -173,7 +173,7 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
 
 def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     """Return a part without these drives, with a note on each instead of those that it has."""
-    result, paths = part.result, {} if part.result.asked is None else part.result.asked.traces
+    result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
     tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *PICTURES)}
     others = {
         name: table.filter(pc.invert(pc.is_in(table["drive_id"], value_set=pa.array(drives, pa.string()))))
@@ -286,9 +286,9 @@ class _Teller(Progress):
         if self._counts:
             self.send(_Told("advance", (n,)))
 
-    def doing(self, what: str, part: float = 0.0) -> None:  # noqa: ARG002 - those of several workers are not one
+    def doing(self, activity: str, part: float = 0.0) -> None:  # noqa: ARG002 - those of several workers are not one
         """See `Progress`."""
-        self.send(_Told("doing", (what,)))
+        self.send(_Told("doing", (activity,)))
 
     def note(self, text: str) -> None:
         """See `Progress`."""
@@ -315,11 +315,11 @@ class _DeafInWorker:
         self._known = known
         self._teller = teller
 
-    def known(self, task: str) -> Mapping[str, Excess]:
+    def excesses(self, task: str) -> Mapping[str, Excess]:
         """See `DeafRules`."""
         return self._known.get(task, {})
 
-    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+    def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
         temporary.remove_all()
         self._teller.send(_Deaf(task, rule_id, excess))
@@ -348,11 +348,11 @@ def _judged(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
             part.settings,
             judged_by,
             part.paths,
-            refused=[],
+            refused_logs=[],
             progress=teller,
             notes=notes,
             interruption=interruption,
-            deaf=deaf,
+            deaf_rules=deaf,
         )
     return _Ended(judged, None if recording is None or part.deaf else recording.inputs())
 

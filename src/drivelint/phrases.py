@@ -21,14 +21,14 @@ _BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
 _PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
 
 
-def shown(text: str) -> str:
+def escape_invisible(text: str) -> str:
     """Return text that may hold words of a log with the characters that nobody sees shown as their codes, such as `\\x1b`."""
     return _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
 
 
 def inert(text: str) -> str:
     """Return text that may hold words of a log for a terminal: characters that steer one are shown, and it gives no commands."""
-    return _COMMAND.sub(lambda found: f"{found[0]}\\", shown(text))
+    return _COMMAND.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
 
 
 def one_line(text: str) -> str:
@@ -46,12 +46,12 @@ def inert_json(text: str) -> str:
     return _IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
-def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:
+def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:
     """Return "did you mean 'x'?" for the nearest known word, whatever its case, else "known are ...".
 
     `sign` stands before the word, in place of quotes.
     """
-    words = {each.casefold(): each for each in known}
+    words = {each.casefold(): each for each in known_words}
     near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
     if not near:
         return f"known are {', '.join(words.values())}"
@@ -59,10 +59,10 @@ def hint(word: str, known: Iterable[str], *, cutoff: float = 0.6, sign: str = ""
     return f"did you mean {sign}{meant}?" if sign else f"did you mean {meant!r}?"
 
 
-def listed(names: Sequence[str], most: int = 5) -> str:
+def listed(names: Sequence[str], max_names: int = 5) -> str:
     """Return the first names and how many more there are."""
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+    more = len(names) - max_names
+    return ", ".join(names[:max_names]) + (f" and {more} more" if more > 0 else "")
 
 
 def plural(n: int, noun: str) -> str:

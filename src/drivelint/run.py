@@ -29,7 +29,7 @@ from drivelint.formats import expand_traces
 from drivelint.pictures import Camerawork, chosen_rows, planned_shots
 from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
-from drivelint.result.counts import SEVERITIES, grouped
+from drivelint.result.counts import SEVERITIES, group_rows
 from drivelint.result.joining import join
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
@@ -57,7 +57,7 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
-    own: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
+    manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
     """Log -> what a manifest says of it and its map, in place of these options."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
@@ -103,7 +103,7 @@ class LogNote(NamedTuple):
     once: bool = False
 
     @property
-    def told(self) -> str:
+    def full_text(self) -> str:
         """The note as a person reads it."""
         return f"{self.path.name}: {self.text}" if self.once else self.text
 
@@ -114,7 +114,7 @@ class JudgedLogs:
 
     result: Result
     notes: tuple[LogNote, ...]
-    refused: tuple[RefusedLog, ...]
+    refused_logs: tuple[RefusedLog, ...]
     cameras: Mapping[str, tuple[str, ...]]
     """drive_id -> topics of the cameras, of the drives with cameras."""
 
@@ -123,13 +123,13 @@ def check(
     settings: CheckOptions,
     progress: Progress,
     interruption: Interruption | None = None,
-    deaf: DeafRules | None = None,
+    deaf_rules: DeafRules | None = None,
     keep: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive by every selected rule.
 
-    `deaf`: what is known, and what is to be done, about rules that do not end when they are interrupted. `keep`: takes the result if no
-    drive at all could be judged, before the error is raised: an earlier result in its place would look like that of this run.
+    `deaf_rules`: what is known, and what is to be done, about rules that do not end when they are interrupted. `keep`: takes the result
+    if no drive at all could be judged, before the error is raised: an earlier result in its place would look like that of this run.
 
     After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
     `KeyboardInterrupt`, if none was.
@@ -137,17 +137,17 @@ def check(
     cannot be judged beside others that can is a row of the table `drive`.
     """
     judged_by = RunRules.of(settings)
-    paths, refused = named_logs(settings)
+    paths, refused_logs = named_logs(settings)
     progress.stage(CHECKING, len(paths))
     judged = judge_logs(
         settings,
         judged_by,
         paths,
-        refused=refused,
+        refused_logs=refused_logs,
         progress=progress,
         notes=LogNotes(progress, len(paths)),
         interruption=interruption,
-        deaf=deaf,
+        deaf_rules=deaf_rules,
     )
     return conclude(paths, [judged], keep)
 
@@ -157,13 +157,13 @@ def judge_logs(
     judged_by: RunRules,
     paths: Sequence[Path],
     *,
-    refused: list[RefusedLog],
+    refused_logs: list[RefusedLog],
     progress: Progress,
     notes: LogNotes,
     interruption: Interruption | None = None,
-    deaf: DeafRules | None = None,
+    deaf_rules: DeafRules | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add to `refused` what could not be judged."""
+    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged."""
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
     with store.workspace(settings.memory, threads=settings.threads) as con:
@@ -192,7 +192,7 @@ def judge_logs(
                     release=memory.release,
                 )
             )
-        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf=deaf)
+        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf=deaf_rules)
         session = JudgingSession(
             con,
             rules,
@@ -206,7 +206,7 @@ def judge_logs(
             errors=None if settings.robustness is False else MeasurementErrors(),
             copies_of_all=settings.robustness is True,
             limits=limits,
-            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf),
+            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf_rules),
         )
         ids: dict[Path, str] = {}
         read = _announced(_read(paths, settings), len(paths), progress)
@@ -215,13 +215,13 @@ def judge_logs(
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    _judge(session, batch, refused, progress=progress, notes=notes, limits=limits)
+                    _judge(session, batch, refused_logs, progress=progress, notes=notes, limits=limits)
             _judge_copies(session, progress)
         finally:
             session.close()
-        done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused}
+        done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused_logs}
         missed = sorted(set(paths) - done) if interruption.requested else []
-        unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused]
+        unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused_logs]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         result = Result(
@@ -236,10 +236,14 @@ def judge_logs(
             required=required,
             min_judged=settings.min_judged,
             interrupted=bool(missed),
-            asked=RunRequest.from_options(
+            run_options=RunRequest.from_options(
                 settings,
                 {name: str(path) for path, name in reversed(ids.items()) if name in session.judged},
-                {name: settings.own[path] for path, name in reversed(ids.items()) if path in settings.own},
+                {
+                    name: settings.manifest_options[path]
+                    for path, name in reversed(ids.items())
+                    if path in settings.manifest_options
+                },
             ),
         )
         if cameras is not None and cameras.topics:
@@ -248,7 +252,7 @@ def judge_logs(
             result = replace(result, pictures=pictures)
             for trouble in troubles:
                 notes.add(LogNote(trouble.path, trouble.text, once=True))
-        return JudgedLogs(result, tuple(notes.notes), tuple(refused), {} if cameras is None else cameras.topics)
+        return JudgedLogs(result, tuple(notes.notes), tuple(refused_logs), {} if cameras is None else cameras.topics)
 
 
 def conclude(
@@ -265,11 +269,11 @@ def conclude(
         result = replace(result, pictures=chosen_rows(result.pictures, planned_shots(result, cameras)))
     place = {path: n for n, path in enumerate(paths)}
     notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
-    result = replace(result, notes=tuple(note.told for note in told_once(notes)))
+    result = replace(result, notes=tuple(note.full_text for note in told_once(notes)))
     statuses = result.drives["status"].to_pylist()
     if result.interrupted and "judged" not in statuses:
         raise NothingJudgedError
-    refused = [each for part in parts for each in part.refused]
+    refused = [each for part in parts for each in part.refused_logs]
     if len(refused) >= len(statuses):
         if keep is not None:
             keep(result)
@@ -290,14 +294,14 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
             except TraceError as error:
                 return [], [RefusedLog(Path(name), error)]
         raise
-    if no_logs := sorted(str(path) for path in settings.own.keys() - set(paths)):
+    if no_logs := sorted(str(path) for path in settings.manifest_options.keys() - set(paths)):
         raise UsageError(f"{no_logs[0]}: is not one log: a manifest names each log in a row of its own")
     return paths, []
 
 
 def _read(paths: Sequence[Path], settings: CheckOptions) -> Iterator[Drive | RefusedLog]:
     """Yield every log, read as the options say that hold for it; those with the same options together."""
-    for options, mine in grouped(paths, lambda path: settings.own.get(path, settings)).items():
+    for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
         yield from read_drives(mine, options.ingest_options(), MapLibrary(options))
 
 
@@ -322,13 +326,13 @@ class LogNotes:
         """Keep a note, and show it unless it was shown of an earlier log: not a thousand times for a thousand logs."""
         self.notes.append(note)
         if not (note.once and note.text in self._said):
-            self._progress.note(note.told)
+            self._progress.note(note.full_text)
         if note.once:
             self._said.add(note.text)
 
-    def add_refused(self, refused: Iterable[RefusedLog]) -> None:
+    def add_refused(self, refused_logs: Iterable[RefusedLog]) -> None:
         """Add why logs are not judged; that of a single one is the error of the whole run."""
-        for each in refused if self._n_logs > 1 else ():
+        for each in refused_logs if self._n_logs > 1 else ():
             self.add(LogNote(each.path, f"not judged: {each.error}"))
 
 
@@ -367,18 +371,18 @@ def _judge_copies(session: JudgingSession, progress: Progress) -> None:
 def _judge(
     session: JudgingSession,
     batch: Iterable[Drive | RefusedLog],
-    refused: list[RefusedLog],
+    refused_logs: list[RefusedLog],
     *,
     progress: Progress,
     notes: LogNotes,
     limits: ToldLimits,
 ) -> None:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused`."""
-    n_before = len(refused)
+    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused_logs`."""
+    n_before = len(refused_logs)
     drives: list[Drive] = []
     for item in batch:
         if isinstance(item, RefusedLog):
-            refused.append(item)
+            refused_logs.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
             notes.add(same_log(item.trace.path, item.trace.drive_id))
         else:
@@ -388,9 +392,9 @@ def _judge(
             for text in _without_map(item):
                 notes.add(LogNote(item.trace.path, text))
     limits.begin(len(drives))
-    n_unread = len(refused) - n_before
+    n_unread = len(refused_logs) - n_before
     try:
-        judge_apart(session, drives, refused)
+        judge_apart(session, drives, refused_logs)
     finally:
-        notes.add_refused(refused[n_before:])
+        notes.add_refused(refused_logs[n_before:])
     progress.advance(len(drives) + n_unread)

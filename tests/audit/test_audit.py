@@ -23,7 +23,7 @@ from drivelint.audit.text import summary_text
 from drivelint.engine.memory import Memory
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet_report import gated
-from drivelint.fleet_report.opened import opened
+from drivelint.fleet_report.audit_views import open_audits
 from drivelint.report import junit
 from drivelint.report.progress import Silent
 from drivelint.result.model import exit_status
@@ -370,7 +370,7 @@ def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: P
         partial = merge(str(out), Silent())
         assert partial.missing_parts
         assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
-        with opened(str(out)) as (_, found, _):
+        with open_audits(str(out)) as (_, found, _):
             assert "has not ended" in found.warning
 
 

@@ -18,8 +18,8 @@ from drivelint.audit.text import summary_text
 from drivelint.audit.unpacked import n_results, views_of_all
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
+from drivelint.fleet_report.audit_views import open_audits, opened_both
 from drivelint.fleet_report.difference import difference
-from drivelint.fleet_report.opened import opened, opened_both
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
@@ -87,7 +87,7 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
     assert f"INCOMPLETE: these parts have not ended: all: {n} of {N_DRIVES} drives have a result: give" in summary_text(
         merged, "out", ExitCode.NOT_JUDGED
     )
-    with opened(str(out)) as (_, audit, _):
+    with open_audits(str(out)) as (_, audit, _):
         assert f"{n} of {N_DRIVES} drives have a result; give the same audit again" in audit.warning
     with database() as con:
         create_views(con, LocalFolder(out), out)

@@ -14,7 +14,7 @@ import pytest
 from drivelint.audit.ask import ask
 from drivelint.audit.run import merge
 from drivelint.errors import UsageError
-from drivelint.fleet_report.opened import opened, opened_both
+from drivelint.fleet_report.audit_views import open_audits, opened_both
 from drivelint.report.progress import Silent
 from drivelint.result.names import MANIFEST
 from tests.audit import fleet
@@ -92,7 +92,7 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
             opened_both(*map(str, sides)),
         ):
             pass
-    with pytest.raises(UsageError, match=name), opened(str(copy)):
+    with pytest.raises(UsageError, match=name), open_audits(str(copy)):
         pass
 
 
@@ -123,7 +123,7 @@ def test_no_run_goes_on_from_a_changed_file(few: fleet.Fleet, copy: Path, change
             judged(few, copy, shard=shard)
     with pytest.raises(UsageError, match=name):
         merge(str(copy), Silent())
-    with pytest.raises(UsageError, match=name), opened(str(copy)):
+    with pytest.raises(UsageError, match=name), open_audits(str(copy)):
         pass
 
 
@@ -180,7 +180,7 @@ def test_an_audit_without_the_list_goes_on_where_its_rows_are_as_written(few: fl
 
 
 def test_an_audit_that_is_copied_elsewhere_is_whole(copy: Path) -> None:
-    with opened(str(copy)) as (_, audit, _):
+    with open_audits(str(copy)) as (_, audit, _):
         assert audit.digest
 
 
@@ -188,12 +188,12 @@ def test_an_audit_that_goes_on_is_no_changed_one(few: fleet.Fleet, copy: Path, t
     """Neither after it has got more drives, nor while it has not come to its end."""
     more = fleet.write(tmp_path / "more", 9)
     judged(few, copy, sources=str(more.manifest.parent / "logs"))
-    with opened(str(copy)) as (con, audit, _):
+    with open_audits(str(copy)) as (con, audit, _):
         assert (audit.digest is not None, con.sql("SELECT count(*) FROM drives").fetchall()) == (True, [(17,)])
     with pytest.raises(ZeroDivisionError):
         judged(few, copy, Dying(), sources=str(fleet.write(tmp_path / "other", 2, seed=1).manifest))
     assert not (copy / MANIFEST).exists()
-    with opened(str(copy)) as (_, audit, _):
+    with open_audits(str(copy)) as (_, audit, _):
         assert audit.warning
 
 
@@ -204,7 +204,7 @@ def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
     assert not (tmp_path / "out" / MANIFEST).exists()
     merge(str(tmp_path / "out"), Silent())
     name = without_a_row(tmp_path / "out")
-    with pytest.raises(UsageError, match=name), opened(str(tmp_path / "out")):
+    with pytest.raises(UsageError, match=name), open_audits(str(tmp_path / "out")):
         pass
 
 
@@ -214,7 +214,10 @@ def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Pa
     (copy / MANIFEST).write_text("{}", encoding="utf-8")
     for name in gone:
         (copy / name).unlink()
-    with pytest.raises(UsageError, match=r"has ended, and files\.json.*give the same audit again"), opened(str(copy)):
+    with (
+        pytest.raises(UsageError, match=r"has ended, and files\.json.*give the same audit again"),
+        open_audits(str(copy)),
+    ):
         pass
     with pytest.raises(UsageError, match="has ended"), opened_both(str(ended), str(copy)):
         pass
@@ -242,11 +245,11 @@ def open_copies(copy: Path, loose: Path, tmp_path: Path) -> tuple[Path, Path]:
 def test_readers_hold_rows_of_an_unfinished_audit_against_its_receipts(open_copies: tuple[Path, Path]) -> None:
     for out in open_copies:
         warned: list[str] = []
-        with opened(str(out)) as (_, audit, _):
+        with open_audits(str(out)) as (_, audit, _):
             assert audit.warning
         verdicts = next(each for each in out.rglob("*.parquet") if each.parent.name == "verdicts")
         passed(verdicts)
-        with pytest.raises(UsageError, match="as drivelint audit wrote"), opened(str(out)):
+        with pytest.raises(UsageError, match="as drivelint audit wrote"), open_audits(str(out)):
             pass
         assert ask(str(out), "FROM verdicts", "json", warned.append)
         assert "as drivelint audit wrote" in warned[0]
@@ -259,7 +262,7 @@ def test_a_file_that_was_cut_is_an_error_with_a_sentence(
         for name in (each.relative_to(of) for each in of.rglob("[!.]*.*") if each.is_file()):
             out = tmp_path / shutil.copytree(of, tmp_path / "cut", dirs_exist_ok=True).name
             (out / name).write_bytes((of / name).read_bytes()[:40])
-            with pytest.raises(UsageError, match=r"not as drivelint|not a receipt|has ended"), opened(str(out)):
+            with pytest.raises(UsageError, match=r"not as drivelint|not a receipt|has ended"), open_audits(str(out)):
                 raise AssertionError(name)
             shutil.rmtree(out)
 

@@ -23,8 +23,8 @@ from drivelint.audit.text import summary_text
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
+from drivelint.fleet_report.audit_views import open_audits
 from drivelint.fleet_report.content import content
-from drivelint.fleet_report.opened import opened
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
@@ -159,7 +159,7 @@ def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: st
     copy.write_bytes((copy.parent / "drive-00000.parquet").read_bytes())
     few.manifest.write_text(f"log,ego\nlogs/drive-00000.parquet,0\nlogs/copy.parquet,{ego}\n", encoding="utf-8")
     counted = judged(few, tmp_path / "out")
-    with opened(str(tmp_path / "out")) as (con, out, _):
+    with open_audits(str(tmp_path / "out")) as (con, out, _):
         page = content(con, out, None, ())
         ways = {
             row[0]: row[1]
@@ -227,7 +227,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     for name in ("km", "hours", "findings", "contacts", "unknown", "broken", "unknown_for"):
         assert getattr(counted, name) == getattr(alone, name), name
     assert counted.findings == {"critical": len(few.planted)}
-    with opened(str(tmp_path / "out")) as (con, out, _):
+    with open_audits(str(tmp_path / "out")) as (con, out, _):
         page = content(con, out, None, ())
     assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
@@ -246,7 +246,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
     assert lines[2] == "1 more log has the content of another one: each content counts once"
     assert [Path(name).name for name in lines[3].strip().split(": a copy of ")] == [damaged[1].name, damaged[0].name]
     assert "not judged: 1 drive" in lines
-    with opened(str(tmp_path / "out")) as (con, out, _):
+    with open_audits(str(tmp_path / "out")) as (con, out, _):
         assert content(con, out, None, ()).n_not_judged == 1
 
 

@@ -23,8 +23,8 @@ def nearest(now: float, turns_at: float) -> tuple[float, int]:
 
     (change,) = _search([_Number("near_m", "nearer than this", "m", now, math.inf, None, 2)], "fail", judge)
     assert change.beyond
-    assert change.found is not None
-    return change.found, len(judged)
+    assert change.nearest_value is not None
+    return change.nearest_value, len(judged)
 
 
 @pytest.mark.parametrize("now", [2.31, 2.5, 3.0, 5.0, 20.0, 400.0])
@@ -47,6 +47,6 @@ def test_the_first_of_two_other_verdicts_is_named() -> None:
 
     (change,) = _search([_Number("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
     assert (change.becomes, change.beyond) == ("pass", False)
-    assert change.found == pytest.approx(0.21, abs=0.003)
-    assert change.found is not None
-    assert change.found < 0.21
+    assert change.nearest_value == pytest.approx(0.21, abs=0.003)
+    assert change.nearest_value is not None
+    assert change.nearest_value < 0.21

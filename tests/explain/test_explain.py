@@ -17,7 +17,7 @@ from rich.console import Console
 
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, VerdictFilter, explain
-from drivelint.explain.target import _meant
+from drivelint.explain.target import _complete_name
 from drivelint.explain.text import _rounded_sentence, render, to_json
 from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
@@ -70,7 +70,7 @@ def test_a_requirement_is_taken_apart(folder: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     assert math.isclose(sum(part.value for part in found.parts), found.verdict["required"], rel_tol=1e-9)
     assert [part.name for part in found.parts] == ["pull_out_m", "passing_m", "cut_in_m", "oncoming_m", "stopping_m"]
-    told = " + ".join(f"{part.what} {part.value:.2f} m" for part in found.parts)
+    told = " + ".join(f"{part.description} {part.value:.2f} m" for part in found.parts)
     assert f"{found.verdict['required']:.2f} m = {told}." in flat(said(found))
     assert of(folder, "no-collision@safe").parts == []
 
@@ -95,10 +95,13 @@ def test_the_change_that_is_named_changes_the_verdict_and_a_smaller_one_does_not
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     change = next(c for c in found.changes if c.name == "nominal.pull_out_headroom_m")
     assert change.becomes == "pass"
-    assert change.found is not None
-    assert 0 < change.found < change.now
+    assert change.nearest_value is not None
+    assert 0 < change.nearest_value < change.now
     rules = tmp_path / "mine"
-    for value, expected in ((change.found, "pass"), (change.now - 0.9 * (change.now - change.found), "fail")):
+    for value, expected in (
+        (change.nearest_value, "pass"),
+        (change.now - 0.9 * (change.now - change.nearest_value), "fail"),
+    ):
         (rules / "pack").mkdir(parents=True, exist_ok=True)
         (rules / "pack" / "x.sql").write_text((ROOT / "queries/assertions/ukhc/no-collision.sql").read_text())
         (rules / "profiles.toml").write_text(
@@ -121,11 +124,14 @@ def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_pa
     change = next(c for c in found.changes if c.name == "tyre_mps2")
     assert change.becomes == "pass"
     assert change.beyond
-    assert change.found is not None
-    assert change.found > found.verdict["observed"]
-    assert change.found < 1.1 * found.verdict["observed"]
-    assert f"tyre_mps2 >= {change.found:g} m/s2 it would pass" in flat(said(found))
-    for value, expected in ((change.found, {"pass", "not_applicable"}), (0.95 * found.verdict["observed"], {"fail"})):
+    assert change.nearest_value is not None
+    assert change.nearest_value > found.verdict["observed"]
+    assert change.nearest_value < 1.1 * found.verdict["observed"]
+    assert f"tyre_mps2 >= {change.nearest_value:g} m/s2 it would pass" in flat(said(found))
+    for value, expected in (
+        (change.nearest_value, {"pass", "not_applicable"}),
+        (0.95 * found.verdict["observed"], {"fail"}),
+    ):
         result = check(
             tmp_path, traces=(str(OVERTAKE / "collision.csv"),), rules=(RULES[1],),
             params=("ukhc.contact-signature.within_m=0.4", f"ukhc.contact-signature.tyre_mps2={value}"),
@@ -423,10 +429,10 @@ def test_mistakes_are_one_clear_line(folder: Path, name: str, wanted: dict[str, 
 
 def test_the_whole_name_of_a_log_goes_before_the_beginning_of_another() -> None:
     known = ["near-miss-25mph-54ec422b", "near-miss-e888ec04", "near-miss-25mph-slow-0a1b2c3d"]
-    assert _meant("near-miss", known, "drive") == known[1]
-    assert _meant("near-miss-25mph", known, "drive") == known[0]
+    assert _complete_name("near-miss", known, "drive") == known[1]
+    assert _complete_name("near-miss-25mph", known, "drive") == known[0]
     with pytest.raises(UsageError, match="the beginning of several drives"):
-        _meant("near", known, "drive")
+        _complete_name("near", known, "drive")
 
 
 @pytest.mark.slow

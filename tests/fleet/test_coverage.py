@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.fleet.coverage import STANDINGS, coverage
-from drivelint.fleet.missing import Missing, missing
+from drivelint.fleet.missing_signals import Missing, missing_signals
 from drivelint.fleet.rates import rates
 from tests.fleet import audits
 from tests.fleet.conftest import Checked
@@ -103,7 +103,7 @@ def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Check
 def of_check(folder: Any) -> Missing:
     with duckdb.connect() as con:
         audits.add_results(con, folder)
-        return missing(con)
+        return missing_signals(con)
 
 
 @pytest.mark.slow
@@ -130,6 +130,6 @@ def test_other_reasons_stand_beside() -> None:
     way = {"ego_id": "1", "km": 6.0, "hours": 1.0, "engaged_km": 6.0, "engaged_hours": 1.0, "n_steps": 9}
     with duckdb.connect() as con:
         audits.add_rows(con, [drive(not_judged=lack, exposure=[way])], words, [], [rule(requires=["map", "speeds"])])
-        found = missing(con)
-    assert [(each.reason_code, each.verdicts) for each in found.others] == [("ego_not_placed", 1)]
+        found = missing_signals(con)
+    assert [(each.reason_code, each.verdicts) for each in found.other_reasons] == [("ego_not_placed", 1)]
     assert [(each.signal, each.rules_alone, each.km_alone) for each in found.signals] == [("map", 1, 6.0)]

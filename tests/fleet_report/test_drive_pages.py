@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages
-from drivelint.fleet_report.opened import Audit, opened
+from drivelint.fleet_report.audit_views import Audit, open_audits
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report import lake
@@ -212,7 +212,7 @@ class Counted:
 
 
 def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, bytes]:
-    with opened(str(audit)) as (con, told, _):
+    with open_audits(str(audit)) as (con, told, _):
         found = content_.content(con, told, None, ())
         through: Any = con
         if counted is not None:

@@ -12,7 +12,7 @@ from lxml import etree
 import drivelint
 from drivelint.errors import UsageError
 from drivelint.fleet_report import gated
-from drivelint.fleet_report.opened import opened
+from drivelint.fleet_report.audit_views import open_audits
 from tests.fleet_report.command import Ran, ran
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def test_the_next_run_without_a_gate_has_none(audited: Audited, again: Path) -> 
 def test_a_changed_gate_is_refused(audited: Audited, again: Path) -> None:
     audit(audited, again, "--baseline", audited.new)
     (again / "gate.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(UsageError, match=r"gate\.json: is not as drivelint audit wrote it"), opened(str(again)):
+    with pytest.raises(UsageError, match=r"gate\.json: is not as drivelint audit wrote it"), open_audits(str(again)):
         pass
 
 

@@ -11,10 +11,10 @@ import pytest
 from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
-from drivelint.fleet.missing import missing
+from drivelint.fleet.missing_signals import missing_signals
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
-from drivelint.fleet_report.opened import Audit
+from drivelint.fleet_report.audit_views import Audit
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report.told import Told, touched, words
@@ -145,7 +145,7 @@ def test_a_signal_is_advised_in_the_formats_that_lack_it() -> None:
             audits.add_rows(
                 con, [row], [said("a", "unknown", rule_id="a-room", reason_code="missing_indicator")], [], [needs]
             )
-            (each,) = missing(con).signals
+            (each,) = missing_signals(con).signals
         return page._provide(each)
 
     assert fleet("commonroad") != fleet("mapped")

@@ -16,9 +16,9 @@ from drivelint.errors import ExitCode
 from drivelint.fleet.rate_change import rate_changes
 from drivelint.fleet.rates import rates
 from drivelint.fleet_report import difference_text
+from drivelint.fleet_report.audit_views import Audit
 from drivelint.fleet_report.difference import AuditDifference, difference
 from drivelint.fleet_report.figures import figure
-from drivelint.fleet_report.opened import Audit
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.report.synthetic import rule
@@ -93,7 +93,7 @@ def test_a_rate_that_fell_or_that_does_not_gate_is_no_failure(disjoint: AuditDif
         fleet(con, "", "r1")
         sides = [Audit(name, LocalFolder(Path(name)), {}, Standing("d")) for name in ("new", "base")]
         fell = difference(con, sides[0], sides[1], 50)
-    assert fell.called
+    assert fell.significant_changes
     assert difference_text.exit_code(fell, None) == ExitCode.OK
 
 
@@ -140,7 +140,7 @@ def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_
 def test_rates_are_tested_per_occasion_too(disjoint: AuditDifference) -> None:
     from scipy.stats import fisher_exact
 
-    (change,) = disjoint.called
+    (change,) = disjoint.significant_changes
     tests = {each.per: each for each in change.tests}
     assert change.rule_id == "overtake"
     expected = fisher_exact([[2, 20], [17, 7]])[1]

@@ -14,7 +14,7 @@ from lxml import html
 
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
-from drivelint.fleet_report.opened import opened
+from drivelint.fleet_report.audit_views import open_audits
 from tests.audit import fleet
 from tests.audit.here import judged
 from tests.fleet_report import lake
@@ -163,7 +163,7 @@ def test_the_map_shows_every_finding_or_says_how_many_not(written: Any, filled: 
 def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     made = []
     for _ in range(2):
-        with opened(str(filled.folder)) as (con, audit, _base):
+        with open_audits(str(filled.folder)) as (con, audit, _base):
             found = content_.content(con, audit, None, ["release"])
         made.append((page.html(found), page.markdown(found)))
     assert made[0] == made[1]

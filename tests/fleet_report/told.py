@@ -13,7 +13,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
-from drivelint.fleet_report.opened import Audit
+from drivelint.fleet_report.audit_views import Audit
 from tests.fleet import audits
 from tests.fleet.audits import found, said
 from tests.report.synthetic import rule

@@ -264,9 +264,9 @@ def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
     new = run(
         [], said("unknown", reason="fog"), said("unknown", 1, 2, reason="fog"), said("unknown", 3, 4, reason="dark")
     )
-    (opened,) = diff.compare(base, new).opened
+    (opened,) = diff.compare(base, new).new_unknowns
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
-    assert diff.compare(new, base).opened == ()
+    assert diff.compare(new, base).new_unknowns == ()
     said_ = descriptions.difference_text(diff.compare(base, new), [], "critical")
     assert "More is unknown than was (2 verdicts): unknown is not pass\n  2: ukhc.r124.speed-limit: fog" in said_
 

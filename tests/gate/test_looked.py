@@ -131,6 +131,6 @@ def test_results_without_a_common_drive_say_so_and_count_no_more_unknowns() -> N
     base = result([verdict("unknown")])
     new = result([verdict("unknown", drive_id="converted")], drives=[drive("converted")])
     found = diff.compare(base, new)
-    assert found.opened == ()
+    assert found.new_unknowns == ()
     assert "No drive is in both, by name or content" in descriptions.difference_text(found, [], "critical")
     assert "No drive is in both" not in descriptions.difference_text(diff.compare(base, base), [], "critical")

@@ -54,7 +54,7 @@ def test_no_rule_of_contacts_is_kept_under_a_contact(*, touched: bool) -> None:
     """Another finding of the party is a contact, or the sheet is about one."""
     hit = [] if touched else [finding("impact", (32, 32))]
     found = told([row("boxes", object_id="3", observed=0.14, required=0.0), row("limit")], hit, touched=touched)
-    assert not any("distance between" in line or "No collision" in line for line in found["kept"].shown)
+    assert not any("distance between" in line or "No collision" in line for line in found["kept"].texts)
     assert found["beside"] == ["distance between the two with 3: 0.14 m (more than 0.00 m)"]
     assert found["n"]["kept"] == 1
     assert sum(found["n"].values()) + found["never"] + len(found["beside"]) == len(RULES)
@@ -62,14 +62,14 @@ def test_no_rule_of_contacts_is_kept_under_a_contact(*, touched: bool) -> None:
 
 def test_a_rule_with_excuses_is_not_said_to_be_kept() -> None:
     found = told([row("lane", observed=0.0, required=5.0)], [])
-    assert found["kept"].shown == []
-    assert found["excused"].shown == ["\u201cWithin its lane\u201d"]  # and not that it was astride for 0 s
+    assert found["kept"].texts == []
+    assert found["excused"].texts == ["\u201cWithin its lane\u201d"]  # and not that it was astride for 0 s
 
 
 def test_kept_is_named_by_what_was_measured_and_when() -> None:
     part = row("limit", observed=5.9, required=18.3, t_end_ns=7 * S)
-    assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s)"]
-    assert told([part], [])["kept"].shown == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].texts == ["speed 5.90 m/s (at most 18.30 m/s)"]
+    assert told([part], [])["kept"].texts == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
     limit = {
         **RULES["limit"],
         "params": [{"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}],
@@ -77,8 +77,8 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
     (line,) = conduct([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
     assert line == "speed 5.90 m/s (at most 18.30 m/s, 0.45 m/s of it tolerance; 0.00 to 7.00 s)"
     bound = {**part, "cause_code": "lower_bound"}
-    assert told([bound], [])["kept"].shown == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
-    assert told([{**part, "near_miss": True}], [])["kept"].shown[0].endswith("; narrowly)")
+    assert told([bound], [])["kept"].texts == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    assert told([{**part, "near_miss": True}], [])["kept"].texts[0].endswith("; narrowly)")
 
 
 def test_how_sure_several_findings_are() -> None:
@@ -86,16 +86,16 @@ def test_how_sure_several_findings_are() -> None:
         finding("impact", copies, t_start_ns=s * S, t_end_ns=s * S)
         for s, copies in enumerate([(32, 32), (49, 100), (50, 100)])
     ]
-    assert told([], found)["broken"].shown[0].endswith("(3 findings: 1 sure, 2 possible)")
-    assert told([], found[:1])["broken"].shown[0].endswith("; sure, 32 of 32")
-    assert told([], [finding("impact", None)])["broken"].shown[0].endswith("; certainty not examined")
+    assert told([], found)["broken"].texts[0].endswith("(3 findings: 1 sure, 2 possible)")
+    assert told([], found[:1])["broken"].texts[0].endswith("; sure, 32 of 32")
+    assert told([], [finding("impact", None)])["broken"].texts[0].endswith("; certainty not examined")
 
 
 def test_begin_and_worst_time() -> None:
     lasting = finding("impact", None, t_start_ns=9 * S, t_end_ns=11 * S, t_worst_ns=10 * S)
-    assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in told([], [lasting])["broken"].shown[0]
+    assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in told([], [lasting])["broken"].texts[0]
     once = finding("ahead", None, t_start_ns=7 * S, t_end_ns=7 * S, t_worst_ns=7 * S)
-    assert ": for the manoeuvre of 7.00 s, " in told([], [once])["broken"].shown[0]
+    assert ": for the manoeuvre of 7.00 s, " in told([], [once])["broken"].texts[0]
 
 
 def test_every_profile_is_told_the_mildest_first() -> None:
@@ -104,14 +104,14 @@ def test_every_profile_is_told_the_mildest_first() -> None:
     found = [{**each, "margin": each["observed"] - each["required"]} for each in found]
     assert (
         "45.59 m, must be more than 51.19 m (planned as aggressive), 74.92 m (planned as nominal), "
-        "112.57 m (planned as relaxed) (3 findings: 3 sure)" in told([], found)["broken"].shown[0]
+        "112.57 m (planned as relaxed) (3 findings: 3 sure)" in told([], found)["broken"].texts[0]
     )
 
 
 def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
     reason = "the log does not say when the headlights are on: record either their signal or the event headlights, on and off"
     found = told([row("lamps", "unknown", reason=reason, reason_code="missing", finding_ids=None)], [])
-    assert found["reasons"].shown == [
+    assert found["reasons"].texts == [
         "\u201cHeadlights at night\u201d: The log does not say when the headlights are on"
     ]
 
@@ -143,7 +143,7 @@ def test_reasons_come_before_what_the_other_lists_would_take() -> None:
 def test_reasons_that_do_not_fit_are_counted() -> None:
     party: dict[str, Any] = {"reasons": list(REASONS)}
     fit([party], 0, 3300)
-    assert len(party["reasons"].shown) + party["reasons"].more == 20
+    assert len(party["reasons"].texts) + party["reasons"].more == 20
     assert party["reasons"].more > 0
 
 
@@ -186,7 +186,7 @@ def test_one_reason_in_words_is_told_once_whatever_its_codes() -> None:
         for rule, code, advice in (("boxes", "a", "record it until it is back"), ("limit", "b", "see what it did"))
     ]
     found = told(rows, [])
-    assert found["reasons"].shown == [
+    assert found["reasons"].texts == [
         f"\u201c{RULES['boxes']['title']}\u201d, \u201c{RULES['limit']['title']}\u201d: The log ends"
     ]
 
@@ -195,4 +195,4 @@ def test_why_a_contact_is_not_decided_is_told_first() -> None:
     """A page that has room for one reason must not leave that one out."""
     rows = [row(rule, "unknown", reason_code="x", reason="no lights") for rule in ("limit", "lane")]
     found = told([*rows, row("boxes", "unknown", reason_code="y", reason="the boxes are apart")], [])
-    assert found["reasons"].shown[0].startswith(f"\u201c{RULES['boxes']['title']}\u201d")
+    assert found["reasons"].texts[0].startswith(f"\u201c{RULES['boxes']['title']}\u201d")

@@ -105,8 +105,8 @@ def crowded(case: Case) -> Case:
         for n, rule in enumerate(rules[1::2])
     ]  # fmt: skip
     judged = replace(case.again, verdicts=verdicts, findings=[*case.again.findings, *findings])
-    asked = replace(case.asked, env=("weather=wet", "light=night", "nation=gb-eng"), map_offset=(1.25, -3.5))
-    return replace(case, again=judged, others=judged, asked=asked)
+    asked = replace(case.run_options, env=("weather=wet", "light=night", "nation=gb-eng"), map_offset=(1.25, -3.5))
+    return replace(case, again=judged, other_party=judged, run_options=asked)
 
 
 @pytest.mark.ci

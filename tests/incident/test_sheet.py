@@ -113,14 +113,14 @@ def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     settings: dict[str, Any] = {"traces": (str(OVERTAKE / "collision.csv"),), "profiles": ("relaxed", "nominal")}
     settings |= {"map": OVERTAKE / "road.xodr", "mapping": str(OVERTAKE / "mapping.toml"), "rules": ("ukhc",)}
     result = run_check(CheckOptions(**settings, ego="oncoming"), Silent())
-    assert not isinstance(case.others, str)
-    assert case.others is not None
-    assert case.others.verdicts == result.verdicts.to_pylist()
+    assert not isinstance(case.other_party, str)
+    assert case.other_party is not None
+    assert case.other_party.verdicts == result.verdicts.to_pylist()
     told = content(case)["conduct"]
     assert [party["id"] for party in told] == ["ego", "oncoming"]
     failed = len(set(result.findings["rule_id"].to_pylist()))
     assert told[1]["n"]["broken"] == failed > 0
-    assert any("No collision" in line for line in told[1]["broken"].shown)
+    assert any("No collision" in line for line in told[1]["broken"].texts)
     total = sum(told[1]["n"].values()) + told[1]["never"]
     assert total == result.rules.num_rows
 
@@ -152,7 +152,7 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     stable = case.result.rules["rule_id"].to_pylist()
 
     def selected(asked_for: list[str]) -> list[str]:
-        words = shlex.split(commands(case.asked, case.finding, asked_for)[0])
+        words = shlex.split(commands(case.run_options, case.finding, asked_for)[0])
         return [word for i, word in enumerate(words) if {"--rules", "--ignore"} & {word, words[i - 1]}]
 
     ukhc = {rule.id for rule in catalogue.load_rules().values() if rule.pack == "ukhc" and rule.status == "stable"}
@@ -200,12 +200,12 @@ def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
 def test_who_was_only_hit(collision: dict[str, Any]) -> None:
     told = {party["id"]: party["only_hit"] for party in collision["conduct"]}
     assert told["ego"] is False
-    assert all(certain in " ".join(collision["conduct"][0]["broken"].shown) for certain in ("; sure,", " of "))
+    assert all(certain in " ".join(collision["conduct"][0]["broken"].texts) for certain in ("; sure,", " of "))
 
 
 @pytest.mark.ci
 def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -> None:
-    lines = [line for party in collision["conduct"] for line in party["broken"].shown]
+    lines = [line for party in collision["conduct"] for line in party["broken"].texts]
     assert not any("braked" in line for line in lines)
 
 
@@ -244,7 +244,7 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
     required = [line["name"] for line in chart["lines"] if line["kind"] == "limit"]
     assert "required: \u201cSafe distance ahead before overtaking\u201d (planned as nominal)" in required
     assert "Contact" not in told["what"]
-    assert told["contacts"].shown  # the same two touch later in that drive
+    assert told["contacts"].texts  # the same two touch later in that drive
 
 
 @pytest.mark.ci

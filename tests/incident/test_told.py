@@ -37,14 +37,14 @@ def text(case_of: CaseOf) -> str:
 @pytest.mark.ci
 def test_nothing_is_kept_that_the_sheet_contradicts(collision: dict[str, Any], text: str) -> None:
     for party in collision["conduct"]:
-        assert not any("ollision" in line or "ithin its lane" in line for line in party["kept"].shown)
+        assert not any("ollision" in line or "ithin its lane" in line for line in party["kept"].texts)
     assert "Kept:" not in text
 
 
 @pytest.mark.ci
 def test_both_parties_breaches_have_their_certainty(collision: dict[str, Any]) -> None:
     for party in collision["conduct"]:
-        lines = [line for line in party["broken"].shown if ", critical" in line or ", major" in line]
+        lines = [line for line in party["broken"].texts if ", critical" in line or ", major" in line]
         assert lines
         assert all(re.search(r"(sure|possible), \d+ of \d+$|findings: .*\d (sure|possible)", line) for line in lines)
 
@@ -96,7 +96,7 @@ def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None
 def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
-    assert "not examined" in content(replace(case, others=None))["parties"][1]["lane"]
+    assert "not examined" in content(replace(case, other_party=None))["parties"][1]["lane"]
 
 
 @pytest.mark.ci
@@ -105,14 +105,14 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     case = case_of("no-collision@collision")
     parts = [*collision["conduct"], collision["of_both"]]
     assert [part["reasons"].more for part in parts] == [0, 0, 0]
-    for party, judged in zip(collision["conduct"], (case.again, case.others), strict=True):
+    for party, judged in zip(collision["conduct"], (case.again, case.other_party), strict=True):
         assert isinstance(judged, Judged)
         undecided = {row["rule_id"] for row in judged.verdicts if row["verdict"] in {"unknown", "error"}}
-        told = " ".join([*party["reasons"].shown, *collision["of_both"]["reasons"].shown])
+        told = " ".join([*party["reasons"].texts, *collision["of_both"]["reasons"].texts])
         titles = [rule["title"] for rule in case.result.rules.to_pylist() if rule["rule_id"] in undecided]
         assert titles
         assert all(f"\u201c{title}\u201d" in told for title in titles)
-    shared = [reason.partition(": ")[2] for reason in collision["of_both"]["reasons"].shown]
+    shared = [reason.partition(": ")[2] for reason in collision["of_both"]["reasons"].texts]
     assert shared
     assert all(text.count(reason) == 1 for reason in shared)
     assert "Not decided of either, for the same reasons: " in text
@@ -136,7 +136,7 @@ def test_contacts_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     rows = case.result.findings
     touched = rows.filter(pc.is_in(rows["rule_id"], pa.array(["ukhc.contact-signature"])))
     more = replace(case, result=replace(case.result, findings=pa.concat_tables([rows, touched, touched])))
-    n = len(content(case)["contacts"].shown)
+    n = len(content(case)["contacts"].texts)
     assert content(more)["contacts"].more == n + 2 * touched.num_rows - 2 > 0
     assert f"And {n + 2 * touched.num_rows - 2} more contact" in render(more).decode()
 

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.driver import empty_rows
 from drivelint.audit.summary import summed
 from drivelint.audit.worker import TABLES, said_of_rows
-from drivelint.fleet_report.opened import opened_packed
+from drivelint.fleet_report.audit_views import opened_packed
 from drivelint.pack.audits.statement import statement
 from drivelint.pack.signature import envelope, private_key
 from tests.audit import fleet

@@ -331,7 +331,7 @@ KEPT: dict[str, tuple[Result, bool]] = {
 def test_only_a_run_is_kept_that_its_inputs_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
     judged, is_kept = KEPT[what]
     log = "out/annotated/x.mcap" if what == "its log is an output" else "x.mcap"
-    judged = replace(judged, asked=RunRequest(traces={"d1": log}))
+    judged = replace(judged, run_options=RunRequest(traces={"d1": log}))
 
     def judges(_settings: object, _progress: object, interruption: Interruption, *_: object) -> Result:
         if what == "only its copies were interrupted":
@@ -357,7 +357,7 @@ def test_logs_beside_the_results_are_found(first: Ran, tmp_path: Path, monkeypat
         assert settings.out is not None
         (settings.out / "annotated").mkdir()
         (settings.out / "annotated" / "d1.mcap").write_bytes(b"")
-        return replace(judged, asked=RunRequest(traces={"d1": str(logs[0])}))
+        return replace(judged, run_options=RunRequest(traces={"d1": str(logs[0])}))
 
     judged = result([verdict("pass")])
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "cache")

@@ -66,7 +66,9 @@ HOSTILE = result(
         pytest.param(result([]), id="nothing"),
         pytest.param(result(MIXED, [finding()]), id="mixed"),
         pytest.param(HOSTILE, id="hostile"),
-        pytest.param(replace(HOSTILE, asked=RunRequest(named={"d1": "C:/\udcff log #1%/2.csv"})), id="named"),
+        pytest.param(
+            replace(HOSTILE, run_options=RunRequest(relative_paths={"d1": "C:/\udcff log #1%/2.csv"})), id="named"
+        ),
         pytest.param(gated(finding(), finding(object_id="4", finding_id="x"), base=[finding()]), id="gated"),
     ],
 )
@@ -110,7 +112,7 @@ def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
 
 
 def named(run: Result, **paths: str) -> Result:
-    return replace(run, asked=RunRequest(named=paths))
+    return replace(run, run_options=RunRequest(relative_paths=paths))
 
 
 def test_a_log_has_its_path_from_the_folder_of_the_check() -> None:
@@ -133,7 +135,7 @@ def test_the_path_is_kept_with_the_result(tmp_path: Path, monkeypatch: pytest.Mo
     asked = RunRequest.from_options(
         options, {"d2": "drives/../logs/b.csv", "d1": str(work / "a.csv"), "d3": "../c.csv"}
     )
-    assert asked.named == {"d1": "a.csv", "d2": "logs/b.csv"}
+    assert asked.relative_paths == {"d1": "a.csv", "d2": "logs/b.csv"}
     (tmp_path / "run.json").write_bytes(request.render(asked, tmp_path))
     monkeypatch.chdir(tmp_path)
     run = log(replace(result([verdict("fail")], [finding()]), folder=tmp_path))

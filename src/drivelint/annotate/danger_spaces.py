@@ -14,7 +14,7 @@ from drivelint.annotate.draw import Colour
 from drivelint.annotate.result_messages import Message
 from drivelint.arrays import floats
 from drivelint.formats.foxglove import messages as foxglove
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -43,7 +43,7 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
     """
     rows = spaces.to_pylist()
     every = max(1, -(-len(rows) // MAX_STEPS))
-    by_time = grouped(rows[::every], lambda row: int(row["t_ns"]))
+    by_time = group_rows(rows[::every], lambda row: int(row["t_ns"]))
     for ego in sorted({row["ego_id"] for row in rows}):
         for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
             by_time.setdefault(t, [])
@@ -63,10 +63,10 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
     return out
 
 
-def _behind(times: Times, drawn: Times) -> list[int]:
+def _behind(times: Times, drawn_times: Times) -> list[int]:
     """Return the steps of the ego that follow a drawn one and are not drawn themselves."""
-    after = np.searchsorted(times, drawn, side="right")
-    return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn)]
+    after = np.searchsorted(times, drawn_times, side="right")
+    return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn_times)]
 
 
 def _line(chains: pa.Table, ego: str, chain: int) -> Floats:

@@ -82,23 +82,23 @@ def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, 
     ]
 
 
-def messages(found: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
+def messages(windows: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return the SceneUpdates of all windows: one for every step in a window, and an empty one after each window."""
-    steps = [_steps(tracks, window) for window in found]
+    steps = [_steps(tracks, window) for window in windows]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
-    drawn: dict[int, list[MarkerFrame]] = {}
-    for window, (times, behind) in zip(found, steps, strict=True):
+    frames_at: dict[int, list[MarkerFrame]] = {}
+    for window, (times, behind) in zip(windows, steps, strict=True):
         thinned = times[::every]
         ego = _boxes(tracks, window.ego_id, thinned)
         other = _boxes(tracks, window.object_id, thinned)
         for k, t in enumerate(thinned.tolist()):
-            drawn.setdefault(t, []).append(MarkerFrame(window, ego[k], other[k]))
+            frames_at.setdefault(t, []).append(MarkerFrame(window, ego[k], other[k]))
         if behind is not None:
-            drawn.setdefault(behind, [])
+            frames_at.setdefault(behind, [])
     out = []
-    for t, shown in sorted(drawn.items()):
+    for t, frames in sorted(frames_at.items()):
         time = clock.at(t)
-        out.append(Message(time, draw.deletion(time) + b"".join(_entities(shown, time))))
+        out.append(Message(time, draw.deletion(time) + b"".join(_entities(frames, time))))
     return out
 
 
@@ -120,30 +120,30 @@ def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
     return [Box(*row[:4], p.length, p.width) if row[4] else None for row in zip(*columns, strict=True)]
 
 
-def _entities(shown: list[MarkerFrame], time: int) -> Iterator[bytes]:
+def _entities(frames: list[MarkerFrame], time: int) -> Iterator[bytes]:
     """Yield what is drawn at one step: each pair once, in the colour of its worst window, and one label per ego."""
     pairs: dict[tuple[str, str | None], MarkerFrame] = {}
     egos: dict[str, list[MarkerFrame]] = {}
-    for one in shown:
-        pairs.setdefault((one.window.ego_id, one.window.object_id), one)
-        egos.setdefault(one.window.ego_id, []).append(one)
-    for (ego, other), one in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
-        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair(one))
-    for ego, said in sorted(egos.items()):
-        if (box := said[0].ego) is not None:
-            more = [f"and {len(said) - MAX_LABEL_LINES} more"] if len(said) > MAX_LABEL_LINES else []
-            text = "\n".join([*(one.window.text for one in said[:MAX_LABEL_LINES]), *more])
-            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, said[0].window.colour)
+    for frame in frames:
+        pairs.setdefault((frame.window.ego_id, frame.window.object_id), frame)
+        egos.setdefault(frame.window.ego_id, []).append(frame)
+    for (ego, other), frame in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
+        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair(frame))
+    for ego, ego_frames in sorted(egos.items()):
+        if (box := ego_frames[0].ego) is not None:
+            more = [f"and {len(ego_frames) - MAX_LABEL_LINES} more"] if len(ego_frames) > MAX_LABEL_LINES else []
+            text = "\n".join([*(one.window.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
+            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, ego_frames[0].window.colour)
             yield draw.entity(f"what is said of {ego}", time, label)
 
 
-def _pair(one: MarkerFrame) -> bytes:
+def _pair(frame: MarkerFrame) -> bytes:
     """Draw the outlines of both boxes and the line between them."""
-    boxes = [box for box in (one.ego, one.object) if box is not None]
-    parts = [draw.line(box_corners(box), one.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
+    boxes = [box for box in (frame.ego, frame.object) if box is not None]
+    parts = [draw.line(box_corners(box), frame.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
     if len(boxes) == 2:
         ends = np.array([box[:3] for box in boxes])
-        parts.append(draw.line(ends, one.window.colour, thickness=2.0, kind=foxglove.LINE_STRIP))
+        parts.append(draw.line(ends, frame.window.colour, thickness=2.0, kind=foxglove.LINE_STRIP))
     return b"".join(parts)
 
 

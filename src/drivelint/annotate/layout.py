@@ -25,14 +25,14 @@ def layout(series: Iterable[Series]) -> bytes:
     return json.dumps(content, indent=2).encode() + b"\n"
 
 
-def _path(one: Series) -> dict[str, Any]:
-    topic = f"/drivelint/{margin_topic(one.rule_id)}"
-    profile = f" [{one.profile}]" if one.profile else ""
-    only = f'{{profile=="{one.profile}"}}' if one.profile else ""
-    unit = f" ({one.unit})" if one.unit else ""
+def _path(series: Series) -> dict[str, Any]:
+    topic = f"/drivelint/{margin_topic(series.rule_id)}"
+    profile = f" [{series.profile}]" if series.profile else ""
+    only = f'{{profile=="{series.profile}"}}' if series.profile else ""
+    unit = f" ({series.unit})" if series.unit else ""
     return {
         "value": f"{topic}{only}.margin",
-        "label": f"{one.rule_id.partition('.')[2]}{profile}{unit}",
+        "label": f"{series.rule_id.partition('.')[2]}{profile}{unit}",
         "enabled": True,
         "timestampMethod": "receiveTime",
     }

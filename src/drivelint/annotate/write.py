@@ -104,23 +104,33 @@ class _Writer:
         if annotation.road is not None and len(boxes):
             at = times.at(start)
             lanes = annotation.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
-            self._few("map", scene, [result_messages.Message(at, lanes)])
-        self._many("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
+            self._write_messages("map", scene, [result_messages.Message(at, lanes)])
+        self._write_chunks("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
         if not self._moves:  # a log that has transforms of its own gets none from us
             transform = foxglove.schema("FrameTransform")
-            self._many("tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel))
-        self._few("danger_spaces", scene, danger_spaces.messages(annotation.spaces, annotation.chains, tracks, times))
+            self._write_chunks(
+                "tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel)
+            )
+        self._write_messages(
+            "danger_spaces", scene, danger_spaces.messages(annotation.spaces, annotation.chains, tracks, times)
+        )
         markers = finding_markers.markers(verdicts, findings, senses)
-        self._few("markers", scene, finding_markers.messages(markers, tracks, times))
+        self._write_messages("markers", scene, finding_markers.messages(markers, tracks, times))
         judged = result_messages.verdict_messages(verdicts, times, start)
-        self._few("verdicts", result_messages.schema("verdict"), judged)
-        self._few("findings", result_messages.schema("finding"), result_messages.finding_messages(findings, times))
-        self._few("events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses))
+        self._write_messages("verdicts", result_messages.schema("verdict"), judged)
+        self._write_messages(
+            "findings", result_messages.schema("finding"), result_messages.finding_messages(findings, times)
+        )
+        self._write_messages(
+            "events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses)
+        )
         said = result_messages.log_messages(verdicts, findings, times, start, senses)
-        self._few("log", foxglove.schema("Log"), said)
-        self._few("measures", result_messages.schema("measures"), measures.measure_messages(annotation.measures, times))
+        self._write_messages("log", foxglove.schema("Log"), said)
+        self._write_messages(
+            "measures", result_messages.schema("measures"), measures.measure_messages(annotation.measures, times)
+        )
         for rule, margins in measures.margin_messages(annotation.margins, times).items():
-            self._few(measures.margin_topic(rule), result_messages.schema("margin"), margins)
+            self._write_messages(measures.margin_topic(rule), result_messages.schema("margin"), margins)
         if annotation.geo:
             self._on_earth(annotation.geo)
         self._sink.add_metadata("drivelint", self._facts(every))
@@ -129,18 +139,18 @@ class _Writer:
 
     def _on_earth(self, geo: GeoFrame) -> None:
         fixes = places.location_messages(self._tracks, geo, self._clock, "" if self._moves else actor_boxes.EGO_FRAME)
-        self._few("location", foxglove.schema("LocationFix"), fixes)
+        self._write_messages("location", foxglove.schema("LocationFix"), fixes)
         findings, road = self._annotation.result.findings, self._annotation.road
         layer = places.geojson(findings, self._tracks, geo, road, self._sense_by_rule)
         at = self._clock.at(self._start_ns)
-        self._few("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
+        self._write_messages("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
 
-    def _many(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[RecordChunk]]) -> None:
+    def _write_chunks(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[RecordChunk]]) -> None:
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", "protobuf", schema)
         for records, index in chunks(channel):
             self._sink.add_chunk(records, {channel: index})
 
-    def _few(self, topic: str, schema: Schema, messages: list[Message]) -> None:
+    def _write_messages(self, topic: str, schema: Schema, messages: list[Message]) -> None:
         encoding = "json" if schema.encoding == "jsonschema" else "protobuf"
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", encoding, schema)
         for first, group in _cut(messages):

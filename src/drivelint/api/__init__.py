@@ -157,14 +157,14 @@ def check(
         with outputs.working_folder(folder, overwrite=overwrite) as work, kept_notes(progress) as listener:
             place = work if scratch is None else Path(scratch.name)
 
-            def kept(result: Result) -> Result:
+            def gate_and_write(result: Result) -> Result:
                 if gate_inputs is not None:
                     result = gate_inputs.apply_to(result)
                 if folder is not None:
                     outputs.write(result, folder, work, overwrite=overwrite)
                 return result
 
-            result = kept(_interruptible(replace(settings, out=place), listener, kept))
+            result = gate_and_write(_interruptible(replace(settings, out=place), listener, gate_and_write))
         if pack is not None:
             from drivelint.pack import write_pack
 
@@ -189,9 +189,9 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     Errors: `DriveLintError` for a folder without a whole result, or one of another version.
     """
     place = Path(folder)
-    asked = request.load(place) if (place / RUN_FILE).is_file() else None
+    run_options = request.load(place) if (place / RUN_FILE).is_file() else None
     result = load_result(place)
-    return CheckResult(replace(result, asked=asked), place, result.notes)
+    return CheckResult(replace(result, run_options=run_options), place, result.notes)
 
 
 @typed

@@ -20,20 +20,20 @@ _P = ParamSpec("_P")
 _R = TypeVar("_R")
 
 
-def _is_path(given: object) -> bool:
-    return isinstance(given, str | PathLike)
+def _is_path(value: object) -> bool:
+    return isinstance(value, str | PathLike)
 
 
-def _is_number(given: object) -> bool:
-    return isinstance(given, Real) and not isinstance(given, bool)
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
-def _are_numbers(given: object) -> bool:
-    return isinstance(given, Collection) and not isinstance(given, str | bytes) and all(map(_is_number, given))
+def _are_numbers(value: object) -> bool:
+    return isinstance(value, Collection) and not isinstance(value, str | bytes) and all(map(_is_number, value))
 
 
-def _are_paths(given: object) -> bool:
-    return _is_path(given) or isinstance(given, Iterable)  # what an iterator yields is looked at when it is read
+def _are_paths(value: object) -> bool:
+    return _is_path(value) or isinstance(value, Iterable)  # what an iterator yields is looked at when it is read
 
 
 _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
@@ -66,17 +66,17 @@ def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
     names = [
         name for name, each in signature.parameters.items() if name != "self" and each.kind != each.POSITIONAL_ONLY
     ]
-    asked = {name: parts for name, parts in kinds.items() if set(parts) <= _KINDS.keys()}
+    type_names = {name: parts for name, parts in kinds.items() if set(parts) <= _KINDS.keys()}
 
     @wraps(function)
-    def checked(*args: _P.args, **keywords: _P.kwargs) -> _R:
+    def checked_call(*args: _P.args, **keywords: _P.kwargs) -> _R:
         if unknown := keywords.keys() - set(names):
             word = min(unknown)
             raise UsageError(f"{function.__name__}() has no argument {word!r}: {hint(word, names)}")
-        for name, given in signature.bind(*args, **keywords).arguments.items():
-            if name in asked and not any(_KINDS[part][0](given) for part in asked[name]):
-                said = [_KINDS[part][1] for part in asked[name] if part != "None"]
-                raise UsageError(f"{name}={reprlib.repr(given)}: give {' or '.join(said)}")
+        for name, value in signature.bind(*args, **keywords).arguments.items():
+            if name in type_names and not any(_KINDS[part][0](value) for part in type_names[name]):
+                said = [_KINDS[part][1] for part in type_names[name] if part != "None"]
+                raise UsageError(f"{name}={reprlib.repr(value)}: give {' or '.join(said)}")
         return function(*args, **keywords)
 
-    return checked
+    return checked_call

@@ -12,9 +12,9 @@ from drivelint.api.arguments import typed
 from drivelint.api.tables import Table, TableSet
 from drivelint.errors import UsageError
 from drivelint.fleet import rates
-from drivelint.fleet.counted import create_counted_views
+from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet_report import gated
-from drivelint.fleet_report.opened import destination, is_audit, opened
+from drivelint.fleet_report.audit_views import destination, is_audit, open_audits
 from drivelint.phrases import listed
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
@@ -51,7 +51,7 @@ class AuditResult(TableSet):
         findings = self._result.findings
         tables = {name: getattr(self._result, name) for name in ("verdicts", "findings", "drives", "rules")}
         tables["events"] = pa.Table.from_pylist(one_per_event(findings.to_pylist()), schema=findings.schema)
-        with opened(self._dest) as (con, audit, _):
+        with open_audits(self._dest) as (con, audit, _):
             counted = create_counted_views(con)
             tables["logs"] = con.execute(
                 f"SELECT drive_id, log, tags FROM {counted}drives ORDER BY ALL"
@@ -77,7 +77,7 @@ class AuditResult(TableSet):
 
         Rates have the columns `rate`, `low` and `high` (95 %) in a struct. Errors: `DriveLintError` for a tag that no drive has.
         """
-        with opened(self._dest) as (con, _, _):
+        with open_audits(self._dest) as (con, _, _):
             rows = [_row(rate) for rate in rates.rates(con, by)]
         return Table(pa.Table.from_pylist(rows))
 

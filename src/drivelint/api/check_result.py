@@ -176,5 +176,5 @@ class CheckResult(TableSet):
         return summary_html(self._result)
 
 
-def _text(given: str | int | None) -> str | None:
-    return None if given is None else str(given)
+def _text(value: str | int | None) -> str | None:
+    return None if value is None else str(value)

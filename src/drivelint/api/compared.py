@@ -26,26 +26,26 @@ if TYPE_CHECKING:
 class Comparison:
     """What `drivelint diff` tells of two results."""
 
-    def __init__(self, found: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
-        self._found, self._failing, self._least, self._gate = found, failing, least, gate
+    def __init__(self, difference: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
+        self._difference, self._failing, self._least, self._gate = difference, failing, least, gate
 
     @property
     def exit_code(self) -> int:
         """The exit code of `drivelint diff`. 1: a new finding that gates; 4: no such finding, but an earlier one is gone and not fixed."""
-        return int(descriptions.exit_code(self._found, self._failing, self._least))
+        return int(descriptions.exit_code(self._difference, self._failing, self._least))
 
     @property
     def text(self) -> str:
         """What the command line prints."""
-        return descriptions.difference_text(self._found, self._failing, self._least, self._gate)
+        return descriptions.difference_text(self._difference, self._failing, self._least, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:
         """Return every finding of both; `standing`: new, changed, unchanged, fixed, elsewhere, unknown or lost."""
-        return [asdict(entry) for entry in self._found.entries]
+        return [asdict(entry) for entry in self._difference.entries]
 
     def data(self) -> dict[str, Any]:
         """Return what `--format json` prints, as plain data."""
-        told: dict[str, Any] = json.loads(descriptions.to_json(self._found, self._failing, self._least))
+        told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least))
         return told
 
     def __repr__(self) -> str:
@@ -66,10 +66,10 @@ def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: Fa
     return Comparison(found, failing, least, later.gate)
 
 
-def _result(given: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
+def _result(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
     """Return a result and what it is called: by its folder, if it has one."""
-    if isinstance(given, CheckResult):
-        return given.result, name if given.folder is None else given.folder.resolve().name
-    if not isinstance(given, str | PathLike):
-        raise UsageError(f"{name}={reprlib.repr(given)}: give a result, or its folder")
-    return load_result(Path(given)), Path(given).resolve().name
+    if isinstance(source, CheckResult):
+        return source.result, name if source.folder is None else source.folder.resolve().name
+    if not isinstance(source, str | PathLike):
+        raise UsageError(f"{name}={reprlib.repr(source)}: give a result, or its folder")
+    return load_result(Path(source)), Path(source).resolve().name

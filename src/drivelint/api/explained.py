@@ -17,8 +17,8 @@ _WIDTH: Final = 120
 class Explained:
     """An explanation as `drivelint explain` gives it: as text, or as data."""
 
-    def __init__(self, found: Explanation) -> None:
-        self._found = found
+    def __init__(self, explanation: Explanation) -> None:
+        self._explanation = explanation
 
     @property
     def text(self) -> str:
@@ -27,12 +27,12 @@ class Explained:
 
         console = Console(width=_WIDTH, highlight=False, color_system=None, force_jupyter=False)
         with console.capture() as captured:
-            console.print(text.render(self._found, _WIDTH))
+            console.print(text.render(self._explanation, _WIDTH))
         return "\n".join(line.rstrip() for line in captured.get().splitlines())
 
     def data(self) -> dict[str, Any]:
         """Return what `--format json` prints, as plain data: the numbers in full."""
-        told: dict[str, Any] = json.loads(text.to_json(self._found))
+        told: dict[str, Any] = json.loads(text.to_json(self._explanation))
         return told
 
     def __repr__(self) -> str:

@@ -26,34 +26,34 @@ _WORDS = {True: "yes", False: "no"}
 _Word = TypeVar("_Word", bound=str)
 
 
-def texts(given: Paths | None) -> tuple[str, ...]:
+def texts(value: Paths | None) -> tuple[str, ...]:
     """Return one text or path, or several, as texts."""
-    if given is None:
+    if value is None:
         return ()
-    several = (given,) if isinstance(given, str | PathLike) else tuple(given)
+    several = (value,) if isinstance(value, str | PathLike) else tuple(value)
     for each in several:
         if not isinstance(each, str | PathLike):
             raise UsageError(f"{reprlib.repr(each)} is no text and no path")
     return tuple(fspath(each) for each in several)
 
 
-def path(given: AnyPath | None) -> Path | None:
+def path(value: AnyPath | None) -> Path | None:
     """Return a path, or None."""
-    return None if given is None else Path(given)
+    return None if value is None else Path(value)
 
 
-def assignments(given: Assignments) -> tuple[str, ...]:
+def assignments(value: Assignments) -> tuple[str, ...]:
     """Return `KEY=VALUE` for each entry of a dictionary; texts as they are."""
-    if isinstance(given, Mapping):
-        return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in given.items())
-    return texts(given)
+    if isinstance(value, Mapping):
+        return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in value.items())
+    return texts(value)
 
 
-def one_of(name: str, given: _Word, kind: Any) -> _Word:
+def one_of(name: str, value: _Word, kind: Any) -> _Word:
     """Return a word, if it is one of those of a `Literal`. Errors: `UsageError` with the nearest."""
-    if given not in get_args(kind):
-        raise UsageError(f"{name}={given!r}: {hint(str(given), get_args(kind))}")
-    return given
+    if value not in get_args(kind):
+        raise UsageError(f"{name}={value!r}: {hint(str(value), get_args(kind))}")
+    return value
 
 
 def drive_input(
@@ -91,6 +91,6 @@ def map_input(
     }
 
 
-def _with_commas(given: str | tuple[float, ...] | None) -> str | None:
+def _with_commas(value: str | tuple[float, ...] | None) -> str | None:
     """Return numbers as the command line takes them, so that it is one place that judges them."""
-    return given if given is None or isinstance(given, str) else ",".join(map(str, given))
+    return value if value is None or isinstance(value, str) else ",".join(map(str, value))

@@ -14,26 +14,26 @@ if TYPE_CHECKING:
 class NoteKeeper(Progress):
     """Keeps the notes of the pipeline, and hands all on to another `Progress`."""
 
-    def __init__(self, shown: Progress) -> None:
+    def __init__(self, display: Progress) -> None:
         self.notes: list[str] = []
-        self._shown = shown
+        self._display = display
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage."""
-        self._shown.stage(name, total)
+        self._display.stage(name, total)
 
     def advance(self, n: int = 1) -> None:
         """Report units done."""
-        self._shown.advance(n)
+        self._display.advance(n)
 
-    def doing(self, what: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, part: float = 0.0) -> None:
         """Say what is done."""
-        self._shown.doing(what, part)
+        self._display.doing(activity, part)
 
     def note(self, text: str) -> None:
         """Keep the note."""
         self.notes.append(text)
-        self._shown.note(text)
+        self._display.note(text)
 
 
 @contextmanager

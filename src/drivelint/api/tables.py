@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     import polars as pl
     import pyarrow as pa
 
-_CLOSED = "SET python_enable_replacements = false; SET enable_external_access = false; SET lock_configuration = true"
+_SANDBOX_SETTINGS = (
+    "SET python_enable_replacements = false; SET enable_external_access = false; SET lock_configuration = true"
+)
 """A query sees the tables and nothing else, and can write no file."""
 
 
@@ -151,7 +153,7 @@ class TableSet:
                     con.unregister("_wkb")
                 else:
                     con.register(name, rows)
-            con.execute(_CLOSED)
+            con.execute(_SANDBOX_SETTINGS)
             try:
                 answer = con.execute(query, params)
                 if answer is None or answer.description is None:

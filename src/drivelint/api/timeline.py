@@ -56,9 +56,9 @@ class Timeline(Table):
 
     __slots__ = ("_strips", "_title")
 
-    def __init__(self, rows: pa.Table, drawn: dict[str, Any] | None, title: str) -> None:
+    def __init__(self, rows: pa.Table, strips: dict[str, Any] | None, title: str) -> None:
         super().__init__(rows)
-        self._strips, self._title = drawn, title
+        self._strips, self._title = strips, title
 
     def plot(self) -> Figure | None:
         """Return the strips of the report: speeds, gap, and what the rule measures; None where the ego's way is not known."""

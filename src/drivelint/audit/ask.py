@@ -16,10 +16,10 @@ from drivelint.audit.run import AUDIT_FILE
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
-from drivelint.fleet.counted import COUNTED, create_counted_views
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import inert, inert_json
 from drivelint.result.certainty import LEAST_SHARE
-from drivelint.result.folder import changed
+from drivelint.result.folder import changed_files
 from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
 
@@ -74,8 +74,8 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
-        event = statement("fleet/event", of=COUNTED, least_share=str(LEAST_SHARE))
-        con.execute(f"CREATE TEMP VIEW {COUNTED}events AS {event}")
+        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
+        con.execute(f"CREATE TEMP VIEW {COUNTED_PREFIX}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
         if "verdicts.parquet" not in files:
@@ -107,7 +107,7 @@ def _warn_of_changes(
         except UsageError as error:
             warn(str(error))
     elif isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
-        for name in changed(results.root)[:1]:
+        for name in changed_files(results.root)[:1]:
             warn(
                 f"{dest.rstrip('/')}/{name}: is not as drivelint check wrote it with the others: check the drives again"
             )

@@ -10,8 +10,8 @@ import pyarrow.compute as pc
 
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
-from drivelint.fleet.counted import COUNTED, create_counted_views
-from drivelint.reasons.signals import UNRECORDED
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
+from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
@@ -162,12 +162,12 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, what: str) -> Named:
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
     create_counted_views(con)
-    event = statement("fleet/event", of=COUNTED, least_share=str(LEAST_SHARE))
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
     broken, contacts, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
     )
-    (is_undecided,) = con.execute(statement("audit/undecided"), {"unrecorded": UNRECORDED}).fetchall()[0]
+    (is_undecided,) = con.execute(statement("audit/undecided"), {"unrecorded": UNRECORDED_PREFIX}).fetchall()[0]
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
     return replace(

@@ -196,7 +196,7 @@ def main() -> NoReturn:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # the library's, not ours
-        _fail(f"{words} (see drivelint {_asked(error)}--help{also})", ExitCode.USAGE)
+        _fail(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
@@ -240,7 +240,7 @@ def _end_as_ctrl_c_does() -> None:
         signal.signal(hang_up, signal.default_int_handler)
 
 
-def _asked(error: Exception) -> str:
+def _command_words(error: Exception) -> str:
     """Return the words of the command that a mistake was made in, each with a space behind it; '' for none."""
     about, words = getattr(error, "ctx", None), ""
     while about is not None and about.parent is not None:

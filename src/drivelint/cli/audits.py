@@ -155,7 +155,7 @@ def audit(
         try:
             counted = run_interruptible(lambda: audited(request, progress))
         except KeyboardInterrupt:
-            typer.echo(f"drivelint: {_kept(out)}", err=True)
+            typer.echo(f"drivelint: {_stored_results_sentence(out)}", err=True)
             raise
     code, told = counted.exit_code(fail_on, strict=strict), list[str]()
     if gate is not None or min_judged is not None:
@@ -167,7 +167,7 @@ def audit(
     raise typer.Exit(int(code))
 
 
-def _kept(out: str) -> str:
+def _stored_results_sentence(out: str) -> str:
     """Return in words how many drives have a result."""
     from tempfile import TemporaryDirectory
 

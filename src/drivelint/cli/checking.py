@@ -142,14 +142,14 @@ def check(
     judged, or nothing could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the
     machine failed, try again; 130 interrupted: what was judged until then is kept.
     """
-    asked = dict(locals())
+    arguments = dict(locals())
 
     from drivelint.cli.receipts import CheckReceipts
 
     settings_file = _settings_file(quiet=quiet)
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
-    receipts = CheckReceipts(asked, day, settings_file)
+    receipts = CheckReceipts(arguments, day, settings_file)
     with tells_of_earlier(out):
         earlier = receipts.earlier()
     if earlier is not None:
@@ -187,10 +187,10 @@ def check(
     )
     interruption = Interruption()
     with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
-        deaf = Restart.if_possible(progress, work)
+        deaf_rules = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
-        def kept(result: Result) -> Result:
+        def gate_and_write(result: Result) -> Result:
             nonlocal grown
             if gate_inputs is not None:
                 result = gate_inputs.apply_to(result)
@@ -203,15 +203,17 @@ def check(
                 settings = _with_manifests(replace(settings, out=work), packed=pack is not None)
                 gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
-                    lambda: _judge(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=kept),
+                    lambda: _judge(
+                        settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, keep=gate_and_write
+                    ),
                     interruption.request,
                 )
         except KeyboardInterrupt as stop:
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
-        result = kept(judged)
+        result = gate_and_write(judged)
         stdout, code = _stdout(result, format_, out, verbose=verbose), int(exit_status(result).code)
-        receipts.keep(result, stdout, code, moved=grown, gate=gate_inputs, interruption=interruption)
+        receipts.keep(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
         if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # of this process
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
@@ -238,10 +240,10 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
         return settings
     from drivelint.audit.sources import with_manifests
 
-    logs, own = with_manifests(settings.traces, settings)
-    if own and packed:
+    logs, manifest_options = with_manifests(settings.traces, settings)
+    if manifest_options and packed:
         raise UsageError("--evidence: a pack has one set of options for all logs: audit the manifest, and pack that")
-    return replace(settings, traces=logs, own=own)
+    return replace(settings, traces=logs, manifest_options=manifest_options)
 
 
 def _judge(
@@ -250,17 +252,17 @@ def _judge(
     progress: Progress,
     *,
     interruption: Interruption,
-    deaf: Restart | None,
+    deaf_rules: Restart | None,
     keep: Callable[[Result], Result],
 ) -> Result:
     """Judge the logs in this process, or by several."""
     if jobs > 1:
         from drivelint import parallel
 
-        return parallel.check(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=keep)
+        return parallel.check(settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, keep=keep)
     from drivelint import run
 
-    return run.check(settings, progress, interruption, deaf, keep)
+    return run.check(settings, progress, interruption, deaf_rules, keep)
 
 
 def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:

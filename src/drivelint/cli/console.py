@@ -93,17 +93,17 @@ def _inert_console() -> type[Console]:
     return InertConsole
 
 
-def print_rich(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
+def print_rich(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
     """Print for a person on stdout, as `rich_text` has it."""
-    typer.echo(rich_text(what, soft_wrap=soft_wrap), nl=False)
+    typer.echo(rich_text(content, soft_wrap=soft_wrap), nl=False)
 
 
-def rich_text(what: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> str:
-    """Return what a person reads on stdout: plain and wide where that is no terminal. `what` may depend on the width."""
+def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> str:
+    """Return what a person reads on stdout: plain and wide where that is no terminal. `content` may depend on the width."""
     terminal = sys.stdout.isatty()
     console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with console.capture() as captured:
-        console.print(what(console.width) if callable(what) else what, soft_wrap=soft_wrap)
+        console.print(content(console.width) if callable(content) else content, soft_wrap=soft_wrap)
     if terminal:
         return captured.get()
     return "\n".join(inert(line.rstrip()) for line in captured.get().split("\n")).rstrip("\n") + "\n"

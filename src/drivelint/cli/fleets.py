@@ -17,14 +17,14 @@ from drivelint.phrases import inert, inert_json, inert_line, listed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
 
 
 def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
     """Write the fleet page of an audit into it, and print its name."""
     from drivelint.fleet_report import gated, page
+    from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.drive_pages import MOST_DRIVES
-    from drivelint.fleet_report.opened import destination
 
     if to not in (*page.FORMATS, *gated.FORMATS):
         known = listed([*page.FORMATS, *gated.FORMATS])
@@ -50,8 +50,8 @@ def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, d
 def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
     """Print the difference of two audits."""
     from drivelint.fleet_report import difference_text
+    from drivelint.fleet_report.audit_views import opened_both
     from drivelint.fleet_report.difference import difference, write_rows
-    from drivelint.fleet_report.opened import opened_both
     from drivelint.gate.descriptions import MAX_LINES
 
     most = difference_text.JSON_ENTRIES if format_ == "json" else MAX_LINES
@@ -91,7 +91,7 @@ def what_if(
 
     Exit codes: 0 all is told; 4 only a new audit can tell of some or all verdicts; 2 usage error.
     """
-    from drivelint.fleet_report.opened import destination
+    from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.what_if import ask_what_if, to_json, to_text
 
     asked = run_interruptible(lambda: ask_what_if(destination(dest), setting, by))

@@ -117,9 +117,9 @@ class _DriveOption(NamedTuple):
     """A field of `DriveInput` as an option, and how its value is read from that of the command line."""
 
     type: Any
-    said: Any
+    annotation: Any
     default: Any = None
-    read: Callable[[Any], Any] = lambda value: value
+    parse: Callable[[Any], Any] = lambda value: value
 
 
 DRIVE_OPTIONS = {
@@ -134,7 +134,7 @@ DRIVE_OPTIONS = {
     "map_offset": _DriveOption(
         str | None,
         option("--map-offset", "DX,DY", "Metres added to the map's coordinates."),
-        read=option_values.parse_offset,
+        parse=option_values.parse_offset,
     ),
     "map_dir": _DriveOption(
         Path | None, option("--map-dir", "DIR", "Folder of maps: each log gets its own, by maps.csv, name or place.")
@@ -142,7 +142,7 @@ DRIVE_OPTIONS = {
     "map_origin": _DriveOption(
         str | None,
         option("--map-origin", "LAT,LON", "Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
-        read=option_values.parse_origin,
+        parse=option_values.parse_origin,
     ),
     "handedness": _DriveOption(
         Literal["auto", "lht", "rht"], option("--handedness", None, "Side of the road that is driven on."), "auto"
@@ -172,7 +172,7 @@ DRIVE_OPTIONS = {
             "L,W[,AHEAD]",
             "The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
         ),
-        read=option_values.parse_ego_size,
+        parse=option_values.parse_ego_size,
     ),
     "env": _DriveOption(
         Texts,
@@ -182,7 +182,7 @@ DRIVE_OPTIONS = {
             "What holds in the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
             "Repeatable. Counts before what the map or the log says.",
         ),
-        read=lambda words: tuple(words or ()),
+        parse=lambda words: tuple(words or ()),
     ),
     "topic": _DriveOption(str | None, option("--topic", "NAME", "Read this MCAP topic, where several would do.")),
 }
@@ -193,9 +193,9 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
     signature = inspect.signature(command, eval_str=True)
 
     @wraps(command)
-    def wrapped(**given: Any) -> None:
-        drive = {name: each.read(given.pop(name)) for name, each in DRIVE_OPTIONS.items()}
-        command(**given, drive=drive)
+    def wrapped(**values: Any) -> None:
+        drive = {name: each.parse(values.pop(name)) for name, each in DRIVE_OPTIONS.items()}
+        command(**values, drive=drive)
 
     parameters: list[inspect.Parameter] = []
     for parameter in signature.parameters.values():
@@ -203,7 +203,7 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
             parameters.append(parameter)
             continue
         for name, each in DRIVE_OPTIONS.items():
-            kind, type_ = inspect.Parameter.KEYWORD_ONLY, Annotated[each.type, each.said]
+            kind, type_ = inspect.Parameter.KEYWORD_ONLY, Annotated[each.type, each.annotation]
             parameters.append(inspect.Parameter(name, kind, default=each.default, annotation=type_))
     wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     wrapped.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.cli.restart import KNOWN
+from drivelint.cli.restart import DEAF_RULES_VARIABLE
 from drivelint.memo import cache_folder
 from drivelint.receipts import store
 from drivelint.receipts.program import question_sha256
@@ -62,26 +62,28 @@ class CheckReceipts:
     `asked`: the options of `check`; `settings`: the file that gives some of them.
     """
 
-    def __init__(self, asked: Mapping[str, Any], day: date, settings: Path | None) -> None:
-        self._out: Path | None = asked["out"]
-        self._overwrite: bool = asked["overwrite"]
-        self._quiet: bool = asked["quiet"]
+    def __init__(self, options: Mapping[str, Any], day: date, settings: Path | None) -> None:
+        self._out: Path | None = options["out"]
+        self._overwrite: bool = options["overwrite"]
+        self._quiet: bool = options["quiet"]
         self._day = day.isoformat()
-        drive = asked["drive"]
+        drive = options["drive"]
         paths = [
-            asked["baseline"],
-            asked["waivers"],
+            options["baseline"],
+            options["waivers"],
             *(drive[name] for name in ("map", "map_dir", "mapping")),
             settings,
         ]
-        self._named = [*asked["traces"], *(asked["rules_dir"] or ()), *(path for path in paths if path is not None)]
+        self._named = [*options["traces"], *(options["rules_dir"] or ()), *(path for path in paths if path is not None)]
         self._is_output = Outputs(self._out)
         self._recorder: Recorder | None = None
         self._key: str | None = None
-        elsewhere = asked["keep_db"] or asked["evidence"] is not None or KNOWN in os.environ
-        if asked["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
-            counted = {name: value for name, value in asked.items() if name not in _WITHOUT_EFFECT}
-            places = {name: os.path.realpath(asked[name]) for name in ("out", "baseline") if asked[name] is not None}
+        elsewhere = options["keep_db"] or options["evidence"] is not None or DEAF_RULES_VARIABLE in os.environ
+        if options["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
+            counted = {name: value for name, value in options.items() if name not in _WITHOUT_EFFECT}
+            places = {
+                name: os.path.realpath(options[name]) for name in ("out", "baseline") if options[name] is not None
+            }
             places |= {} if settings is None else {"settings": os.path.realpath(settings)}
             self._key = question_sha256({**counted, "places": places})
 
@@ -105,11 +107,11 @@ class CheckReceipts:
                     notes.note(text)
             return found.receipt
 
-    def _write(self, found: store.OpenedReceipt, out: Path) -> None:
+    def _write(self, receipt: store.OpenedReceipt, out: Path) -> None:
         overwrite, reports = self._overwrite, list(REPORT_FILES.values())
         with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
-            contents, moved = found.unpack(work)
-            folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+            contents, finished_files = receipt.unpack(work)
+            folder.replace(out, contents, finished_files, MARK, RESULT_FILES, overwrite=overwrite)
 
     @contextmanager
     def recording(self) -> Iterator[None]:
@@ -126,14 +128,14 @@ class CheckReceipts:
         stdout: str,
         exit_code: int,
         *,
-        moved: tuple[str, ...],
+        grown_files: tuple[str, ...],
         gate: GateInputs | None,
         interruption: Interruption,
     ) -> None:
-        """Keep a run that has ended. `moved`: those of its files that grew during the run."""
+        """Keep a run that has ended. `grown_files`: those of its files that grew during the run."""
         if self._key is None or self._recorder is None or interruption.requested or not _is_of_inputs(result):
             return
-        if result.asked is None or self._has_outputs(result.asked.traces.values()):
+        if result.run_options is None or self._has_outputs(result.run_options.traces.values()):
             return
         inputs = self._recorder.inputs()
         if inputs is None:
@@ -141,10 +143,12 @@ class CheckReceipts:
         day = self._day if gate is not None and gate.waivers else None
         with suppress(OSError):
             names = (
-                [] if self._out is None else sorted(folder.written(self._out), key=lambda name: (name == MARK, name))
+                []
+                if self._out is None
+                else sorted(folder.written_files(self._out), key=lambda name: (name == MARK, name))
             )
             sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
-            receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, moved)
+            receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
             store.keep(self._key, receipt, self._out)
 
     def _has_outputs(self, paths: Iterator[str] | Any) -> bool:

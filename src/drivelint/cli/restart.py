@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from drivelint.evaluate.limits import Excess
     from drivelint.report.progress import Progress
 
-KNOWN: Final = "DRIVELINT_DEAF_RULES"
+DEAF_RULES_VARIABLE: Final = "DRIVELINT_DEAF_RULES"
 """The environment variable by which the next process knows: JSON, task -> rule -> limit."""
-_SAID: Final[dict[Excess, str]] = {
+_EXCESS_TEXTS: Final[dict[Excess, str]] = {
     "rule_timeout": "takes longer than --rule-timeout",
     "out_of_memory": "takes more memory than there is",
 }
@@ -35,7 +35,7 @@ class Restart:
     """
 
     def __init__(self, progress: Progress, work: Path | None) -> None:
-        self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(KNOWN, "{}"))
+        self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(DEAF_RULES_VARIABLE, "{}"))
         self._progress = progress
         self._work = work
 
@@ -44,19 +44,19 @@ class Restart:
         """Return one where a process can be replaced; Windows starts another one beside it."""
         return cls(progress, work) if os.name == "posix" else None
 
-    def known(self, task: str) -> dict[str, Excess]:
+    def excesses(self, task: str) -> dict[str, Excess]:
         """Return the rules that did not end in an earlier process, and the limit that they went beyond."""
         return self._known.get(task, {})
 
-    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+    def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """Replace this process by one that does not try this rule."""
-        self._progress.note(f"rule {rule_id} {_SAID[excess]} and cannot be stopped: starting again without it")
+        self._progress.note(f"rule {rule_id} {_EXCESS_TEXTS[excess]} and cannot be stopped: starting again without it")
         temporary.remove_all()
         if self._work is not None:
             shutil.rmtree(self._work, ignore_errors=True)
-        known = {**self._known, task: {**self.known(task), rule_id: excess}}
+        known = {**self._known, task: {**self.excesses(task), rule_id: excess}}
         self._progress.leave()
         sys.stderr.flush()
         os.execve(  # noqa: S606 - this very command
-            sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, KNOWN: json.dumps(known)}
+            sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, DEAF_RULES_VARIABLE: json.dumps(known)}
         )

@@ -79,7 +79,7 @@ def report(
     With --incident, the sheet of one finding, to be filed: when and where, both parties, speeds, who slowed, second by second,
     what each of them did by the same rules, how sure it is, what the recording does not hold. The log is judged again for it.
     """
-    from drivelint.fleet_report.opened import destination, is_audit
+    from drivelint.fleet_report.audit_views import destination, is_audit
 
     if is_audit(dest := destination(folder)):
         if incident is not None or pdf or trace is not None or map_ is not None or base_url is not None:
@@ -138,7 +138,7 @@ def diff(
     findings of BASE are unknown or not looked at in NEW, or a run has not ended. Of two audits without a common drive, and without
     --fail-on: 1 where the rate of such a rule is higher than chance explains, 0 where none is, 4 where no rule has a rate in both.
     """
-    from drivelint.fleet_report.opened import destination, is_audit
+    from drivelint.fleet_report.audit_views import destination, is_audit
     from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
     from drivelint.result.one_line import on_one_line

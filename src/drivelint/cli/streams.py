@@ -31,16 +31,16 @@ class _Stdout(io.TextIOWrapper):
         try:
             return super().write(text)
         except OSError as error:
-            raise _told(error) from error
+            raise _stdout_error(error) from error
 
     def flush(self) -> None:
         try:
             super().flush()
         except OSError as error:
-            raise _told(error) from error
+            raise _stdout_error(error) from error
 
 
-def _told(error: OSError) -> Exception:
+def _stdout_error(error: OSError) -> Exception:
     _to_nowhere(1)  # Python tries to write the rest at its end
     if isinstance(error, BrokenPipeError):
         return ReaderLeftError()

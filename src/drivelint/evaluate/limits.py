@@ -48,11 +48,11 @@ class Held:
 class DeafRules(Protocol):
     """What to do about rules that do not heed an interrupt, and which ones are known. `task`: what was judged, drives or copies."""
 
-    def known(self, task: str) -> Mapping[str, Excess]:
+    def excesses(self, task: str) -> Mapping[str, Excess]:
         """Return the rules that are not to be tried, and the limit that they went beyond."""
         ...
 
-    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+    def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """End this process, or let another program take its place; called from the thread that watches."""
         ...
 
@@ -93,7 +93,7 @@ class RuleLimits:
 
     def forget(self) -> None:
         """Try every rule again but those that are known to be deaf."""
-        self._lost = {} if self._deaf is None else dict(self._deaf.known(self._task))
+        self._lost = {} if self._deaf is None else dict(self._deaf.excesses(self._task))
         self._excesses.clear()
 
     @contextmanager
@@ -147,4 +147,4 @@ class RuleLimits:
                 machine_bound(f"rule {rule_id} went beyond its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
-                    self._deaf.found(self._task, rule_id, excess)
+                    self._deaf.restart_without(self._task, rule_id, excess)

@@ -50,7 +50,7 @@ class ExplainRequest:
 
     name: str
     folder: Path
-    wanted: VerdictFilter = field(default_factory=VerdictFilter)
+    verdict_filter: VerdictFilter = field(default_factory=VerdictFilter)
     trace: Path | None = None
     map: Path | None = None
     errors: MeasurementErrors = field(default_factory=MeasurementErrors)
@@ -64,22 +64,22 @@ def explain(request: ExplainRequest) -> Explanation:
     Errors: `UsageError` for a finding, rule, folder or log that is not there.
     """
     result = load_result(request.folder)
-    target = find_verdict(result, request.name, request.wanted)
-    asked = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
-    case = _case(asked, target, request.memory)
+    target = find_verdict(result, request.name, request.verdict_filter)
+    run_options = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
+    case = _case(run_options, target, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     drive, source = open_drive(
         request.folder,
-        asked,
+        run_options,
         row["drive_id"],
         row["ego_id"],
         trace=request.trace,
         map_=request.map,
         map_sha256=of_drive["map_sha256"],
     )
-    with ExitStack() as opened:
-        sandbox = opened.enter_context(case.sandbox([drive]))
+    with ExitStack() as exit_stack:
+        sandbox = exit_stack.enter_context(case.sandbox([drive]))
         judged = sandbox.judge(case.params)
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
@@ -90,16 +90,16 @@ def explain(request: ExplainRequest) -> Explanation:
         rows = evidence.rows_read(
             case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
         )
-        found: list[Change] = []
+        changes: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            part, span, sandbox = sufficient_part(case, drive, sandbox, now, opened)
+            part, span, sandbox = sufficient_part(case, drive, sandbox, now, exit_stack)
             if case.rule.version == row["rule_version"] and now == row["verdict"]:
                 sensitivity = sensitivity_of_check(target.worst, request.errors)
             errors = for_verdict(request.errors, row["verdict"])
             if errors.samples and sensitivity is None:
                 sensitivity = verdict_sensitivity(case, part, errors, span)
-            found = verdict_changes(case, sandbox, now)
+            changes = verdict_changes(case, sandbox, now)
     rule = case.rule
     about = {name: of_drive[name] for name in _DRIVE}
     return Explanation(
@@ -111,7 +111,7 @@ def explain(request: ExplainRequest) -> Explanation:
         },
         drive=about,
         verdict={**row, "judged_anew": now},
-        others=target.others,
+        other_verdicts=target.other_verdicts,
         asks=_asks(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
         parts=parts,
@@ -122,23 +122,27 @@ def explain(request: ExplainRequest) -> Explanation:
         ],
         rows=rows,
         series=series,
-        changes=found,
+        changes=changes,
         sensitivity=sensitivity,
         source=source,
         notes=[*_notes(case, now), *_left_out(of_drive, row["reason_code"])],
     )
 
 
-def _case(asked: RunRequest, target: Target, memory: int | None) -> VerdictContext:
+def _case(run_options: RunRequest, target: Target, memory: int | None) -> VerdictContext:
     """Return the rule of a verdict, as it was set in that run."""
     rule_id = target.verdict_row["rule_id"]
-    rule = catalogue.load_rule(rule_id, asked.rules_dirs)
+    rule = catalogue.load_rule(rule_id, run_options.rules_dirs)
     if rule is None:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
-    mine = [setting for setting in asked.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id]
+    mine = [
+        setting for setting in run_options.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id
+    ]
     set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
     params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
-    return VerdictContext(rule, target, params, profile_table(load_profiles(asked.rules_dirs), asked.profiles), memory)
+    return VerdictContext(
+        rule, target, params, profile_table(load_profiles(run_options.rules_dirs), run_options.profiles), memory
+    )
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:

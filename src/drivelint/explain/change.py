@@ -39,10 +39,10 @@ class _Number(NamedTuple):
     """A number that is varied. `column`: of a profile, None for a parameter. `halvings`: how many are judged at once."""
 
     name: str
-    what: str
+    description: str
     unit: str
     now: float
-    most: float
+    maximum: float
     column: str | None
     halvings: int
 
@@ -52,13 +52,20 @@ def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> 
 
     The tables of `sandbox` that follow from the profiles are of no use afterwards.
     """
-    found = [
-        *_search(list(_parameters(context)), verdict, lambda asked: _with_parameters(context, sandbox, asked)),
+    changes = [
         *_search(
-            list(_profile_numbers(context, sandbox)), verdict, lambda asked: _with_profiles(context, sandbox, asked)
+            list(_parameters(context)), verdict, lambda tried_values: _with_parameters(context, sandbox, tried_values)
+        ),
+        *_search(
+            list(_profile_numbers(context, sandbox)),
+            verdict,
+            lambda tried_values: _with_profiles(context, sandbox, tried_values),
         ),
     ]
-    return sorted(found, key=lambda c: (c.found is None, abs((c.found or 0.0) - c.now) / (abs(c.now) or 1.0), c.name))
+    return sorted(
+        changes,
+        key=lambda c: (c.nearest_value is None, abs((c.nearest_value or 0.0) - c.now) / (abs(c.now) or 1.0), c.name),
+    )
 
 
 def _parameters(context: VerdictContext) -> Iterator[_Number]:
@@ -77,19 +84,23 @@ def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Num
         for column, (unit, what) in _PROFILE.items():
             now = row[column]
             if now is not None:  # else the profile that this overtake itself had
-                most = math.pi / 2 if unit == "rad" else math.inf
+                maximum = math.pi / 2 if unit == "rad" else math.inf
                 # a value more is a row more, which costs next to nothing
-                yield _Number(f"{profile}.{column}", what, unit, float(now), most, column, halvings=4)
+                yield _Number(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
 
 
-def _with_parameters(context: VerdictContext, sandbox: Sandbox, asked: Sequence[tuple[_Number, float]]) -> list[str]:
-    judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in asked])
+def _with_parameters(
+    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_Number, float]]
+) -> list[str]:
+    judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in tried_values])
     return ["error" if each is None else context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
 
 
-def _with_profiles(context: VerdictContext, sandbox: Sandbox, asked: Sequence[tuple[_Number, float]]) -> list[str]:
-    changed = [(number.column, value) for number, value in asked if number.column is not None]
-    judged = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], changed)
+def _with_profiles(
+    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_Number, float]]
+) -> list[str]:
+    columns_and_values = [(number.column, value) for number, value in tried_values if number.column is not None]
+    judged = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], columns_and_values)
     return [context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
 
 
@@ -97,19 +108,19 @@ def _search(
     numbers: Sequence[_Number], verdict: str, judge: Callable[[Sequence[tuple[_Number, float]]], list[str]]
 ) -> list[Change]:
     """Return the nearest change of each number. `judge` returns the verdict for each number and value."""
-    found: list[Change] = []
+    changes: list[Change] = []
     running: list[tuple[_Number, Search, dict[float, str] | None]] = [(n, _nearest(n, verdict), None) for n in numbers]
     while running:
-        asked: list[tuple[_Number, Search, Sequence[float]]] = []
+        requests: list[tuple[_Number, Search, Sequence[float]]] = []
         for number, search, told in running:
             try:
-                asked.append((number, search, next(search) if told is None else search.send(told)))
+                requests.append((number, search, next(search) if told is None else search.send(told)))
             except StopIteration as end:
-                found.append(end.value)
-        flat = [(number, value) for number, _, values in asked for value in values]
+                changes.append(end.value)
+        flat = [(number, value) for number, _, values in requests for value in values]
         verdicts = iter(judge(flat) if flat else [])
-        running = [(number, search, {v: next(verdicts) for v in values}) for number, search, values in asked]
-    return found
+        running = [(number, search, {v: next(verdicts) for v in values}) for number, search, values in requests]
+    return changes
 
 
 def _nearest(number: _Number, verdict: str) -> Search:
@@ -118,30 +129,30 @@ def _nearest(number: _Number, verdict: str) -> Search:
     least = 0.0 if number.now >= 0 else -math.inf  # a number that is not negative stays so
     sides = [_values(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
-    none = Change(number.name, number.what, number.unit, number.now, None, None, False, low, high)
+    none = Change(number.name, number.description, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
-    told: dict[float, str] = {}
+    verdicts: dict[float, str] = {}
     for n in range(len(SEARCH_FACTORS)):
         if n in {0, _NEAR_FACTORS}:
-            told |= yield [v for values in sides for v in values[n : _NEAR_FACTORS if n == 0 else None]]
+            verdicts |= yield [v for values in sides for v in values[n : _NEAR_FACTORS if n == 0 else None]]
         edges: list[Change] = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
                 continue
-            becomes = told[values[n]]
+            becomes = verdicts[values[n]]
             if becomes == "error":
                 shut.add(side)  # no value beyond it means anything
             elif not _same(becomes, verdict):
-                value, becomes, beyond = yield from _edge(number, values, n, verdict, told)
-                edges.append(none._replace(found=value, becomes=becomes, beyond=beyond))
+                value, becomes, beyond = yield from _edge(number, values, n, verdict, verdicts)
+                edges.append(none._replace(nearest_value=value, becomes=becomes, beyond=beyond))
         if edges:
-            return min(edges, key=lambda edge: (abs((edge.found or 0.0) - number.now), edge.found))
+            return min(edges, key=lambda edge: (abs((edge.nearest_value or 0.0) - number.now), edge.nearest_value))
     return none
 
 
 def _values(number: _Number, scale: float, least: float) -> list[float]:
     """Return the values to look at on one side, nearest first."""
-    reached = dict.fromkeys(min(number.most, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
+    reached = dict.fromkeys(min(number.maximum, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
     return [value for value in reached if value != number.now]
 
 
@@ -151,11 +162,11 @@ def _same(becomes: str, verdict: str) -> bool:
 
 
 def _edge(
-    number: _Number, values: list[float], at: int, verdict: str, told: dict[float, str]
+    number: _Number, values: list[float], at: int, verdict: str, verdicts: dict[float, str]
 ) -> Generator[Sequence[float], dict[float, str], tuple[float, str, bool]]:
     """Return the nearest value on one side that changes the verdict, into which, and whether those further away agree."""
     near, far = (values[at - 1] if at else number.now), values[at]
-    becomes = told[far]
+    becomes = verdicts[far]
     for n in range(0, _MOST_HALVINGS, number.halvings):
         if n >= _HALVINGS and abs(far - near) <= _EXACT * abs(far):
             break
@@ -168,12 +179,12 @@ def _edge(
                 far, becomes = middle, halved[middle]
     further = values[at + 1 : at + 3] or [values[at]]
     short = _short_values(number, far)
-    told = told | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in told])
-    beyond = all(told[v] == becomes for v in further)
+    verdicts = verdicts | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in verdicts])
+    beyond = all(verdicts[v] == becomes for v in further)
     for value in short:
-        if value not in told:
-            told |= yield [value]
-        if told[value] == becomes:
+        if value not in verdicts:
+            verdicts |= yield [value]
+        if verdicts[value] == becomes:
             return value, becomes, beyond
     return far, becomes, beyond
 

@@ -48,7 +48,7 @@ def _literal(value: object) -> str:
     return f"'{value.replace(chr(39), chr(39) * 2)}'" if isinstance(value, str) else repr(value)
 
 
-def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
+def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]:
     """Return the judged steps of the explained episode or window, at most half a minute around the verdict."""
     row, span = target.verdict_row, target.span
     if span is None:
@@ -62,7 +62,7 @@ def judged_steps(rule: Rule, target: Target, judged: Judgement) -> list[Step]:
         same["object_id"] = row["object_id"]
     return [
         Step(*(step[name] for name in Step._fields))
-        for step in judged.steps
+        for step in judgement.steps
         if start <= step["t_ns"] <= end and all(step[key] == value for key, value in same.items())
     ]
 

@@ -34,18 +34,18 @@ class Part(NamedTuple):
     """One of the parts that a requirement is the sum of."""
 
     name: str
-    what: str
+    description: str
     value: float
 
 
 class Change(NamedTuple):
-    """The nearest change of one number that changes the verdict; `found` None: none was found between `low` and `high`."""
+    """The nearest change of one number that changes the verdict; `nearest_value` None: none was found between `low` and `high`."""
 
     name: str
-    what: str
+    description: str
     unit: str
     now: float
-    found: float | None
+    nearest_value: float | None
     becomes: str | None
     beyond: bool
     """The verdict stays so further away, too."""
@@ -83,7 +83,7 @@ class Explanation:
     """drive_id, file_name, t_start_ns."""
     verdict: Row
     """The row of `verdict`, and `finding_id` with the numbers of the finding where one is explained."""
-    others: list[Row]
+    other_verdicts: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
     asks: str | None
     """What the reason asks to record or to provide."""

@@ -16,7 +16,7 @@ from drivelint.engine.memory import Memory
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.sql_fragments import Binding
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.sql import store
 from drivelint.sql.derivations import derivations, needed
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Row
 
 _T = TypeVar("_T")
-_JUDGED: Final = ("verdict", "finding", "margin")
+_RESULT_TABLES: Final = ("verdict", "finding", "margin")
 _READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
 
@@ -105,8 +105,8 @@ class Sandbox:
             found |= self._run({f"{self._rule.id}~{no}": settings[no] for no in some})
         return [found.get(f"{self._rule.id}~{no}") for no in range(len(settings))]
 
-    def _run(self, given: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
-        return self._memory.run_job(lambda _con: self._judged(given))
+    def _run(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+        return self._memory.run_job(lambda _con: self._judgements(params_by_name))
 
     def _is_valid(self, params: Mapping[str, object]) -> bool:
         try:
@@ -116,18 +116,20 @@ class Sandbox:
         return True
 
     def judge_profiles(
-        self, params: Mapping[str, object], profile: str, changed: Sequence[tuple[str, float]]
+        self, params: Mapping[str, object], profile: str, columns_and_values: Sequence[tuple[str, float]]
     ) -> list[Judgement]:
         """Judge by the rule with a profile of which one number is another, for each (column, value)."""
         return [
-            judged for some in _cut(changed, self._at_once) for judged in self._judged_profiles(params, profile, some)
+            judged
+            for some in _cut(columns_and_values, self._at_once)
+            for judged in self._judged_profiles(params, profile, some)
         ]
 
     def _judged_profiles(
-        self, params: Mapping[str, object], profile: str, changed: Sequence[tuple[str, float]]
+        self, params: Mapping[str, object], profile: str, columns_and_values: Sequence[tuple[str, float]]
     ) -> list[Judgement]:
-        names = [f"{profile}~{no}" for no in range(len(changed))]
-        for name, (column, value) in zip(names, changed, strict=True):
+        names = [f"{profile}~{no}" for no in range(len(columns_and_values))]
+        for name, (column, value) in zip(names, columns_and_values, strict=True):
             self.con.execute(
                 f"INSERT INTO profile SELECT * REPLACE (? AS profile, ? AS {column}) FROM profile WHERE profile = ?",
                 [name, value, profile],
@@ -137,26 +139,26 @@ class Sandbox:
             judged = self.judge(params)
         finally:
             self.con.execute("DELETE FROM profile WHERE list_contains(?, profile)", [names])
-        verdicts, steps = (grouped(rows, lambda row: row["profile"]) for rows in judged)
+        verdicts, steps = (group_rows(rows, lambda row: row["profile"]) for rows in judged)
         return [
             Judgement(*([{**row, "profile": profile} for row in rows.get(name, [])] for rows in (verdicts, steps)))
             for name in names
         ]
 
-    def _judged(self, given: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+    def _judgements(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
         """Judge by the rule under several names, each with its parameters."""
-        for table in _JUDGED:
+        for table in _RESULT_TABLES:
             self.con.execute(f"DELETE FROM {table}")
-        rules = [msgspec.structs.replace(self._rule, id=name) for name in given]
-        evaluate(self.con, rules, given, margins=True, may_retry=self._memory.limited)
+        rules = [msgspec.structs.replace(self._rule, id=name) for name in params_by_name]
+        evaluate(self.con, rules, params_by_name, margins=True, may_retry=self._memory.limited)
         verdicts, steps = (
-            grouped(self.query(f"SELECT * FROM {table} ORDER BY drive_id, {order}"), lambda row: row["rule_id"])
+            group_rows(self.query(f"SELECT * FROM {table} ORDER BY drive_id, {order}"), lambda row: row["rule_id"])
             for table, order in (
                 ("verdict", "t_start_ns, occurrence, profile, object_id"),
                 ("margin", "t_ns, profile, object_id, ref_id"),
             )
         )
-        return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in given}
+        return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in params_by_name}
 
     def _derive_from_profiles(self) -> None:
         """Derive the tables again that read the profiles, directly or through other tables."""

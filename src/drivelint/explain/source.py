@@ -29,7 +29,7 @@ DATABASE_FILE = "drivelint.duckdb"
 
 def open_drive(
     folder: Path,
-    asked: RunRequest,
+    run_options: RunRequest,
     drive_id: str,
     ego_id: str,
     *,
@@ -45,16 +45,16 @@ def open_drive(
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
         try:
-            return _kept(kept, drive_id, ego_id), f"the kept database {kept.name}"
+            return _from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
-    path = trace or Path(asked.traces.get(drive_id, ""))
-    if not path.exists() or not (trace or drive_id in asked.traces):
+    path = trace or Path(run_options.traces.get(drive_id, ""))
+    if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
             "say where it is with --trace FILE"
         )
-    drive = _read(asked, path, map_, drive_id, ego_id)
+    drive = _read(run_options, path, map_, drive_id, ego_id)
     if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
         name = drive.environment.tables["environment"]["name"][0].as_py()
         raise UsageError(
@@ -63,22 +63,24 @@ def open_drive(
     return drive, f"the log {path.name}, read again"
 
 
-def _read(asked: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
-    given = map_ or asked.map
-    if given is not None and not given.exists():
-        raise UsageError(f"the map {given} is not there any more: say where it is with --map FILE")
-    asked = replace(asked, ego=ego_id, map=given, map_dir=None if given is not None else asked.map_dir)
-    read = read_trace(path, asked.ingest_options())
+def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
+    map_path = map_ or run_options.map
+    if map_path is not None and not map_path.exists():
+        raise UsageError(f"the map {map_path} is not there any more: say where it is with --map FILE")
+    run_options = replace(
+        run_options, ego=ego_id, map=map_path, map_dir=None if map_path is not None else run_options.map_dir
+    )
+    read = read_trace(path, run_options.ingest_options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = renamed(read, drive_id)
-    return drive_with_map(read, MapLibrary(asked))
+    return drive_with_map(read, MapLibrary(run_options))
 
 
-def _kept(file: Path, drive_id: str, ego_id: str) -> Drive:
+def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:

@@ -29,7 +29,7 @@ class Target:
 
     verdict: Row
     finding: Row | None
-    others: list[Row]
+    other_verdicts: list[Row]
     worst: Row | None
 
     @property
@@ -55,7 +55,7 @@ class VerdictFilter:
     verdict: str | None = None
 
 
-def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
+def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Target:
     """Return the verdict that `name` means: FINDING_ID or its beginning, or RULE or RULE@DRIVE, each of them or its beginning.
 
     Errors: `UsageError` for what is not there (with the nearest that is), or for what several begin with.
@@ -64,18 +64,18 @@ def find_verdict(result: Result, name: str, wanted: VerdictFilter) -> Target:
     verdicts = result.verdicts.to_pylist()
     ids = sorted({row["finding_id"] for row in findings})
     if meant := [i for i in ids if i.startswith(name)]:
-        exact = name if name in meant else _only(name, meant, "findings")
+        exact = name if name in meant else _only_match(name, meant, "findings")
         finding = next(row for row in findings if row["finding_id"] == exact)
         row = min(_under(finding, verdicts), key=_order)
-        return Target(row, finding, _others(row, verdicts), finding)
+        return Target(row, finding, _other_verdicts(row, verdicts), finding)
     rule, _, drive = name.partition("@")
     rule = _rule(rule, sorted({row["rule_id"] for row in verdicts}), ids)
     rows = [row for row in verdicts if row["rule_id"] == rule]
     if drive:
-        drive = _meant(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
+        drive = _complete_name(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
-    row = min(_asked(rows, wanted, result.start_times), key=_order)
-    return Target(row, None, _others(row, verdicts), _worst_finding(row, findings))
+    row = min(_matching_verdicts(rows, verdict_filter, result.start_times), key=_order)
+    return Target(row, None, _other_verdicts(row, verdicts), _worst_finding(row, findings))
 
 
 def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
@@ -99,9 +99,9 @@ def _worst_finding(row: Row, findings: Iterable[Row]) -> Row | None:
     return next((f for f in findings if row["verdict"] == "fail" and all(f[key] == row[key] for key in same)), None)
 
 
-def _asked(rows: list[Row], wanted: VerdictFilter, starts: dict[str, int | None]) -> list[Row]:
+def _matching_verdicts(rows: list[Row], verdict_filter: VerdictFilter, starts: dict[str, int | None]) -> list[Row]:
     for key in ("ego_id", "profile", "object_id", "verdict"):
-        value = getattr(wanted, key)
+        value = getattr(verdict_filter, key)
         if value is not None:
             known = sorted({row[key] for row in rows if row[key] is not None})
             rows = [row for row in rows if row[key] == value]
@@ -109,14 +109,14 @@ def _asked(rows: list[Row], wanted: VerdictFilter, starts: dict[str, int | None]
                 raise UsageError(
                     f"no verdict for {key.replace('_id', '')} {value!r}; there are {', '.join(known) or 'none'}"
                 )
-    if wanted.at_s is None:
+    if verdict_filter.at_s is None:
         return rows
-    around = [row for row in rows if _covers(row, wanted.at_s, starts)]
+    around = [row for row in rows if _covers(row, verdict_filter.at_s, starts)]
     if not around:
-        told = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
-        there = ", ".join(told[:MAX_OTHER_VERDICTS]) or "none with a time"
+        spans = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
+        there = ", ".join(spans[:MAX_OTHER_VERDICTS]) or "none with a time"
         raise UsageError(
-            f"no such verdict of {rows[0]['rule_id']} is about {wanted.at_s:g} s of the drive; there are {there}"
+            f"no such verdict of {rows[0]['rule_id']} is about {verdict_filter.at_s:g} s of the drive; there are {there}"
         )
     return around
 
@@ -148,7 +148,7 @@ def _order(row: Row) -> tuple[Any, ...]:
     )
 
 
-def _others(row: Row, verdicts: Iterable[Row]) -> list[Row]:
+def _other_verdicts(row: Row, verdicts: Iterable[Row]) -> list[Row]:
     keys = ("ego_id", "profile", "object_id", "t_start_ns", "verdict")
     mine = [v for v in verdicts if v["drive_id"] == row["drive_id"] and v["rule_id"] == row["rule_id"] and v is not row]
     return [{key: v[key] for key in keys} for v in mine]
@@ -159,7 +159,7 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
         return name
     meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
     if meant:
-        return _only(name, meant, "rules")
+        return _only_match(name, meant, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
     hint = (
         f"it has {plural(len(findings), 'finding')} and {plural(len(rules), 'rule')}, such as {rules[0]}"
@@ -171,19 +171,19 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     raise UsageError(f"no finding begins with {name!r} and no rule of this result is called so; {hint}")
 
 
-def _meant(name: str, known: Sequence[str], what: str) -> str:
-    if name in known:
+def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
+    if name in names:
         return name
     # a drive is called by its log's name and some of its hash: the whole name goes before a beginning of others
-    meant = [k for k in known if k.rpartition("-")[0] == name] or [k for k in known if k.startswith(name)]
-    if not meant:
-        near = get_close_matches(name, known, n=1, cutoff=0.3)
-        raise UsageError(f"{what} {name!r} is not in this result; did you mean {(near or known)[0]!r}?")
-    return _only(name, meant, "drives")
+    matches = [k for k in names if k.rpartition("-")[0] == name] or [k for k in names if k.startswith(name)]
+    if not matches:
+        near = get_close_matches(name, names, n=1, cutoff=0.3)
+        raise UsageError(f"{kind} {name!r} is not in this result; did you mean {(near or names)[0]!r}?")
+    return _only_match(name, matches, "drives")
 
 
-def _only(name: str, meant: Sequence[str], what: str) -> str:
-    if len(meant) > 1:
-        shown = ", ".join(meant[:5]) + (", ..." if len(meant) > 5 else "")
-        raise UsageError(f"{name!r} is the beginning of several {what}: {shown}: write more of it")
-    return meant[0]
+def _only_match(name: str, matches: Sequence[str], kinds: str) -> str:
+    if len(matches) > 1:
+        shown = ", ".join(matches[:5]) + (", ..." if len(matches) > 5 else "")
+        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: write more of it")
+    return matches[0]

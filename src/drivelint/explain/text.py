@@ -32,8 +32,10 @@ PLOT_HEIGHT: Final = 8
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
 _SMALL: Final = 0.1
 _GREAT: Final = 1e6
-_MEASURED: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
+_LONG_NUMBER: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
 """A number with more than two decimals, and a unit after it."""
+_JSON_NAMES: Final = {"other_verdicts": "others", "description": "what", "nearest_value": "found"}
+"""Field -> its key in the JSON, where that is another."""
 _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
@@ -43,30 +45,34 @@ _MEANS: Final = {
 }
 
 
-def to_json(found: Explanation) -> str:
+def to_json(explanation: Explanation) -> str:
     """Return everything as JSON; a step is [t_ns, observed, required, margin, holds]."""
-    plain = {"explain_schema": EXPLAIN_SCHEMA, **asdict(found)}
-    plain["series"] = [list(step) for step in found.series]
-    plain["rows"] = [rows._asdict() for rows in found.rows]
-    plain["parts"] = [part._asdict() for part in found.parts]
-    plain["changes"] = [change._asdict() for change in found.changes]
+    plain = {"explain_schema": EXPLAIN_SCHEMA, **_json_names(asdict(explanation))}
+    plain["series"] = [list(step) for step in explanation.series]
+    plain["rows"] = [rows._asdict() for rows in explanation.rows]
+    plain["parts"] = [_json_names(part._asdict()) for part in explanation.parts]
+    plain["changes"] = [_json_names(change._asdict()) for change in explanation.changes]
     return json.dumps(finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def render(found: Explanation, width: int) -> Group:
+def _json_names(fields: dict[str, Any]) -> dict[str, Any]:
+    return {_JSON_NAMES.get(name, name): value for name, value in fields.items()}
+
+
+def render(explanation: Explanation, width: int) -> Group:
     """Return the explanation for a terminal of `width` columns."""
     width = max(40, min(width, 120))
-    parts: list[RenderableType] = [*_title(found, width)]
-    said = _prose(found)
+    parts: list[RenderableType] = [*_title(explanation, width)]
+    prose = _prose(explanation)
     sections = [
-        ("What happened", said["happened"]),
-        ("What would decide it", said["decides"]),
-        ("How sure it is", said["sure"]),
-        ("What would change it", said["changes"]),
-        ("Margin over time" if found.rule["sense"] != "holds" else "Over time", _series(found, width)),
-        ("What it was judged on", said["rows"]),
-        ("What the rule asks", said["asks"]),
-        ("How it was judged", [*said["judged"], *_sql(found)]),
+        ("What happened", prose["happened"]),
+        ("What would decide it", prose["decides"]),
+        ("How sure it is", prose["sure"]),
+        ("What would change it", prose["changes"]),
+        ("Margin over time" if explanation.rule["sense"] != "holds" else "Over time", _series(explanation, width)),
+        ("What it was judged on", prose["rows"]),
+        ("What the rule asks", prose["asks"]),
+        ("How it was judged", [*prose["judged"], *_sql(explanation)]),
     ]
     for heading, lines in sections:
         if lines:
@@ -74,13 +80,13 @@ def render(found: Explanation, width: int) -> Group:
     return Group(*parts)
 
 
-def _title(found: Explanation, width: int) -> list[RenderableType]:
-    row, rule = found.verdict, found.rule
+def _title(explanation: Explanation, width: int) -> list[RenderableType]:
+    row, rule = explanation.verdict, explanation.rule
     who = [f"drive {row['drive_id']}", f"ego {row['ego_id']}"]
     who += [f"object {row['object_id']}"] if row["object_id"] is not None else []
     who += [f"profile {row['profile']}"] if row["profile"] is not None else []
     if row["t_start_ns"] is not None:
-        start, end = (seconds(row[key], found.drive["t_start_ns"]) for key in ("t_start_ns", "t_end_ns"))
+        start, end = (seconds(row[key], explanation.drive["t_start_ns"]) for key in ("t_start_ns", "t_end_ns"))
         who.append(f"at {start}" if start == end else f"{start} to {end}")
     if "finding_id" in row:
         who.append(f"finding {row['finding_id']}")
@@ -92,15 +98,15 @@ def _title(found: Explanation, width: int) -> list[RenderableType]:
     ]
 
 
-def _prose(found: Explanation) -> dict[str, list[str]]:
+def _prose(explanation: Explanation) -> dict[str, list[str]]:
     """Return the sections of the template by their names, a sentence per line."""
-    row, start_ns = found.verdict, found.drive["t_start_ns"]
+    row, start_ns = explanation.verdict, explanation.drive["t_start_ns"]
     template = text_template(
         __file__,
         "explanation.txt.j2",
         # a line break in a value ends no line of the template
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
-        cells=lambda row, table: _cells(found, table, row),
+        cells=lambda row, table: _cells(explanation, table, row),
         at_least=_rounded_up,
         measure=_measure,
         rounded=_rounded_sentence,
@@ -109,36 +115,36 @@ def _prose(found: Explanation) -> dict[str, list[str]]:
     )
     context = template.new_context(
         {
-            "found": found,
+            "explanation": explanation,
             "row": row,
-            "rule": found.rule,
+            "rule": explanation.rule,
             "not_run": lacks_signal(row),
-            "remedy": remedy(row["reason_code"], row["object_id"], found.drive["format"], found.asks),
-            "unknown": [step.t_ns for step in found.series if step.holds is None],
+            "remedy": remedy(row["reason_code"], row["object_id"], explanation.drive["format"], explanation.asks),
+            "unknown": [step.t_ns for step in explanation.series if step.holds is None],
             "events": EVENTS,
-            "sql": "\n".join(found.sql.values()),
+            "sql": "\n".join(explanation.sql.values()),
         }
     )
     sections = {name: "".join(block(context)) for name, block in template.blocks.items()}
     return {name: list(filter(None, text.split("\n"))) for name, text in sections.items()}
 
 
-def _sql(found: Explanation) -> list[str]:
-    if lacks_signal(found.verdict):
+def _sql(explanation: Explanation) -> list[str]:
+    if lacks_signal(explanation.verdict):
         return []
-    return [f"|{line}" for name, sql in found.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
+    return [f"|{line}" for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
 
 
-def _cells(found: Explanation, table: str, row: Row) -> list[str]:
+def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
     """Return the columns of a row that the rule names, and the one that is asked for, each with its value and what it means."""
-    condition = None if "finding_id" in found.verdict else condition_of(found.verdict["reason_code"])
+    condition = None if "finding_id" in explanation.verdict else condition_of(explanation.verdict["reason_code"])
     asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
-    sql = "\n".join(found.sql.values())
+    sql = "\n".join(explanation.sql.values())
     named = [
         column for column in row if column == asked or table == "capability" or re.search(rf"\b{column}\b", sql)
     ] or list(row)
     wide, comments = max(map(len, named)), store.column_comments().get(table, {})
-    start_ns = found.drive["t_start_ns"] or 0
+    start_ns = explanation.drive["t_start_ns"] or 0
     return [
         f"{column:<{wide}}  {_cell(column, row[column], start_ns):<12}  {_comment(comments.get(column, ''), row[column])}"
         for column in named
@@ -161,13 +167,16 @@ def _comment(text: str, value: Any) -> str:
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 
-def _series(found: Explanation, width: int) -> list[str]:
-    unit = one_line(found.rule["unit"] or "")
-    lines = [f"|{line}" for line in plot(found.series, width - 16, PLOT_HEIGHT, found.drive["t_start_ns"] or 0, unit)]
+def _series(explanation: Explanation, width: int) -> list[str]:
+    unit = one_line(explanation.rule["unit"] or "")
+    lines = [
+        f"|{line}"
+        for line in plot(explanation.series, width - 16, PLOT_HEIGHT, explanation.drive["t_start_ns"] or 0, unit)
+    ]
     if not lines:
-        return ["It was judged at one moment only."] if len(found.series) == 1 else []
+        return ["It was judged at one moment only."] if len(explanation.series) == 1 else []
     key = "Above the limit: kept, and by how much; below: broken; ?: not known."
-    measured = any(step.margin is not None for step in found.series)
+    measured = any(step.margin is not None for step in explanation.series)
     return [*lines, key if measured else "█ broken, · kept, ? not known."]
 
 
@@ -210,4 +219,4 @@ def _rounded_up(value: float) -> float:
 
 def _rounded_sentence(text: str) -> str:
     """Return a sentence with its measured values as they are elsewhere here; JSON has it as it was written."""
-    return _MEASURED.sub(lambda match: _rounded(float(match[0])), text)
+    return _LONG_NUMBER.sub(lambda match: _rounded(float(match[0])), text)

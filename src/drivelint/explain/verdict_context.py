@@ -10,7 +10,7 @@ from drivelint.engine.batch import are_few
 from drivelint.engine.robustness.copies import crop
 from drivelint.explain import evidence
 from drivelint.explain.sandbox import Sandbox
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -51,16 +51,16 @@ class VerdictContext:
         """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
         return self.verdicts_on(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
-    def verdicts_on(self, judged: Judgement, drives: Sequence[str]) -> list[str]:
+    def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in their order."""
         wanted, about = self.target.verdict_row, ["ego_id", "profile"]
         if self.target.span is not None and self.rule.combine == "each":  # else the object is only the one that decided
             about.append("object_id")
         verdicts, steps = (
-            grouped(
+            group_rows(
                 (row for row in rows if all(row[name] == wanted[name] for name in about)), lambda row: row["drive_id"]
             )
-            for rows in (judged.verdicts, judged.steps)
+            for rows in (judgement.verdicts, judgement.steps)
         )
         return [_outcome(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, [])) for drive in drives]
 
@@ -72,11 +72,11 @@ def lacks_signal(row: Row) -> bool:
 
 
 def sufficient_part(
-    context: VerdictContext, drive: Drive, sandbox: Sandbox, verdict: str, opened: ExitStack
+    context: VerdictContext, drive: Drive, sandbox: Sandbox, verdict: str, exit_stack: ExitStack
 ) -> tuple[Drive, tuple[int, int] | None, Sandbox]:
     """Return the shortest tried part of a drive with the same verdict, its interval (None for the whole drive) and a sandbox with it.
 
-    `sandbox` has the whole drive. `opened` closes one of a part.
+    `sandbox` has the whole drive. `exit_stack` closes one of a part.
     """
     span = context.target.span
     if span is None or verdict == "not_applicable":
@@ -93,7 +93,7 @@ def sufficient_part(
             if context.verdicts_on(judged, [of_part.drive_id]) == [verdict] and _same_numbers(
                 context, evidence.judged_steps(context.rule, context.target, judged)
             ):
-                opened.push(tried.pop_all())
+                exit_stack.push(tried.pop_all())
                 return small, part, of_part
     return drive, None, sandbox
 

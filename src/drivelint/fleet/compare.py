@@ -64,7 +64,7 @@ def compare(
 ) -> Comparison:
     """Return the difference of two audits. `base`, `new`: what the names of their views begin with.
 
-    A log that is there twice counts once in the views of `drivelint.fleet.counted`.
+    A log that is there twice counts once in the views of `drivelint.fleet.distinct_logs`.
 
     Errors: `UsageError` for an audit whose tables do not say when actors were recorded.
     `tools`: the versions of drivelint that made them; None: not known. Makes the temporary table `difference`: the columns of

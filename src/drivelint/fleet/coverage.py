@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.fleet.counted import subject
+from drivelint.fleet.distinct_logs import subject
 from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag
 from drivelint.sql.statements import statement
 

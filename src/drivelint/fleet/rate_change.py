@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.fleet.intervals import holm
-from drivelint.fleet.rates import OTHER, rates
+from drivelint.fleet.rates import OTHER_PREFIX, rates
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,7 +92,7 @@ def _test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, co
 
 
 def compare_rates(
-    con: duckdb.DuckDBPyConnection, by: str | None = None, *, base: str = "", new: str = OTHER
+    con: duckdb.DuckDBPyConnection, by: str | None = None, *, base: str = "", new: str = OTHER_PREFIX
 ) -> list[RateChange]:
     """Return for each rule, profile and value of a tag whether its rate differs between two audits.
 

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.fleet import intervals
-from drivelint.fleet.counted import subject
+from drivelint.fleet.distinct_logs import subject
 from drivelint.fleet.situations import SITUATIONS, bound_tag, value_of
 from drivelint.phrases import hint
 from drivelint.result.certainty import LEAST_SHARE
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.intervals import Estimate
 
-OTHER: Final = "other_"
+OTHER_PREFIX: Final = "other_"
 """What the names of the second audit's views begin with."""
 
 

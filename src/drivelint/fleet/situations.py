@@ -7,13 +7,13 @@ from typing import Final
 from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.sql.statements import statement
 
-MEASURED: Final = {
+MEASURED_SITUATIONS: Final = {
     "speed_band": ("0 to 15 km/h", "15 to 30 km/h", "30 to 60 km/h", "60 to 90 km/h", "90 km/h and more"),
     "traffic": ("less than 1 other", "1 to 5 others", "5 to 20 others", "20 others and more"),
 }
 """Situation that is computed from a drive's exposure and states -> its values, in order."""
 _STATEMENTS: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
-SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED}
+SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
 """Situation -> its values. Those that are no measured ones are tags, conditions given to `check`, or what the log says."""
 CANNOT_TELL: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
@@ -35,4 +35,4 @@ def value_of(by: str | None) -> str:
 
 def bound_tag(by: str | None) -> dict[str, str]:
     """Return what `value_of(by)` binds."""
-    return {} if by is None or by in MEASURED else {"by": by}
+    return {} if by is None or by in MEASURED_SITUATIONS else {"by": by}

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.errors import UsageError
-from drivelint.fleet.counted import subject
+from drivelint.fleet.distinct_logs import subject
 from drivelint.fleet.situations import bound_tag
 from drivelint.phrases import hint
 from drivelint.sql.statements import statement
@@ -87,9 +87,11 @@ def what_if(
     return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
 
 
-def flipped(con: duckdb.DuckDBPyConnection, most: int, *, of: str = "") -> tuple[Flipped, ...]:
+def flipped(con: duckdb.DuckDBPyConnection, max_verdicts: int, *, of: str = "") -> tuple[Flipped, ...]:
     """Return the first verdicts of the table `what_if` that become others, or of which only a new check can tell."""
-    return tuple(Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": most}).fetchall())
+    return tuple(
+        Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": max_verdicts}).fetchall()
+    )
 
 
 def needs_check(rule: Rule, param: str) -> str | None:

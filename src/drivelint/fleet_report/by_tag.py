@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.fleet.rates import rates
-from drivelint.fleet.situations import MEASURED, bound_tag, value_of
+from drivelint.fleet.situations import MEASURED_SITUATIONS, bound_tag, value_of
 from drivelint.fleet_report.figures import log_axis
 from drivelint.sql.statements import statement
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MAX_VALUES: Final = 12
 MAX_RULES: Final = 12
-_SHOWN: Final = "shown_"
+_SHOWN_PREFIX: Final = "shown_"
 
 
 class RuleByTag(NamedTuple):
@@ -47,17 +47,17 @@ class RatesByTag:
 def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     """Return the rates by a tag or a situation. Errors: `UsageError` if no drive has that tag."""
     n_values, of = 0, ""
-    if tag not in MEASURED:  # those have few values, and they are of an ego
+    if tag not in MEASURED_SITUATIONS:  # those have few values, and they are of an ego
         con.execute(statement("fleet_report/tag_values", value=value_of(tag)), {**bound_tag(tag), "most": MAX_VALUES})
         n_values = con.execute("SELECT max(n_values) FROM shown_value").fetchall()[0][0] or 0
         if n_values > MAX_VALUES:
             con.execute(statement("fleet_report/tag_drives", value=value_of(tag)), bound_tag(tag))
             for table in ("drives", "verdicts", "findings"):
                 con.execute(
-                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
+                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
                 )
-            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN}rules AS FROM rules")
-            of = _SHOWN
+            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}rules AS FROM rules")
+            of = _SHOWN_PREFIX
     by_rule: dict[tuple[str, str | None], list[Rate]] = {}
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
@@ -77,5 +77,5 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     )
 
 
-def _n_findings(each: RuleByTag) -> int:
-    return sum(rate.findings + rate.findings_of_unknown for rate in each.rates)
+def _n_findings(rule: RuleByTag) -> int:
+    return sum(rate.findings + rate.findings_of_unknown for rate in rule.rates)

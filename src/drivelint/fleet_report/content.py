@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.summary import Named, logs_that_are
 from drivelint.catalogue.header import CONTACT
-from drivelint.fleet.counted import COUNTED, create_counted_views, subject
 from drivelint.fleet.coverage import Coverage, coverage
-from drivelint.fleet.missing import Missing, missing
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject
+from drivelint.fleet.missing_signals import Missing, missing_signals
 from drivelint.fleet.rates import Rate, rates
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
 from drivelint.fleet_report.difference import AuditDifference, difference, verdict_counts
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.fleet_report.rows import Row
 
 MAX_DRIVES: Final = 50
@@ -67,7 +67,7 @@ class FleetContent:
     worst_value: WorstValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
-    missing: Missing
+    undecided: Missing
     places: FindingMap | None
     baseline: AuditDifference | None
 
@@ -129,7 +129,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
     """Return what there is to say of an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
     create_counted_views(con)
-    event = statement("fleet/event", of=COUNTED, least_share=share)
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
     worst = rows(
@@ -153,7 +153,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         audit=audit,
         totals=totals,
         severities={row["severity"]: row for row in rows(con, "severities", event=event)},
-        verdicts=verdict_counts(con, COUNTED),
+        verdicts=verdict_counts(con, COUNTED_PREFIX),
         rules=rules,
         rates=found,
         axis=log_axis(rate.per_100km for rate in found if rate.findings),
@@ -167,7 +167,7 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         worst_value=worst_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),
-        missing=missing(con),
+        undecided=missing_signals(con),
         places=finding_map(con),
         baseline=None if base is None else difference(con, audit, base, MAX_CHANGES),
     )

@@ -10,9 +10,9 @@ import duckdb
 
 from drivelint.errors import UsageError
 from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
-from drivelint.fleet.counted import create_counted_views
+from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
-from drivelint.fleet_report.opened import BASE
+from drivelint.fleet_report.audit_views import BASE
 from drivelint.fleet_report.rows import rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.fleet.compare import Comparison
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.fleet_report.rows import Row
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
@@ -46,7 +46,7 @@ _WHY: Final = {
     "not_applicable": "the rule does not apply there",
 }
 """Why `drivelint.fleet.compare` says what it says -> the same for a person."""
-_JUDGED: Final = {
+_VERDICT_SENTENCES: Final = {
     "pass": "the rule is kept there",
     "fail": "the rule fails there still, at another step or place",
     "unknown": "the rule is unknown there",
@@ -82,7 +82,7 @@ class NoMoreJudged(NamedTuple):
         return self.reason if self.reason.startswith(self.log) else f"{self.log}: {self.reason}"
 
 
-class Opened(NamedTuple):
+class NewUnknowns(NamedTuple):
     """Verdicts that are unknown or errors now and were not, in drives that both audits have; `reason`: that of one of them."""
 
     reason_code: str
@@ -98,7 +98,7 @@ class AuditDifference:
     """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
 
     `of_new_drives`: new findings of drives that the base does not have. `gating`: severity -> new findings of stable rules.
-    `gone`: the same of findings of the base that the newer audit did not look at or cannot tell.
+    `gone_by_severity`: the same of findings of the base that the newer audit did not look at or cannot tell.
     `causes`: what else differs -> standing -> number of findings.
     `base_only`, `new_only`: at most `most` logs that the other has not.
     """
@@ -110,7 +110,7 @@ class AuditDifference:
     of_new_drives: int
     fixed: tuple[int, int]
     gating: dict[str, int]
-    gone: dict[str, int]
+    gone_by_severity: dict[str, int]
     verdicts: tuple[dict[str, int], dict[str, int]]
     entries: dict[str, list[Entry]]
     causes: dict[tuple[str, ...], Counter[str]]
@@ -119,7 +119,7 @@ class AuditDifference:
     base_only: list[str]
     new_only: list[str]
     no_more_judged: list[NoMoreJudged]
-    opened: list[Opened]
+    new_unknowns: list[NewUnknowns]
     rates: list[RateChange]
     gating_rules: dict[str, str]
     """Stable rule of the newer audit -> its severity."""
@@ -144,7 +144,7 @@ class AuditDifference:
 
     def n_gone(self, fail_on: str) -> int:
         """Return how many such findings of the base are gone but not fixed."""
-        return _at_or_above(self.gone, fail_on)
+        return _at_or_above(self.gone_by_severity, fail_on)
 
     def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
         """Return the tests by which a rate of a stable rule at or above a severity is higher than chance explains."""
@@ -161,7 +161,7 @@ class AuditDifference:
         return any(each.p_value is not None or each.occasion_p_value is not None for each in self.rates)
 
     @property
-    def called(self) -> list[RateChange]:
+    def significant_changes(self) -> list[RateChange]:
         """The rates that differ."""
         return [each for each in self.rates if each.is_called]
 
@@ -177,42 +177,42 @@ class AuditDifference:
         return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
 
 
-def _at_or_above(counted: dict[str, int], least: str) -> int:
+def _at_or_above(counts: dict[str, int], least: str) -> int:
     severe = () if least == "never" else SEVERITIES[: SEVERITIES.index(least) + 1]
-    return sum(counted[severity] for severity in severe)
+    return sum(counts[severity] for severity in severe)
 
 
-def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, most: int) -> AuditDifference:
-    """Return the difference of the audits of `opened`, with at most `most` findings of each standing."""
+def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entries: int) -> AuditDifference:
+    """Return the difference of the audits of `open_audits`, with at most `max_entries` findings of each standing."""
     sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
-    found = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
+    comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
     (gating,) = rows(con, "gating", None, **sides)
-    only = [rows(con, "lone_drives", {"most": most}, of=sides[side], side=side) for side in sides]
+    only = [rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
-    for each in found.differences:
+    for each in comparison.differences:
         if each.standing != "unchanged":
             causes.setdefault(each.causes, Counter())[each.standing] += each.n
             not_known.update(dict.fromkeys(each.causes_not_known, each.n))
-    counted = found.counts()
+    standing_counts = comparison.counts()
     return AuditDifference(
         base=base,
         new=new,
-        counts={standing: counted[standing] for standing in DIFF_STATUSES},
+        counts={standing: standing_counts[standing] for standing in DIFF_STATUSES},
         worse=gating["worse"],
         of_new_drives=gating["of_new_drives"],
         fixed=(gating["passes"], gating["not_applicable"]),
         gating={severity: gating[severity] for severity in SEVERITIES},
-        gone={severity: gating[f"gone_{severity}"] for severity in SEVERITIES},
+        gone_by_severity={severity: gating[f"gone_{severity}"] for severity in SEVERITIES},
         verdicts=(verdict_counts(con, sides["base"]), verdict_counts(con, sides["new"])),
-        entries={standing: _entries(con, sides, standing, most) for standing in DIFF_STATUS_TITLES},
+        entries={standing: _entries(con, sides, standing, max_entries) for standing in DIFF_STATUS_TITLES},
         causes=dict(sorted(causes.items(), key=lambda item: (-item[1].total(), item[0]))),
         causes_not_known=not_known,
-        comparison=found,
+        comparison=comparison,
         base_only=[row["log"] for row in only[0]],
         new_only=[row["log"] for row in only[1]],
         no_more_judged=[NoMoreJudged(**row) for row in rows(con, "no_more_judged", None, **sides)],
-        opened=[Opened(**row) for row in rows(con, "opened", None, **sides)],
+        new_unknowns=[NewUnknowns(**row) for row in rows(con, "opened", None, **sides)],
         rates=compare_rates(con, base=BASE, new=""),
         gating_rules=dict(con.execute("SELECT rule_id, severity FROM rules WHERE status = 'stable'").fetchall()),
     )
@@ -233,11 +233,11 @@ def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
         raise UsageError(f"--rows {path}: cannot be written: {' '.join(str(error).split())[:200]}") from error
 
 
-def _entries(con: duckdb.DuckDBPyConnection, sides: dict[str, str], standing: str, most: int) -> list[Entry]:
-    found = rows(con, "entries", {"standing": standing, "most": most}, **sides)
+def _entries(con: duckdb.DuckDBPyConnection, sides: dict[str, str], standing: str, max_entries: int) -> list[Entry]:
+    entry_rows = rows(con, "entries", {"standing": standing, "most": max_entries}, **sides)
     return [
         Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"])
-        for row in found
+        for row in entry_rows
     ]
 
 
@@ -252,7 +252,7 @@ def _finding(row: Row) -> ComparedFinding:
 def _why(row: Row) -> str:
     """Return how a finding changed, or why the other audit does not have it."""
     if row["standing"] != "changed":
-        return _JUDGED[row["there"]] if row["why_code"] == "judged" else _WHY[row["why_code"]]
+        return _VERDICT_SENTENCES[row["there"]] if row["why_code"] == "judged" else _WHY[row["why_code"]]
     if row["is_part"]:
         whole, part = (
             ("base_id", "finding_id") if _length(row, "base_") > _length(row, "") else ("finding_id", "base_id")

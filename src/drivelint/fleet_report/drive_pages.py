@@ -21,7 +21,7 @@ from drivelint.phrases import plural
 from drivelint.reasons.signals import WHAT_IS_NULL, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.result.certainty import doubt
-from drivelint.result.counts import SEVERITIES, VERDICTS, grouped
+from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows
 from drivelint.result.text import utc_at
 from drivelint.sql.statements import statement
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import duckdb
     from jinja2 import Environment
 
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.fleet_report.rows import Row
 
 FOLDER: Final = "drives"
@@ -58,12 +58,12 @@ def is_page_name(name: str) -> bool:
     return folder == FOLDER and file.endswith(".html") and _PLAIN.fullmatch(file.removesuffix(".html")) is not None
 
 
-def choose(con: duckdb.DuckDBPyConnection, most: int | None) -> list[str]:
+def choose(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
     """Choose the drives that get a page, after `content`; return the names of the pages.
 
-    `most`: so many of the drives with findings, the worst first; None: all drives of the audit.
+    `max_drives`: so many of the drives with findings, the worst first; None: all drives of the audit.
     """
-    con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": most})
+    con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": max_drives})
     return [page_name(key) for (key,) in con.execute("SELECT key FROM page_drive ORDER BY no").fetchall()]
 
 
@@ -100,17 +100,19 @@ def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -
     facts = rows(con, "page_some", bound, table="page_facts", order="no")
     findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")
     parts = (findings, rows(con, "page_counts", bound), rows(con, "page_undecided", bound))
-    by_drive = [grouped(part, lambda row: row["no"]) for part in parts]
+    by_drive = [group_rows(part, lambda row: row["no"]) for part in parts]
     for drive in facts:
-        yield _told(audit, drive, *(part.get(drive["no"], []) for part in by_drive))
+        yield _page_content(audit, drive, *(part.get(drive["no"], []) for part in by_drive))
 
 
-def _told(audit: Audit, drive: Row, findings: list[Row], counted: list[Row], undecided: list[Row]) -> Row:
+def _page_content(
+    audit: Audit, drive: Row, findings: list[Row], verdict_counts: list[Row], undecided: list[Row]
+) -> Row:
     for row in findings:
         row |= {"doubt": doubt(row), "utc": utc_at(row["t_worst_ns"], drive)}
     for row in undecided:
         row["mend"] = remedy(row["reason_code"], None, drive["format"] or "mapped")
-    counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in counted}
+    counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in verdict_counts}
     by_severity = {name: findings[0][f"n_{name}"] if findings else 0 for name in SEVERITIES}
     home = f"{FOLDER}/{drive['drive_id']}"
     worst = [findings[0]["finding_id"]] if findings else []
@@ -121,7 +123,7 @@ def _told(audit: Audit, drive: Row, findings: list[Row], counted: list[Row], und
         "n_findings": sum(by_severity.values()),
         "counts": counts,
         "undecided": undecided,
-        "lacking": grouped(drive["not_judged"], lambda lack: (lack["signal"], lack["reason"])),
+        "lacking": group_rows(drive["not_judged"], lambda lack: (lack["signal"], lack["reason"])),
         "command": check_command(drive["log"], drive["options"], audit.settings, drive["drive_id"]),
         "explain": [shlex.join(["drivelint", "explain", each, "--in", home]) for each in worst],
         "is_stored": is_url(drive["log"]),

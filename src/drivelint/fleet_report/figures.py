@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.report.html.svg import percent
-from drivelint.result.text import NONE
+from drivelint.result.text import NO_VALUE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def figure(value: float | None) -> str:
     """Return a number with three digits that count; a dash for none."""
     if value is None:
-        return NONE
+        return NO_VALUE
     if value == 0 or not math.isfinite(value):
         return "0" if value == 0 else "no limit"
     if abs(value) >= 1000:
@@ -29,14 +29,14 @@ def figure(value: float | None) -> str:
 def interval(estimate: Estimate) -> str:
     """Return a rate with the ends of its interval, or that nothing is known."""
     if estimate.rate is None:
-        return NONE
+        return NO_VALUE
     return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
 
 
 def share(estimate: Estimate) -> str:
     """Return a share and its interval in percent, or a dash."""
     if estimate.rate is None:
-        return NONE
+        return NO_VALUE
     return f"{figure(100 * estimate.rate)} % ({figure(100 * estimate.low)} to {figure(100 * estimate.high)})"
 
 

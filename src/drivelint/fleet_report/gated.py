@@ -15,8 +15,8 @@ from drivelint.audit.run import AUDIT_FILE, RULES_FILE
 from drivelint.audit.sealed import seal
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
-from drivelint.fleet.counted import create_counted_views
-from drivelint.fleet_report.opened import destination, is_audit, opened
+from drivelint.fleet.distinct_logs import create_counted_views
+from drivelint.fleet_report.audit_views import destination, is_audit, open_audits
 from drivelint.gate import descriptions
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from drivelint.audit.store import ResultStore
     from drivelint.audit.summary import AuditSummary
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.gate import GateInputs
 
 FORMATS: Final = ("junit", "sarif")
@@ -47,7 +47,7 @@ _WEIGHT: Final = (ExitCode.USAGE, ExitCode.FAILED, ExitCode.NOT_JUDGED, ExitCode
 
 def audit_result(dest: str) -> Result:
     """Return an audit as the result of a check, with its gate. Errors: as `opened`."""
-    with opened(dest) as (con, audit, _):
+    with open_audits(dest) as (con, audit, _):
         return _result(con, audit)
 
 
@@ -59,7 +59,7 @@ def load(path: Path) -> Result:
 
 def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
     """Hold an audit that has ended against its baseline and waivers; write `gate.json` into it; return it with its gate."""
-    with opened(dest) as (con, audit, _):
+    with open_audits(dest) as (con, audit, _):
         result = _result(con, audit)
         result = result if inputs is None else inputs.apply_to(result)
         if result.gate is not None:
@@ -68,10 +68,10 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
     return result
 
 
-def exit_code(result: Result, counted: AuditSummary) -> ExitCode:
+def exit_code(result: Result, summary: AuditSummary) -> ExitCode:
     """Return the weightiest of what the findings come to, by the gate, and of all else that an audit tells."""
-    others = replace(counted, failed={}).exit_code("never", strict=result.strict)
-    return min((exit_status(result).code, others), key=_WEIGHT.index)
+    other_exit = replace(summary, failed={}).exit_code("never", strict=result.strict)
+    return min((exit_status(result).code, other_exit), key=_WEIGHT.index)
 
 
 def lines(result: Result) -> Iterator[str]:
@@ -85,7 +85,7 @@ def lines(result: Result) -> Iterator[str]:
 def write_report(dest: str, to: str) -> tuple[str, Audit]:
     """Write a report of `FORMATS` into the audit; return its name, and the audit. Errors: as `opened`; `OutputError`."""
     name, render = REPORT_FORMATS[to]
-    with opened(dest) as (con, audit, _):
+    with open_audits(dest) as (con, audit, _):
         audit.results.write(name, render(_result(con, audit)))
     return name, audit
 
@@ -104,11 +104,11 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
         **rows,
         drives=drives.drop_columns(["log"]),
         rules=con.execute("FROM rules ORDER BY rule_id").to_arrow_table(),
-        fail_on=audit.told["fail_on"],
-        strict=audit.told.get("strict", False),  # older audits say neither
-        min_judged=audit.told.get("min_judged"),
+        fail_on=audit.audit_json["fail_on"],
+        strict=audit.audit_json.get("strict", False),  # older audits say neither
+        min_judged=audit.audit_json.get("min_judged"),
         gate=_gate(audit.results),
-        asked=RunRequest.from_options(CheckOptions(()), here),
+        run_options=RunRequest.from_options(CheckOptions(()), here),
     )
 
 

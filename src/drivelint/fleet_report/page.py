@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
 from drivelint.fleet_report import drive_pages, figures, page_files
+from drivelint.fleet_report.audit_views import open_audits
 from drivelint.fleet_report.content import FleetContent, content
 from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, since, times
 from drivelint.fleet_report.drive_pages import MOST_DRIVES
-from drivelint.fleet_report.opened import opened
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
 from drivelint.reasons.signals import WHAT_IS_NULL, how_to_provide, remedy
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     import duckdb
     from jinja2 import Environment
 
-    from drivelint.fleet.missing import MissingSignal, Undecided
+    from drivelint.fleet.missing_signals import MissingSignal, Undecided
     from drivelint.fleet.rates import Rate
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
 
 FORMATS: Final = ("html", "markdown")
 NO_LINKS: Final[Mapping[str, str]] = MappingProxyType({})
@@ -52,49 +52,49 @@ def write(
     `by`: tags by which rates are told apart. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
     `UsageError` for an audit or tag that is not there; `OutputError`.
     """
-    with opened(dest, baseline) as (con, audit, base):
-        found = content(con, audit, base, by)
+    with open_audits(dest, baseline) as (con, audit, base):
+        fleet = content(con, audit, base, by)
         if to == "html":
-            _write_html(con, found, most_drives)
+            _write_html(con, fleet, most_drives)
         else:
-            audit.results.write(_FILES[to], markdown(found))
+            audit.results.write(_FILES[to], markdown(fleet))
     return _FILES[to], audit
 
 
-def _write_html(con: duckdb.DuckDBPyConnection, found: FleetContent, most_drives: int | None) -> None:
+def _write_html(con: duckdb.DuckDBPyConnection, fleet: FleetContent, most_drives: int | None) -> None:
     """Write the drive pages, then the fleet page that links to them."""
-    results = found.audit.results
+    results = fleet.audit.results
     with page_files.listed(results, drive_pages.choose(con, most_drives)):
-        for name, page in drive_pages.pages(con, found.audit, found.rules):
+        for name, page in drive_pages.pages(con, fleet.audit, fleet.rules):
             results.write(name, page)
-        results.write(_FILES["html"], html(found, drive_pages.links(con, found.keys)))
+        results.write(_FILES["html"], html(fleet, drive_pages.links(con, fleet.keys)))
 
 
-def html(found: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
+def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
     """Return the page as UTF-8; the same audit gives the same bytes. `links`: a drive's key -> the address of its page."""
-    text = _environment().get_template("fleet.html.j2").render(_words(found), links=links)
+    text = _environment().get_template("fleet.html.j2").render(_words(fleet), links=links)
     return text.encode("utf-8", "replace")
 
 
-def markdown(found: FleetContent) -> bytes:
+def markdown(fleet: FleetContent) -> bytes:
     """Return the same as Markdown, without pictures."""
     text = text_template(__file__, "templates/fleet.md.j2", **_FILTERS, escaped=escaped, code=code).render(
-        _words(found)
+        _words(fleet)
     )
     return text.encode("utf-8", "replace")
 
 
-def _words(found: FleetContent) -> dict[str, Any]:
+def _words(fleet: FleetContent) -> dict[str, Any]:
     """Return what the templates name."""
     assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without words would be left out
     return {
-        "fleet": found,
+        "fleet": fleet,
         "severities": SEVERITIES,
-        "stored": any(is_url(row["log"]) for row in found.worst),
+        "stored": any(is_url(row["log"]) for row in fleet.worst),
         "verdicts": VERDICTS,
-        "standings": [(title, found.coverage.with_standing(name)) for name, title in _STANDING_TITLES.items()],
+        "standings": [(title, fleet.coverage.with_standing(name)) for name, title in _STANDING_TITLES.items()],
         "diff_titles": DIFF_STATUS_TITLES,
-        "titles": {rule_id: rule["title"] for rule_id, rule in found.rules.items()},
+        "titles": {rule_id: rule["title"] for rule_id, rule in fleet.rules.items()},
     }
 
 
@@ -106,19 +106,21 @@ def _beside(rate: Rate) -> str:
     return f", at least {figures.figure(least)} over all" if least else ", of all nothing sure"
 
 
-def _provide(each: MissingSignal) -> str:
+def _provide(missing_signal: MissingSignal) -> str:
     """Return how to provide a signal in the formats of the logs that lack it."""
-    told: dict[str, list[str]] = {}
-    for log_format in each.formats:
-        told.setdefault(how_to_provide(each.signal, log_format), []).append(log_format)
-    return "; ".join(f"{', '.join(of)}: {text}" if len(told) > 1 else text for text, of in told.items())
+    formats_by_text: dict[str, list[str]] = {}
+    for log_format in missing_signal.formats:
+        formats_by_text.setdefault(how_to_provide(missing_signal.signal, log_format), []).append(log_format)
+    return "; ".join(
+        f"{', '.join(of)}: {text}" if len(formats_by_text) > 1 else text for text, of in formats_by_text.items()
+    )
 
 
-def _mend(each: Undecided) -> str:
+def _mend(undecided: Undecided) -> str:
     """Return what would decide verdicts that are unknown for a reason, and what one of them says."""
-    advice = remedy(each.reason_code, None, "mapped")
-    said = f"{each.rule_id}: {each.reason}"
-    return said if advice == WHAT_IS_NULL else f"{advice} ({said})"
+    advice = remedy(undecided.reason_code, None, "mapped")
+    example = f"{undecided.rule_id}: {undecided.reason}"
+    return example if advice == WHAT_IS_NULL else f"{advice} ({example})"
 
 
 _FILTERS: Final[dict[str, Any]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from drivelint.fleet.counted import COUNTED
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.sql.statements import statement
 
@@ -24,7 +24,7 @@ def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **
 
 def ranked() -> str:
     """Return the SELECT of the drives with findings, the worst first."""
-    event = statement("fleet/event", of=COUNTED, least_share=str(LEAST_SHARE))
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
     return statement("fleet_report/ranked", least_share=str(LEAST_SHARE), event=event)
 
 

@@ -13,7 +13,7 @@ from drivelint import catalogue
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet.rates import check_tag
 from drivelint.fleet.what_if import WhatIf, flipped, what_if
-from drivelint.fleet_report.opened import opened
+from drivelint.fleet_report.audit_views import open_audits
 from drivelint.phrases import hint, one_line, plural
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.fleet.what_if import Flip, Flipped
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
 
 WHAT_IF_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
@@ -38,21 +38,21 @@ class AskedWhatIf:
     """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
 
     `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
-    in `found`.
+    in `answer`.
     """
 
     audit: Audit
     setting: str
     was: str
     by: str | None
-    found: WhatIf
+    answer: WhatIf
     flipped: tuple[Flipped, ...] = ()
     by_value: tuple[Flip, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
         """OK; NOT_JUDGED where only a new audit can tell, where the audit has not ended, or has no verdict of the rule."""
-        left = self.found.needs_check or self.found.not_known or self.audit.warning or not self.found.verdicts
+        left = self.answer.needs_check or self.answer.not_known or self.audit.warning or not self.answer.verdicts
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 
 
@@ -61,7 +61,7 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
 
     Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
     """
-    with opened(dest) as (con, audit, _):
+    with open_audits(dest) as (con, audit, _):
         check_tag(con, by, "")
         rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
@@ -97,26 +97,26 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
     return known[rule_id]["version"], values.get(param, "not there")
 
 
-def to_text(asked: AskedWhatIf) -> str:
+def to_text(analysis: AskedWhatIf) -> str:
     """Return the answer for a person: what becomes what, by the values of the tag."""
-    found = asked.found
-    lines = [f"{asked.setting} instead of {asked.was}, by the verdicts that {asked.audit.dest} stores"]
-    if asked.audit.warning:
-        lines.append(asked.audit.warning)
-    if found.needs_check:
-        return "\n".join([*lines, f"needs a new audit: {found.needs_check}", _command(asked)])
-    total, flips = sum(each.n for each in found.verdicts), sum(each.n for each in found.flips)
-    words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(found.flips))
+    answer = analysis.answer
+    lines = [f"{analysis.setting} instead of {analysis.was}, by the verdicts that {analysis.audit.dest} stores"]
+    if analysis.audit.warning:
+        lines.append(analysis.audit.warning)
+    if answer.needs_check:
+        return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _command(analysis)])
+    total, flips = sum(each.n for each in answer.verdicts), sum(each.n for each in answer.flips)
+    words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(answer.flips))
     lines.append(f"{flips} of {total} verdicts become others{f': {words}' if words else ''}")
-    if found.not_known:
+    if answer.not_known:
         lines.append(
-            f"{plural(found.not_known, 'verdict')} {'needs' if found.not_known == 1 else 'need'} a new audit: the stored value may be "
+            f"{plural(answer.not_known, 'verdict')} {'needs' if answer.not_known == 1 else 'need'} a new audit: the stored value may be "
             "only a bound of what was observed"
         )
-    lines += _table(asked)
-    lines += _which(asked.flipped, flips + found.not_known)
+    lines += _table(analysis)
+    lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
     lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
-    return "\n".join([*lines, _command(asked)] if found.not_known else lines)
+    return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
 
 
 def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
@@ -124,26 +124,26 @@ def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
     return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
 
 
-def _table(asked: AskedWhatIf) -> list[str]:
+def _table(analysis: AskedWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with what becomes of its verdicts."""
-    told: dict[tuple[str, str], list[Flip]] = {}
+    flips_by_group: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
-        asked.by_value,
+        analysis.by_value,
         key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
     ):
-        value = "" if asked.by is None else "(not given)" if each.tag_value is None else each.tag_value
-        told.setdefault((value, each.profile or ""), []).append(each)
-    width = max((len(" ".join(key).strip()) for key in told), default=0)
+        value = "" if analysis.by is None else "(not given)" if each.tag_value is None else each.tag_value
+        flips_by_group.setdefault((value, each.profile or ""), []).append(each)
+    width = max((len(" ".join(key).strip()) for key in flips_by_group), default=0)
     lines = []
-    for key, flips in list(told.items())[:MAX_VALUES]:
+    for key, flips in list(flips_by_group.items())[:MAX_VALUES]:
         said = [f"{each.n} {_becomes(each)}" for each in flips]
         lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(said)}"))
-    if len(told) > MAX_VALUES:
-        lines.append(f"  ... and {len(told) - MAX_VALUES} more: --format json has them all")
+    if len(flips_by_group) > MAX_VALUES:
+        lines.append(f"  ... and {len(flips_by_group) - MAX_VALUES} more: --format json has them all")
     return lines
 
 
-def _which(verdicts: Sequence[Flipped], n: int) -> list[str]:
+def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
     """Return a line per verdict of `n` that becomes another, with its log."""
     lines = ["which:"] if verdicts else []
     for each in verdicts[:MAX_VALUES]:
@@ -165,24 +165,24 @@ def _becomes(flip: Flip) -> str:
     return f"stay {flip.was}" if flip.becomes == flip.was else f"{flip.was} -> {flip.becomes}"
 
 
-def _command(asked: AskedWhatIf) -> str:
-    return f"to be told all: drivelint audit SOURCE --param {asked.setting} --out OTHER, then drivelint diff {asked.audit.dest} OTHER"
+def _command(analysis: AskedWhatIf) -> str:
+    return f"to be told all: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then drivelint diff {analysis.audit.dest} OTHER"
 
 
-def to_json(asked: AskedWhatIf) -> str:
+def to_json(analysis: AskedWhatIf) -> str:
     """Return the answer as JSON."""
-    found = asked.found
+    answer = analysis.answer
     content: dict[str, Any] = {
         "what_if_schema": WHAT_IF_SCHEMA,
-        "rule_id": found.rule_id,
-        "param": found.param,
-        "value": asked.setting.partition("=")[2],
-        "was": asked.was,
-        "by": asked.by,
-        "needs_audit": found.needs_check,
-        "not_known": found.not_known,
-        "warning": asked.audit.warning,
-        "verdicts": [each._asdict() for each in asked.by_value],
-        "flipped": [each._asdict() for each in asked.flipped],
+        "rule_id": answer.rule_id,
+        "param": answer.param,
+        "value": analysis.setting.partition("=")[2],
+        "was": analysis.was,
+        "by": analysis.by,
+        "needs_audit": answer.needs_check,
+        "not_known": answer.not_known,
+        "warning": analysis.audit.warning,
+        "verdicts": [each._asdict() for each in analysis.by_value],
+        "flipped": [each._asdict() for each in analysis.flipped],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint.fleet import intervals
 from drivelint.fleet.rate_change import ALLOWED_FALSE_CALLS
 from drivelint.fleet.rates import rates
-from drivelint.fleet.situations import MEASURED
+from drivelint.fleet.situations import MEASURED_SITUATIONS
 from drivelint.fleet_report.by_tag import MAX_VALUES
 from drivelint.fleet_report.rows import rows
 
@@ -65,18 +65,20 @@ class _Compared(NamedTuple):
     p_value: float
 
 
-def worst_value(con: duckdb.DuckDBPyConnection, found: Sequence[Rate]) -> WorstValue | None:
+def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> WorstValue | None:
     """Return the value of a tag that stands out most; None: no tag has values that differ.
 
-    `found`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag and
+    `all_rates`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag and
     rule can be told as the worst, but each value is a comparison that chance may win.
     """
-    ids = list(dict.fromkeys(rate.rule_id for rate in found if rate.findings))[:MAX_RULES]
+    ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
     all_tags = rows(con, "tags")
-    told = [row["tag"] for row in all_tags if 1 < row["n_values"] <= MAX_VALUES and row["tag"] not in MEASURED]
-    if not ids or not told:
+    compared_tags = [
+        row["tag"] for row in all_tags if 1 < row["n_values"] <= MAX_VALUES and row["tag"] not in MEASURED_SITUATIONS
+    ]
+    if not ids or not compared_tags:
         return None
-    tags = told[:MAX_TAGS]
+    tags = compared_tags[:MAX_TAGS]
     con.execute("CREATE OR REPLACE TEMP TABLE compared_rule AS SELECT unnest($ids::VARCHAR[]) AS rule_id", {"ids": ids})
     for table in ("verdicts", "findings", "rules"):
         con.execute(
@@ -87,10 +89,10 @@ def worst_value(con: duckdb.DuckDBPyConnection, found: Sequence[Rate]) -> WorstV
     for tag in tags:
         by_rule = attrgetter("rule_id", "profile")
         for _, of in groupby(rates(con, tag, of=_COMPARED), by_rule):
-            known = [rate for rate in of if rate.tag_value is not None and rate.km > 0]
-            if len(known) > 1 and any(rate.findings for rate in known):
-                n_tests += len(known)
-                compared.append(_compared(tag, known))
+            tag_rates = [rate for rate in of if rate.tag_value is not None and rate.km > 0]
+            if len(tag_rates) > 1 and any(rate.findings for rate in tag_rates):
+                n_tests += len(tag_rates)
+                compared.append(_compared(tag, tag_rates))
     if not compared:
         return None
     first = min(compared, key=lambda each: (each.p_value, each.tag, each.rates[0].rule_id, each.rates[0].profile or ""))
@@ -106,10 +108,10 @@ def worst_value(con: duckdb.DuckDBPyConnection, found: Sequence[Rate]) -> WorstV
     )
 
 
-def _compared(tag: str, known: Sequence[Rate]) -> _Compared:
+def _compared(tag: str, tag_rates: Sequence[Rate]) -> _Compared:
     """Compare the highest rate with all others: given the sum of the findings, each falls there with the value's share of the way."""
     from scipy.stats import binomtest
 
-    ranked = sorted(known, key=lambda rate: (-(rate.per_100km.rate or 0.0), -rate.findings, rate.tag_value or ""))
+    ranked = sorted(tag_rates, key=lambda rate: (-(rate.per_100km.rate or 0.0), -rate.findings, rate.tag_value or ""))
     n, km = sum(rate.findings for rate in ranked), sum(rate.km for rate in ranked)
     return _Compared(tag, ranked, float(binomtest(ranked[0].findings, n, ranked[0].km / km).pvalue))

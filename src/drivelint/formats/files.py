@@ -14,7 +14,7 @@ from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.search import is_pipe_or_device, tree, why_not_here
-from drivelint.phrases import shown
+from drivelint.phrases import escape_invisible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -183,7 +183,7 @@ def identify(path: Path) -> Identity:
         raise _unreadable(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
-        raise TraceError(f"{shown(whole)}: its name is not UTF-8, in which results name it: rename it")
+        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, in which results name it: rename it")
     name = Path(whole).name
     stem = name if path.is_dir() else Path(name).stem
     return Identity(f"{stem}-{digest[:8]}", name, digest)

@@ -12,7 +12,7 @@ from drivelint.formats.files import is_utf8
 from drivelint.formats.limits import bounded
 from drivelint.formats.probe import wrapping
 from drivelint.formats.search import is_pipe_or_device
-from drivelint.phrases import shown
+from drivelint.phrases import escape_invisible
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def read_source(path: Path) -> MapSource:
     if (told := wrapping(content)) is not None:
         raise MapError(f"map {path}: {told}")
     if not is_utf8(path.name):
-        raise MapError(f"map {shown(path.name)}: its name is not UTF-8, in which results name it: rename it")
+        raise MapError(f"map {escape_invisible(path.name)}: its name is not UTF-8, in which results name it: rename it")
     return MapSource(path.name, content)
 
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from drivelint.errors import UsageError
 from drivelint.gate import descriptions, diff, waivers
 from drivelint.result.certainty import POSSIBLE, certainty
@@ -87,5 +89,5 @@ def compare_results(
     base: Result, new: Result, names: tuple[str, str], fail_on: str
 ) -> tuple[Difference, list[ComparedFinding]]:
     """Return the difference of two results and its new findings that fail the run."""
-    found = replace(diff.compare(base, new, *names), is_partial=new.interrupted)
-    return found, descriptions.gating_findings(found, fail_on, new.gate)
+    difference = msgspec.structs.replace(diff.compare(base, new, *names), is_partial=new.interrupted)
+    return difference, descriptions.gating_findings(difference, fail_on, new.gate)

@@ -106,7 +106,7 @@ def difference_text(
         less=judged_otherwise(difference),
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
-        groups=group_by_reason(difference.opened),
+        groups=group_by_reason(difference.new_unknowns),
         exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )
@@ -252,6 +252,6 @@ def group_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list
     """Return each reason with its rules and the number of additional unknown verdicts, most first."""
     found = [
         (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))
-        for reason, alike in counts.grouped(new_unknowns, lambda each: each.reason).items()
+        for reason, alike in counts.group_rows(new_unknowns, lambda each: each.reason).items()
     ]
     return sorted(found, key=lambda item: (-item[2], item[0]))

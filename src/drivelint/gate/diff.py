@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import pyarrow as pa
 
 from drivelint.gate import match
-from drivelint.reasons.signals import UNRECORDED
+from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result import counts
 from drivelint.result.gate import ComparedFinding, Difference, NewUnknowns
 from drivelint.result.text import number
@@ -34,7 +34,7 @@ LEAST_SHARE: Final = 0.9
 _WEIGHT = ("error", "fail", "unknown", "pass")
 """Of several verdicts at one moment the first of these is what is said."""
 _WHERE = ("drive_id", "ego_id", "rule_id", "profile")
-_KEPT = ("pass", "not_applicable")
+_FIXED_VERDICTS = ("pass", "not_applicable")
 
 
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
@@ -54,10 +54,10 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     known = set(same.values())
     for drive_id, stretches in had.findings.items():
         if drive_id not in known:
-            gone += [_gone(each, drive_id, has.verdict_at(None, each), had) for each in stretches]
+            gone += [_base_only_finding(each, drive_id, has.verdict_at(None, each), had) for each in stretches]
     return Difference(
         entries=(*entries, *gone),
-        opened=tuple(_opened(base, new, same, has)),
+        new_unknowns=tuple(_new_unknowns(base, new, same, has)),
         base_verdicts=counts.total(base.verdicts),
         verdicts=counts.total(new.verdicts),
         base_only=tuple(sorted(drive for drive in had.drives if drive not in known)),
@@ -89,7 +89,7 @@ def _drive(
     entries: list[ComparedFinding] = []
     for i, now in enumerate(ours):
         if i in pairs:
-            entries.append(_kept(now, theirs[pairs[i]], has))
+            entries.append(_matched_finding(now, theirs[pairs[i]], has))
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
@@ -106,19 +106,19 @@ def _drive(
             gone.append(_entry("changed", ours[wholes[0]], was, has, said))
         else:
             said = _noting_rule(has.verdict_at(drive_id, was), was, had, has)
-            gone.append(_gone(was, drive_id, said, had))
+            gone.append(_base_only_finding(was, drive_id, said, had))
     return entries, gone
 
 
-def _noting_rule(said: LookupResult, at: TimedFinding, had: ResultLookup, has: ResultLookup) -> LookupResult:
+def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has: ResultLookup) -> LookupResult:
     """Add what may be the cause: that the two results had not the same rule."""
     a, b = (lookup.rules.get(at.row["rule_id"]) for lookup in (had, has))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
-        return said
-    return said._replace(why=f"{said.why} The rule or its parameters changed.")
+        return outcome
+    return outcome._replace(why=f"{outcome.why} The rule or its parameters changed.")
 
 
-def _kept(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
+def _matched_finding(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
     """Return a finding that both results have, and how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
@@ -144,16 +144,16 @@ def _is_less(now: float | None, was: float | None) -> bool:
     return now is not None and was is not None and now < was
 
 
-def _gone(was: TimedFinding, drive_id: str, said: LookupResult, had: ResultLookup) -> ComparedFinding:
+def _base_only_finding(was: TimedFinding, drive_id: str, outcome: LookupResult, had: ResultLookup) -> ComparedFinding:
     """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost", "fail": "elsewhere"}.get(
-        said.verdict, "unknown"
+        outcome.verdict, "unknown"
     )
-    return replace(_entry(standing, was, was, had, said), drive_id=drive_id)
+    return replace(_entry(standing, was, was, had, outcome), drive_id=drive_id)
 
 
 def _entry(
-    standing: str, at: TimedFinding, was: TimedFinding | None, lookup: ResultLookup, said: LookupResult
+    standing: str, at: TimedFinding, was: TimedFinding | None, lookup: ResultLookup, outcome: LookupResult
 ) -> ComparedFinding:
     same = ("finding_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "margin", "unit")
     return ComparedFinding(
@@ -163,23 +163,25 @@ def _entry(
         stable=lookup.is_stable(at.row["rule_id"]),
         t_s=round(at.worst, 3),
         base_margin=None if was is None else was.row["margin"],
-        there=said.verdict,
-        why=said.why,
+        there=outcome.verdict,
+        why=outcome.why,
         worse=was is not None and _is_less(at.row["margin"], was.row["margin"]) and _differs(at.row, was.row),
     )
 
 
-def _opened(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
+def _new_unknowns(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
     """Return where more verdicts of a drive that both have are unknown or in error than were."""
     was, now = _unknown(base), _unknown(new)
-    found = []
+    new_unknowns = []
     for (drive_id, ego_id, rule_id, profile), (n, reason) in now.items():
         if drive_id not in same:
             continue
         before, _ = was.get((same[drive_id], ego_id, rule_id, profile), (0, ""))
         if n > before:
-            found.append(NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reason))
-    return sorted(found, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
+            new_unknowns.append(
+                NewUnknowns(drive_id, ego_id, rule_id, profile, has.is_stable(rule_id), n, before, reason)
+            )
+    return sorted(new_unknowns, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
 
 
 def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
@@ -188,13 +190,13 @@ def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
     rows = counts.distinct_rows(open_rows, [*_WHERE, "reason"])
     return {
         at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
-        for at, told in counts.grouped(rows, itemgetter(*_WHERE)).items()
+        for at, told in counts.group_rows(rows, itemgetter(*_WHERE)).items()
     }
 
 
 def _undecided(base: Result, new: Result, same: Mapping[str, str], had: ResultLookup) -> dict[str, int]:
     """Return severity -> verdicts that were pass or fail and are unknown or in error now, in drives that both have."""
-    was, now = _counted(base), _counted(new)
+    was, now = _verdict_counts(base), _verdict_counts(new)
     found: Counter[str] = Counter()
     for (drive_id, ego_id, rule_id, profile), here in now.items():
         before = was.get((same.get(drive_id), ego_id, rule_id, profile), Counter[str]())
@@ -205,13 +207,13 @@ def _undecided(base: Result, new: Result, same: Mapping[str, str], had: ResultLo
     return {severity: found[severity] for severity in counts.SEVERITIES if found[severity]}
 
 
-def _counted(result: Result) -> dict[Any, Counter[str]]:
+def _verdict_counts(result: Result) -> dict[Any, Counter[str]]:
     """Return (drive, ego, rule, profile) -> verdict -> number of rows."""
-    found: dict[Any, Counter[str]] = defaultdict(Counter)
+    verdict_counts: dict[Any, Counter[str]] = defaultdict(Counter)
     for row in counts.distinct_rows(result.verdicts, [*_WHERE, "verdict", "reason_code"]):
-        verdict = "unknown" if row["reason_code"].startswith(UNRECORDED) else row["verdict"]
-        found[itemgetter(*_WHERE)(row)][verdict] += row["count_all"]
-    return found
+        verdict = "unknown" if row["reason_code"].startswith(UNRECORDED_PREFIX) else row["verdict"]
+        verdict_counts[itemgetter(*_WHERE)(row)][verdict] += row["count_all"]
+    return verdict_counts
 
 
 class LookupResult(NamedTuple):
@@ -272,12 +274,12 @@ class ResultLookup:
         if not rows:
             return LookupResult("none", "there is no verdict of this rule")
         there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
-        said = [judged for each in there if (judged := self._judged(each, at)).verdict in _WEIGHT]
+        said = [judged for each in there if (judged := self._outcome_of(each, at)).verdict in _WEIGHT]
         not_applicable = LookupResult(
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
         found = min(said, key=lambda each: _WEIGHT.index(each.verdict), default=not_applicable)
-        if found.verdict in _KEPT and (missing := self._not_recorded(drive_id, at)):
+        if found.verdict in _FIXED_VERDICTS and (missing := self._not_recorded(drive_id, at)):
             return missing
         return found
 
@@ -295,20 +297,20 @@ class ResultLookup:
             return LookupResult("unknown", f"{what} {actor} is recorded from {times}{more} only")
         return None
 
-    def _judged(self, each: Row, at: TimedFinding) -> LookupResult:
+    def _outcome_of(self, verdict: Row, at: TimedFinding) -> LookupResult:
         """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
-        if each["reason_code"].startswith(UNRECORDED):
-            return LookupResult("unknown", each["reason"])
-        if each["verdict"] != "fail":
-            return LookupResult(each["verdict"], each["reason"])
-        mine = self.findings.get(each["drive_id"], ())
+        if verdict["reason_code"].startswith(UNRECORDED_PREFIX):
+            return LookupResult("unknown", verdict["reason"])
+        if verdict["verdict"] != "fail":
+            return LookupResult(verdict["verdict"], verdict["reason"])
+        mine = self.findings.get(verdict["drive_id"], ())
         alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(at.row)]
         if any(match.gap_s(other, at) <= match.NEAR_S for other in alike):
             return LookupResult("fail", "the rule fails there still, at another step or place")
-        if each["n_judged"] == each["n_expected"]:
+        if verdict["n_judged"] == verdict["n_expected"]:
             return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
-        missing = each["n_expected"] - each["n_judged"]
-        why = f"the rule fails at another time, and {missing} of {each['n_expected']} steps were not judged"
+        missing = verdict["n_expected"] - verdict["n_judged"]
+        why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return LookupResult("unknown", why)
 
     def _not_looked(self, drive_id: str | None, row: Row) -> LookupResult | None:
@@ -327,16 +329,16 @@ class ResultLookup:
             return LookupResult("none", f"ego {row['ego_id']} was not judged")
         return None
 
-    def _about(self, each: Row, row: Row, drive_id: str) -> bool:
+    def _about(self, verdict: Row, row: Row, drive_id: str) -> bool:
         """Return whether a verdict concerns the object of a finding; if that is gone here, any object that is not judged."""
-        if each["object_id"] is None or row["object_id"] is None or each["object_id"] == row["object_id"]:
+        if verdict["object_id"] is None or row["object_id"] is None or verdict["object_id"] == row["object_id"]:
             return True
-        return each["verdict"] in {"unknown", "error"} and row["object_id"] not in self._objects[drive_id]
+        return verdict["verdict"] in {"unknown", "error"} and row["object_id"] not in self._objects[drive_id]
 
 
-def _overlaps(each: Row, at: TimedFinding, drive: Row) -> bool:
+def _overlaps(verdict: Row, at: TimedFinding, drive: Row) -> bool:
     """Return whether a verdict covers a finding's time; one without times covers the drive."""
-    times = [t for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns") if (t := each[name]) is not None]
+    times = [t for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns") if (t := verdict[name]) is not None]
     if not times:
         return True
     start, end = match.seconds_since_start(min(times), drive), match.seconds_since_start(max(times), drive)

@@ -47,8 +47,8 @@ def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
     for content in ("sha256", None):
         known = {*same.values()}
-        left = _grouped((row for row in base if row["drive_id"] not in known), content)
-        right = _grouped((row for row in new if row["drive_id"] not in same), content)
+        left = _drive_ids_by_column((row for row in base if row["drive_id"] not in known), content)
+        right = _drive_ids_by_column((row for row in new if row["drive_id"] not in same), content)
         for key, mine in right.items():
             others = left.get(key, [])
             if content is not None or len(mine) == len(others) == 1:
@@ -56,10 +56,10 @@ def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
     return same
 
 
-def _grouped(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
+def _drive_ids_by_column(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
     """Return value of a column, or file stem -> ids of the drives that have it, sorted."""
-    found = counts.grouped(drives, lambda row: row[column] if column else PurePath(row["file_name"]).stem)
-    return {key: sorted(row["drive_id"] for row in rows) for key, rows in found.items() if key is not None}
+    groups = counts.group_rows(drives, lambda row: row[column] if column else PurePath(row["file_name"]).stem)
+    return {key: sorted(row["drive_id"] for row in rows) for key, rows in groups.items() if key is not None}
 
 
 def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:

@@ -110,9 +110,9 @@ def _vocabulary_text(name: str) -> str:
     return f"[{name}]\n  {', '.join(known.words)}{'' if known.is_listed else ', ...'}\n  {known.says}\n"
 
 
-def escaped(said: str) -> str:
+def escaped(text: str) -> str:
     """Return text that Markdown shows as it is."""
-    return _MARKUP.sub(r"\\\1", said)
+    return _MARKUP.sub(r"\\\1", text)
 
 
 def output_tables() -> str:
@@ -130,28 +130,28 @@ def tables_read() -> Mapping[str, tuple[str, ...]]:
     }
 
 
-def derivation_levels(read: Mapping[str, Iterable[str]]) -> list[list[str]]:
+def derivation_levels(tables_read: Mapping[str, Iterable[str]]) -> list[list[str]]:
     """Return the derived tables by level; a table reads only recorded tables and tables of lower levels."""
     level: dict[str, int] = {}
-    for name, tables in read.items():
+    for name, tables in tables_read.items():
         level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
     return [[name for name in sorted(level) if level[name] == n] for n in range(1, max(level.values()) + 1)]
 
 
 def _facts(
-    name: str, read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
+    name: str, tables_read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
 ) -> list[str]:
     """Return the sentences about a table: how long it is kept, its file, what it reads and what reads it."""
-    said = [f"Kept {_LIVES[lifetimes()[name]]}."]
+    sentences = [f"Kept {_LIVES[lifetimes()[name]]}."]
     if files := [stem for stem, of in {**TABLE_OF_FILE, **PICTURES}.items() if of == name]:
-        said.append(f"Written to {quote}{files[0]}.parquet{quote}.")
-    if name in read:
-        said.append(f"Reads {listed(read[name])}." if read[name] else "Reads no table.")
-    if readers := [each for each, tables in read.items() if name in tables]:
-        said.append(f"Read by {listed(sorted(readers))}.")
+        sentences.append(f"Written to {quote}{files[0]}.parquet{quote}.")
+    if name in tables_read:
+        sentences.append(f"Reads {listed(tables_read[name])}." if tables_read[name] else "Reads no table.")
+    if readers := [each for each, tables in tables_read.items() if name in tables]:
+        sentences.append(f"Read by {listed(sorted(readers))}.")
     if rules := [rule_id for rule_id, reads in _rule_reads() if name in reads]:
-        said.append(f"Rules: {', '.join(rules)}.")
-    return said
+        sentences.append(f"Rules: {', '.join(rules)}.")
+    return sentences
 
 
 @cache

@@ -59,7 +59,7 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return every file of the site, name -> bytes: the same for the same version."""
     pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
-    pages["commands"] = text_template(__file__, "commands.md.j2", shown=_shown).render(commands=commands)
+    pages["commands"] = text_template(__file__, "commands.md.j2", shown=_help_as_markdown).render(commands=commands)
     index = text_template(__file__, "index.md.j2")
     pages["index"] = index.render(topics=guide.topics(), reference=REFERENCE_PAGES)
     navigation = [
@@ -75,6 +75,6 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
     return files
 
 
-def _shown(text: str) -> str:
+def _help_as_markdown(text: str) -> str:
     """Return help text as Markdown, the options in it as code."""
     return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", dictionary.escaped(text))

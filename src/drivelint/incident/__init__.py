@@ -89,32 +89,34 @@ def render(case: Case) -> bytes:
     return text.encode("utf-8", "replace")
 
 
-def open_case(request: IncidentRequest, asked: RunRequest | None = None) -> Case:
+def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
     """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
 
-    `asked`: the run with the paths at which its files are now; None: they are where `run.json` says.
+    `run_options`: the run with the paths at which its files are now; None: they are where `run.json` says.
     Errors: `UsageError` for a finding, log or map that is not there.
     """
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
-    asked = (asked or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
-    judge = Judge.of_run(asked, result.rules["rule_id"].to_pylist(), request.memory)
+    run_options = (run_options or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
+    judge = Judge.of_run(run_options, result.rules["rule_id"].to_pylist(), request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(
         request.folder,
-        asked,
+        run_options,
         finding.row["drive_id"],
         ego,
-        trace=_log(request, asked, finding),
+        trace=_log(request, run_options, finding),
         map_=request.map,
         map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
-    return Case(result, asked, finding, drive, again, _other_party(request, asked, result, finding, judge), source)
+    return Case(
+        result, run_options, finding, drive, again, _other_party(request, run_options, result, finding, judge), source
+    )
 
 
 def _other_party(
-    request: IncidentRequest, asked: RunRequest, result: Result, finding: NamedFinding, judge: Judge
+    request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> Judged | str | None:
     """Return what is judged of the other party as ego, or why it is not."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
@@ -127,8 +129,10 @@ def _other_party(
         ]
         return Judged(rows[0], rows[1], result.verdicts.slice(0, 0))
     # what the options say of the ego is not said of another vehicle
-    asked = replace(asked, ego_size=None)
-    drive, _ = open_drive(request.folder, asked, drive_id, other, trace=_log(request, asked, finding), map_=request.map)
+    run_options = replace(run_options, ego_size=None)
+    drive, _ = open_drive(
+        request.folder, run_options, drive_id, other, trace=_log(request, run_options, finding), map_=request.map
+    )
     kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
     if kinds.get(other) in _NO_VEHICLES:
         return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."
@@ -136,11 +140,11 @@ def _other_party(
     return judge.judge(drive, other, finding.row["ego_id"], MeasurementErrors() if examined else None)
 
 
-def _log(request: IncidentRequest, asked: RunRequest, finding: NamedFinding) -> Path | None:
+def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
     """Return where the log is, so that it is read again even if the database was kept; None: it is not where it was."""
     if request.trace is not None:
         return request.trace
-    known = asked.traces.get(finding.row["drive_id"])
+    known = run_options.traces.get(finding.row["drive_id"])
     return Path(known) if known is not None and Path(known).exists() else None
 
 

@@ -8,7 +8,7 @@ from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue.header import EXCUSES
-from drivelint.incident.words import SENSE, amount, how_sure, measured, minus, profile, required
+from drivelint.incident.words import SENSE, amount, how_sure, measured_text, minus, profile, required
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
 from drivelint.result.text import seconds
@@ -38,7 +38,7 @@ def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
     per_profile = list({each["profile"]: each for each in reversed(ordered)}.values())
     what = (
         _measured_by_profile(rule, per_profile)
-        or measured(row, rule)
+        or measured_text(row, rule)
         or shorten(row["reason"], 120, placeholder=" ...")
     )
     whom = profile(row["profile"]) if len(per_profile) == 1 else ""
@@ -81,7 +81,7 @@ def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
     ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
     found = {amount(row["observed"], row["unit"]) for row in rows}
     if len(found) > 1:
-        return "; ".join(f"{measured(row, rule)}{profile(row['profile'])}" for row in ordered)
+        return "; ".join(f"{measured_text(row, rule)}{profile(row['profile'])}" for row in ordered)
     needs = ", ".join(f"{amount(row['required'], row['unit'])}{profile(row['profile'])}" for row in ordered)
     return minus(f"{found.pop()}, must be {SENSE.get(rule['sense'], '')}{needs}")
 

@@ -20,13 +20,13 @@ LETTERS: Final = ("A", "B")
 class Case:
     """A finding, its run, and what the sheet judged again.
 
-    `others`: what was judged of the second party, or in a sentence why it was not; None: there is none.
+    `other_party`: what was judged of the second party, or in a sentence why it was not; None: there is none.
     """
 
     result: Result
-    asked: RunRequest
+    run_options: RunRequest
     finding: NamedFinding
     drive: Drive
     again: Judged
-    others: Judged | str | None
+    other_party: Judged | str | None
     source: str

@@ -42,17 +42,17 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     """
     result = load_result(folder)
     finding = named_finding(result, name)
-    asked = run_request.load(folder).of_drive(finding.row["drive_id"])
-    request = _as_asked(request, asked, finding)
-    judge = Judge.of_run(asked, [finding.row["rule_id"]], memory)
+    run_options = run_request.load(folder).of_drive(finding.row["drive_id"])
+    request = _with_run_options(request, run_options, finding)
+    judge = Judge.of_run(run_options, [finding.row["rule_id"]], memory)
     for before_s, after_s, clip in _clips(finding):
         with TemporaryDirectory(prefix="drivelint-") as place:
             tried = convert(replace(request, out=Path(place) / "clip", clip=clip))
-            same = _gives(tried.path, asked, finding, judge)
+            same = _gives_finding(tried.path, run_options, finding, judge)
         if same:
             written = convert(replace(request, clip=clip))
-            notes = (*written.notes, _told(finding, clip, before_s, after_s))
-            options = of_rules(asked, result.rules["rule_id"].to_pylist())
+            notes = (*written.notes, _clip_sentence(finding, clip, before_s, after_s))
+            options = of_rules(run_options, result.rules["rule_id"].to_pylist())
             return replace(written, notes=notes, check_options=tuple(options))
     raise UsageError(
         f"finding {finding.row['finding_id']}: not even the whole log, judged again, gives it: the tool, the rule or an option "
@@ -60,16 +60,16 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     )
 
 
-def _as_asked(request: ConvertRequest, asked: RunRequest, finding: NamedFinding) -> ConvertRequest:
+def _with_run_options(request: ConvertRequest, run_options: RunRequest, finding: NamedFinding) -> ConvertRequest:
     """Return the request with the ego of the finding, and with the run's options where it has none. Errors: `UsageError`."""
     paths = expand_traces([request.trace])
     if len(paths) == 1 and identify(paths[0]).sha256 != finding.drive["sha256"]:
         raise UsageError(f"{paths[0]} is not the log of the finding, {finding.drive['file_name']}: its content differs")
     unset = {field.name: field.default for field in fields(DriveInput)}
-    given = {name for name, default in unset.items() if getattr(request, name) != default}
+    set_options = {name for name, default in unset.items() if getattr(request, name) != default}
     # one given map replaces the other way to find it
-    given |= {"map", "map_dir"} if given & {"map", "map_dir"} else set()
-    options = {name: getattr(asked, name) for name in unset if name not in given}
+    set_options |= {"map", "map_dir"} if set_options & {"map", "map_dir"} else set()
+    options = {name: getattr(run_options, name) for name in unset if name not in set_options}
     return replace(request, **{**options, "ego": finding.row["ego_id"] or None})
 
 
@@ -87,10 +87,10 @@ def _clips(finding: NamedFinding) -> Iterator[tuple[float | None, float | None, 
     yield None, None, Clip(name, first, last)
 
 
-def _gives(path: Path, asked: RunRequest, finding: NamedFinding, judge: Judge) -> bool:
+def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, judge: Judge) -> bool:
     """Whether a clip gives the finding: of the same rule, profile and object, worst at the same step, by the same margin."""
     defaults: dict[str, Any] = {field.name: field.default for field in fields(DriveInput) if field.name in _IN_THE_LOG}
-    options = replace(asked, **{**defaults, "ego": finding.row["ego_id"] or None})
+    options = replace(run_options, **{**defaults, "ego": finding.row["ego_id"] or None})
     try:
         drive = drive_with_map(read_trace(path, options.ingest_options()), MapLibrary(options))
         judged = judge.judge(drive, finding.row["ego_id"], finding.row["object_id"])
@@ -99,7 +99,7 @@ def _gives(path: Path, asked: RunRequest, finding: NamedFinding, judge: Judge) -
     return same_finding(judged.findings, finding.row) is not None
 
 
-def _told(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
+def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
     """Return what the clip covers, in one sentence."""
     from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row

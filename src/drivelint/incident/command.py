@@ -16,67 +16,72 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def commands(asked: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) -> list[str]:
+def commands(run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) -> list[str]:
     """Return the check of the one log by the rules of the run, and the report. Files are named without their folders."""
     row, drive = finding.row, finding.drive
     words = ["drivelint", "check", drive["file_name"]]
-    if asked.map is not None:
-        words += ["--map", asked.map.name]
-    elif asked.map_dir is not None:
+    if run_options.map is not None:
+        words += ["--map", run_options.map.name]
+    elif run_options.map_dir is not None:
         words += ["--map", drive["map_name"] or "MAP"]
-    words += _options(asked)
+    words += _options(run_options)
     if row["ego_id"]:
         words += ["--ego", row["ego_id"] if len(drive["exposure"]) == 1 else "all"]
-    words += of_rules(asked, rule_ids)
+    words += of_rules(run_options, rule_ids)
     name = row["finding_id"]
     return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
 
 
-def of_rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:
+def of_rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
     """Return the options of a run that say by which rules, profiles and parameters it judged. Of a path, only the last name is given."""
-    words = _rules(asked, rule_ids)
-    for profile in asked.profiles if tuple(asked.profiles) != tuple(DEFAULT_PROFILES) else ():
+    words = _rules(run_options, rule_ids)
+    for profile in run_options.profiles if tuple(run_options.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
-    for setting in asked.params:
+    for setting in run_options.params:
         words += ["--param", setting]
-    for folder in asked.rules_dirs:
+    for folder in run_options.rules_dirs:
         words += ["--rules-dir", folder.name]
     return words
 
 
-def _rules(asked: RunRequest, rule_ids: Sequence[str]) -> list[str]:
+def _rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
     """Return the shortest options that select these rules."""
-    known, wanted = catalogue.load_rules(asked.rules_dirs), set(rule_ids)
-    found = [[word for rule_id in sorted(wanted) for word in ("--rules", rule_id)]]
+    known, wanted = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
+    candidates = [[word for rule_id in sorted(wanted) for word in ("--rules", rule_id)]]
     for chosen in (
         [],
         *(["--rules", pack] for pack in sorted({known[rule_id].pack for rule_id in wanted & known.keys()})),
     ):
         selected = {rule.id for rule in catalogue.select_rules(known, chosen[1:], ())}
         if wanted <= selected:
-            found.append([*chosen, *(word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))])
-    return min(found, key=len)
+            candidates.append(
+                [*chosen, *(word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))]
+            )
+    return min(candidates, key=len)
 
 
-def _options(asked: RunRequest) -> list[str]:
+def _options(run_options: RunRequest) -> list[str]:
     """Return the options about the log and its map that are not as they are by default."""
     words: list[str] = []
-    if asked.mapping is not None:
-        words += ["--mapping", Path(asked.mapping).name if Path(asked.mapping).is_file() else asked.mapping]
-    for name, pair in (("--map-offset", asked.map_offset), ("--map-origin", asked.map_origin)):
+    if run_options.mapping is not None:
+        words += [
+            "--mapping",
+            Path(run_options.mapping).name if Path(run_options.mapping).is_file() else run_options.mapping,
+        ]
+    for name, pair in (("--map-offset", run_options.map_offset), ("--map-origin", run_options.map_origin)):
         if pair is not None:
             words.append(f"{name}={pair[0]:.12g},{pair[1]:.12g}")
-    if asked.handedness != "auto":
-        words += ["--handedness", asked.handedness]
-    if asked.topic is not None:
-        words += ["--topic", asked.topic]
-    if asked.sensor_range_m is not None:
-        words += ["--sensor-range", f"{asked.sensor_range_m:.12g}"]
-    if asked.visibility != "line-of-sight":
-        words += ["--visibility", asked.visibility]
-    if asked.ego_size is not None:
-        words += ["--ego-size", ",".join(f"{value:.12g}" for value in asked.ego_size)]
-    for condition in asked.env:
+    if run_options.handedness != "auto":
+        words += ["--handedness", run_options.handedness]
+    if run_options.topic is not None:
+        words += ["--topic", run_options.topic]
+    if run_options.sensor_range_m is not None:
+        words += ["--sensor-range", f"{run_options.sensor_range_m:.12g}"]
+    if run_options.visibility != "line-of-sight":
+        words += ["--visibility", run_options.visibility]
+    if run_options.ego_size is not None:
+        words += ["--ego-size", ",".join(f"{value:.12g}" for value in run_options.ego_size)]
+    for condition in run_options.env:
         words += ["--env", condition]
     return words
 

@@ -9,7 +9,7 @@ from drivelint.catalogue.header import CONTACT, EXCUSES
 from drivelint.incident.breaches import broken_line, kept_line, quoted, without_advice
 from drivelint.incident.fitting import Reason
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
-from drivelint.result.counts import SEVERITIES, grouped
+from drivelint.result.counts import SEVERITIES, group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -38,8 +38,8 @@ def conduct(
     whole drive. `excused`: not broken by a rule that may excuse what its title forbids. `only_hit`: nothing but a contact was found.
     """
     told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
-    by_rule = grouped(told["v"], lambda row: row["rule_id"])
-    found = grouped(told["f"], lambda row: row["rule_id"])
+    by_rule = group_rows(told["v"], lambda row: row["rule_id"])
+    found = group_rows(told["f"], lambda row: row["rule_id"])
     failures = {rule: [row for row in rows if row["verdict"] == "fail"] for rule, rows in by_rule.items()}
     # a verdict is about a judged interval, which may be longer than the span: its findings say when the rule was broken
     failed = {rule for rule, rows in failures.items() if any(not row["finding_ids"] for row in rows)}
@@ -78,18 +78,20 @@ def conduct(
     }
 
 
-def name_party(told: Mapping[str, Any], name: str) -> dict[str, Any]:
+def name_party(conduct_lists: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Return what is told of a party with its name where rules call it the ego; titles, in quotes, stay as they are."""
-    named = dict(told)
+    named_lists = dict(conduct_lists)
     for part in ("broken", "kept", "excused", "beside"):
-        if part in told:
-            named[part] = [_named(line, name) for line in told[part]]
-    if "reasons" in told:
-        named["reasons"] = [reason._replace(why=_named(reason.why, name)) for reason in told["reasons"]]
-    return named
+        if part in conduct_lists:
+            named_lists[part] = [_with_party_name(line, name) for line in conduct_lists[part]]
+    if "reasons" in conduct_lists:
+        named_lists["reasons"] = [
+            reason._replace(why=_with_party_name(reason.why, name)) for reason in conduct_lists["reasons"]
+        ]
+    return named_lists
 
 
-def _named(text: str, name: str) -> str:
+def _with_party_name(text: str, name: str) -> str:
     return "".join(part if part.startswith("\u201c") else _EGO.sub(name, part) for part in _QUOTED.split(text))
 
 
@@ -102,7 +104,7 @@ def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -
     """Return why rules are not decided: those about contacts first, which a sheet is mostly about, then the reason of most rules."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     of_rules: dict[str, set[str]] = {}
-    for rows in grouped(unknown, lambda row: verdict_reason(row).kind).values():
+    for rows in group_rows(unknown, lambda row: verdict_reason(row).kind).values():
         given = (verdict_reason(row) for row in rows)
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
         of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # they may differ in their advice only

@@ -63,16 +63,16 @@ def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, a
     return f"{least}{speed(found.mps)}, from {_at(motion.t[before])} to {_at(found.at_s)}{turned}{derived}"
 
 
-def _turned(motion: Motion, party: int, before: int, found: DeltaV) -> str:
+def _turned(motion: Motion, party: int, before: int, velocity_change: DeltaV) -> str:
     """Return speeds and angle in words where the direction changed, which may be steering if it changed more than the speed; else ''."""
-    v = motion.velocity[party][:, [before, int(np.abs(motion.t - found.at_s).argmin())]]
+    v = motion.velocity[party][:, [before, int(np.abs(motion.t - velocity_change.at_s).argmin())]]
     first, last = np.hypot(*v).tolist()
-    if found.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS:
+    if velocity_change.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS:
         return ""
     angle = math.degrees(math.acos(float(np.clip(v[:, 0] @ v[:, 1] / (first * last), -1.0, 1.0))))
     if angle < _LEAST_DEGREES:
         return ""
-    steering = ", which may be steering" if abs(last - first) <= found.mps / 2 else ""
+    steering = ", which may be steering" if abs(last - first) <= velocity_change.mps / 2 else ""
     return f": {first:.1f} to {last:.1f} m/s, direction changed by {angle:.0f}\u00b0{steering}"
 
 

@@ -26,7 +26,7 @@ _JOIN: Final = 2
 """Characters between two texts."""
 SHARED_HEAD: Final = 100
 """Characters of the head of the reasons that both parties share, with the end of the line before it."""
-_COUNTED: Final = 80
+_TITLES_NOTE_CHARACTERS: Final = 80
 """Characters of the sentence that says where the titles are that were left out."""
 _WIDE, _CELL, _FACT, _CHECK = 92, 43, 41, 98
 """Characters of a line in the widest font that may print the sheet: across page 1, in a column of the parties or the facts, in a row of
@@ -64,30 +64,30 @@ class Reason(NamedTuple):
 class Fitting(NamedTuple):
     """The first of some texts, how many more there are, and whether some of those shown are short forms."""
 
-    shown: list[str]
+    texts: list[str]
     more: int
     is_short: bool = False
 
 
-def is_crowded(told: dict[str, Any]) -> bool:
+def is_crowded(page: dict[str, Any]) -> bool:
     """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
-    sure, rests, drive = told["sure"], told["rests"], told["drive"]
+    sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
         + _lines(
-            f"{drive['map_name']} {told['road_id']} {told['place'].lanelet_id} {told['coordinates']} {told['hand']}",
+            f"{drive['map_name']} {page['road_id']} {page['place'].lanelet_id} {page['coordinates']} {page['hand']}",
             _FACT,
         ),
         10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
     ]
-    parties = told["parties"]
+    parties = page["parties"]
     rows = [[_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
     rows += [[_lines(p[name], _CELL) for p in parties] for name in _CELLS]
     rows += [[sum(_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
-    against = [told["against"] or "", told["least"] or "", *(f"contact also {each}" for each in told["contacts"].shown)]
-    across = [told["story"], told["what"]]
+    against = [page["against"] or "", page["least"] or "", *(f"contact also {each}" for each in page["contacts"].texts)]
+    across = [page["story"], page["what"]]
     lines = max(facts) + sum(max(row) for row in rows) + _lines(" ".join(against), 2 * _CELL)
-    lines += _lines(", ".join(told["drawn"]), _WIDE)
+    lines += _lines(", ".join(page["drawn"]), _WIDE)
     return lines * _LINE_PX + sum(_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
 
 
@@ -110,12 +110,12 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"reasons": shared}
 
 
-def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> None:
+def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
     """Cut the lists of what both parties did to what fits into two columns that share their room.
 
     What the lists leave goes first to what was broken, then to the reasons, until all are told; where other lines take more, each list
     loses its share, that of what was broken last.
-    `seconds_left`: rows that the table second by second does not fill; `taken`: characters of other lines.
+    `seconds_left`: rows that the table second by second does not fill; `used_characters`: characters of other lines.
     """
     parts = [
         (told, name, min(_least(told[name], name), room))
@@ -123,7 +123,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> Non
         for told in parties
         if name in told
     ]
-    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - taken - sum(room for *_, room in parts)
+    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - used_characters - sum(room for *_, room in parts)
     if spare < 0:
         parts = _shrunk(parts, -spare)
     rooms = [room for *_, room in parts]
@@ -136,7 +136,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, taken: int) -> Non
     for (told, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitting_reasons if name == "reasons" else _fitting
         told[name] = fitting(told[name], name, room + max(spare, 0))
-        spare -= max(_length(told[name].shown, name) + _COUNTED * told[name].is_short - room, 0)
+        spare -= max(_length(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
@@ -169,7 +169,7 @@ def _least(texts: Sequence[Any], part: str) -> int:
     """Return the least room that all texts of a part take, in characters."""
     if part != "reasons":
         return _length(texts, part)
-    return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _COUNTED)
+    return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS)
 
 
 def _length(texts: Sequence[str], part: str) -> int:
@@ -196,8 +196,8 @@ def _fitting_reasons(reasons: Sequence[Reason], part: str, room: int) -> Fitting
         return Fitting(shown, 0)
     for i in sorted(range(len(shown)), key=lambda i: (len(shortest[i]) - len(shown[i]), i)):
         shown[i] = shortest[i]
-        if _length(shown, part) + _COUNTED <= room:
+        if _length(shown, part) + _TITLES_NOTE_CHARACTERS <= room:
             break
-    fitting = _fitting(shown, part, room - _COUNTED)
+    fitting = _fitting(shown, part, room - _TITLES_NOTE_CHARACTERS)
     full = {reason.full for reason in reasons}
-    return fitting._replace(is_short=any(text not in full for text in fitting.shown))
+    return fitting._replace(is_short=any(text not in full for text in fitting.texts))

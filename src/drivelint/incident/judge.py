@@ -46,14 +46,16 @@ class Judge:
     memory: int | None = DEFAULT_MEMORY
 
     @classmethod
-    def of_run(cls, asked: RunRequest, rule_ids: Collection[str], memory: int | None) -> Judge:
+    def of_run(cls, run_options: RunRequest, rule_ids: Collection[str], memory: int | None) -> Judge:
         """Return the judge of a run, by these of its rules. Errors: `UsageError` for a rule that is gone."""
-        known = catalogue.load_rules(asked.rules_dirs)
+        known = catalogue.load_rules(run_options.rules_dirs)
         if gone := sorted(set(rule_ids) - known.keys()):
             raise UsageError(f"rule {gone[0]} is not in the catalogue any more: check the drives again")
         rules = [known[rule_id] for rule_id in sorted(rule_ids)]
-        mine = [each for each in asked.params if each.partition("=")[0].strip().rpartition(".")[0] in set(rule_ids)]
-        profiles = profile_table(load_profiles(asked.rules_dirs), asked.profiles)
+        mine = [
+            each for each in run_options.params if each.partition("=")[0].strip().rpartition(".")[0] in set(rule_ids)
+        ]
+        profiles = profile_table(load_profiles(run_options.rules_dirs), run_options.profiles)
         return cls(rules, catalogue.parse_params(rules, mine), profiles, memory)
 
     def judge(
@@ -77,11 +79,11 @@ class Judge:
         return Judged(verdicts, findings, steps[-1])
 
 
-def same_finding(findings: Sequence[Row], wanted: Row, *, tolerance: float = 1e-6) -> Row | None:
-    """Return the finding that has the rule, profile, object, worst step and margin of `wanted`; None: there is none."""
+def same_finding(findings: Sequence[Row], finding: Row, *, tolerance: float = 1e-6) -> Row | None:
+    """Return the finding that has the rule, profile, object, worst step and margin of `finding`; None: there is none."""
     same = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
     for row in findings:
-        if all(row[key] == wanted[key] for key in same) and _close(row["margin"], wanted["margin"], tolerance):
+        if all(row[key] == finding[key] for key in same) and _close(row["margin"], finding["margin"], tolerance):
             return row
     return None
 

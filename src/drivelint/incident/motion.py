@@ -203,10 +203,10 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
 
 def second_by_second(motion: Motion, before_s: float | None) -> list[dict[str, Any]]:
     """Return a row per full second from 15 s before to 2 s after the moment, and that of the last step before a contact."""
-    return [_row(motion, i, t, before_s) for i, t in _wanted(motion, before_s)]
+    return [_row(motion, i, t, before_s) for i, t in _table_steps(motion, before_s)]
 
 
-def _wanted(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float]]:
+def _table_steps(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float]]:
     times = sorted({float(t) for t in range(-BEFORE_S, AFTER_S + 1)} | ({before_s} if before_s is not None else set()))
     for t in times:
         if (i := motion.at(t)) is not None:

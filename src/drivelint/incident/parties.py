@@ -64,21 +64,21 @@ def kinds(case: Case) -> list[str | None]:
     return [(classes.get(who) or "").replace("_", " ") or None for who in case.finding.parties]
 
 
-def _slowed(found: Sequence[Slowing], before_s: float | None) -> list[str]:
+def _slowed(slowings: Sequence[Slowing], before_s: float | None) -> list[str]:
     """Return the last stretches of slowing in words, and how many there were before them."""
-    told = [f"{len(found) - 2} earlier"] if len(found) > 2 else []
-    for each in found[-2:]:
+    texts = [f"{len(slowings) - 2} earlier"] if len(slowings) > 2 else []
+    for each in slowings[-2:]:
         until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
         if each.sudden:
             how = f"lost within {each.end_s - each.start_s:.2f} s, faster than tyres brake: as in an impact"
         else:
             how = f"hardest half second {each.hardest_mps2:.1f}, mean {each.mean_mps2:.1f} m/s\u00b2"
-        told.append(
+        texts.append(
             f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, {how}".replace(
                 "-", "\u2212"
             )
         )
-    return told
+    return texts
 
 
 def _brake_lights(case: Case, actor_id: str) -> str:
@@ -106,7 +106,7 @@ def _brake_lights(case: Case, actor_id: str) -> str:
 
 def _lane(case: Case, number: int, at: int | None) -> str:
     """Return in words in which lane a party is at a step of the first one."""
-    judged = (case.again, case.others)[number]
+    judged = (case.again, case.other_party)[number]
     if at is None or not isinstance(judged, Judged) or not judged.steps.num_rows:
         return "not examined"
     t_ns = case.again.steps["t_ns"][at].as_py()

@@ -36,7 +36,7 @@ class HeldElements(NamedTuple):
     """The elements of one list: those that the log holds, those that are derived from others, and those that are absent."""
 
     title: str
-    held: list[str]
+    present: list[str]
     derived: list[str]
     absent: list[str]
 
@@ -57,7 +57,7 @@ def held_elements(tables: Mapping[str, pa.Table], log: Mapping[str, Any], actor_
         told = HeldElements(about.title, [], [], [])
         for element in (each for each in _elements().element if each.source == name):
             held = any(_holds(place, tables, log, actor_id) for place in element.held_by)
-            kind = told.absent if not held else told.derived if element.derived_by in checks else told.held
+            kind = told.absent if not held else told.derived if element.derived_by in checks else told.present
             kind.append(element.name)
         found.append(told)
     return found

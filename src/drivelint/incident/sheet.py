@@ -34,7 +34,7 @@ from drivelint.incident.record import held_elements
 from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
-from drivelint.incident.words import amount, closing, contact, how_sure, measured, minus, profile, story, told_unit
+from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
 from drivelint.report.html.pictures import pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
@@ -83,7 +83,7 @@ def content(case: Case) -> dict[str, Any]:
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
-        "what": _what(finding),
+        "what": _finding_sentence(finding),
         "story": story(
             motion,
             at,
@@ -141,7 +141,7 @@ def content(case: Case) -> dict[str, Any]:
         "quality": _told_warnings(case),
         "again": same_finding(case.again.findings, row),
         "source": case.source,
-        "commands": commands(case.asked, finding, case.result.rules["rule_id"].to_pylist()),
+        "commands": commands(case.run_options, finding, case.result.rules["rule_id"].to_pylist()),
         "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
@@ -163,18 +163,18 @@ def figure(value: float | None, digits: int = 2) -> str:
     return text.removeprefix("-") if float(text) == 0 else text.replace("-", "\u2212")
 
 
-def _what(finding: NamedFinding) -> str:
+def _finding_sentence(finding: NamedFinding) -> str:
     """Return what was found, in one sentence."""
     row, rule = finding.row, finding.rule
     if overlap := contact(row, rule):
         return f"{overlap[:1].upper()}{overlap[1:]}."
-    said = measured(row, rule)
-    if said and row["margin"] is not None:
-        said = f"{rule['observes'] or 'measured'}: {said}; missed by {amount(-row['margin'], row['unit'])}"
+    observed = measured_text(row, rule)
+    if observed and row["margin"] is not None:
+        observed = f"{rule['observes'] or 'measured'}: {observed}; missed by {amount(-row['margin'], row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
-        said += " (of the speed alone, not of its direction; from one step to the next)"
-    reason = "" if row["reason_measures"] and said else row["reason"]
-    text = "; ".join(part for part in (reason, said) if part)
+        observed += " (of the speed alone, not of its direction; from one step to the next)"
+    reason = "" if row["reason_measures"] and observed else row["reason"]
+    text = "; ".join(part for part in (reason, observed) if part)
     return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
 
 
@@ -271,7 +271,7 @@ def _span(finding: NamedFinding) -> tuple[int, int]:
     return max(first, finding.start_ns), min(last, end_ns)
 
 
-def _conduct(case: Case, span: tuple[int, int], seconds_left: int, taken: int) -> dict[str, Any]:
+def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characters: int) -> dict[str, Any]:
     """Return what each party did, by the verdicts on it as ego, and why rules are not decided of both."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
@@ -281,7 +281,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, taken: int) -
         for row in case.result.findings.to_pylist()
     }
     found: list[dict[str, Any]] = []
-    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.others), strict=False):
+    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.other_party), strict=False):
         told: dict[str, Any] = {
             "letter": letter,
             "id": who,
@@ -298,7 +298,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, taken: int) -
     of_both = name_party(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
-    lines = taken + beside + SHARED_HEAD * bool(of_both["reasons"])
+    lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
     fit([*found, of_both], seconds_left, lines + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
     return {"conduct": found, "of_both": of_both}
 

@@ -36,11 +36,11 @@ class _Line(NamedTuple):
 
 
 def strips(
-    motion: Motion, parties: Sequence[str], gaps: Sequence[Row], own: Row | None, moment_ns: int
+    motion: Motion, parties: Sequence[str], gaps: Sequence[Row], finding_course: Row | None, moment_ns: int
 ) -> list[dict[str, Any]]:
     """Return the charts of the span from 15 s before to 7 s after the moment, as far as the drive goes.
 
-    `gaps`: rows of the table `course` that require a distance between the two, each with its `title`; `own`: the course of what
+    `gaps`: rows of the table `course` that require a distance between the two, each with its `title`; `finding_course`: the course of what
     the finding measures, if it is something else.
     """
     shown = [i for i, t in enumerate(motion.t) if _FROM_S - 1e-9 <= t <= _TO_S + 1e-9]
@@ -61,9 +61,9 @@ def strips(
             for row in gaps[:_MOST_REQUIRED]
         ]
         charts.append(_chart("Gap from box to box, m", lines, x, from_zero=True))
-    if own is not None:
-        lines = [_course_line(own, name, name, moment_ns, t) for name in ("observed", "required")]
-        charts.append(_chart(own["title"][:1].upper() + own["title"][1:], lines, x))
+    if finding_course is not None:
+        lines = [_course_line(finding_course, name, name, moment_ns, t) for name in ("observed", "required")]
+        charts.append(_chart(finding_course["title"][:1].upper() + finding_course["title"][1:], lines, x))
     return [chart for chart in charts if chart["lines"]]
 
 

@@ -57,7 +57,7 @@ def minus(text: str) -> str:
     return text.replace(" -", " \u2212") if not text.startswith("-") else "\u2212" + minus(text[1:])
 
 
-def measured(row: Row, rule: Row) -> str:
+def measured_text(row: Row, rule: Row) -> str:
     """Return what was measured and what had to be; '' where the rule measures nothing."""
     if row["observed"] is None and row["required"] is None:
         return ""
@@ -136,7 +136,10 @@ def story(
                 parts.append(f"{letter} {how} from {from_s:.2f} s to {to_s:.2f} s{then}")
             elif still:
                 parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
-    parts += [_who(letter, kind, float(each[at])) for letter, kind, each in zip("AB", kinds, motion.speed, strict=True)]
+    parts += [
+        _party_with_speed(letter, kind, float(each[at]))
+        for letter, kind, each in zip("AB", kinds, motion.speed, strict=True)
+    ]
     turn = float(motion.turn[at])
     how = "" if math.isnan(turn) else _angle(turn)
     relative = float(motion.relative[at])
@@ -166,7 +169,7 @@ def collision_title(
     return ", ".join(parts)
 
 
-def _who(letter: str, kind: str | None, mps: float) -> str:
+def _party_with_speed(letter: str, kind: str | None, mps: float) -> str:
     """Return a party with its class and speed, as far as they are known; '' where neither is."""
     article = "an" if kind and kind[0] in "aeiou" else "a"
     named = [letter, f"{article} {kind}"] if kind else [letter]

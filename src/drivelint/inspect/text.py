@@ -14,7 +14,7 @@ from rich.text import Text
 from drivelint.formats.registry import format_words
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.result.one_line import flat
 
 if TYPE_CHECKING:
@@ -253,7 +253,7 @@ def _finding(found: model.Quality) -> Text:
 def _decidable_rules(drive: model.Drive, log: str) -> Group:
     """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
     egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
-    alike = grouped(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
+    alike = group_rows(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
     parts: list[RenderableType] = []
     for egos in sorted(alike.values(), key=lambda group: -len(group[0].can)):
         parts += _about(drive, egos, log)
@@ -311,7 +311,7 @@ def _by_signal(ego: model.Ego) -> Table:
 def _by_rule(ego: model.Ego, drafts: Sequence[str]) -> Table:
     """Return the undecidable rules, those that lack the same signals in one row."""
     grid = _grid("yellow", overflow="fold")
-    waiting = grouped(ego.cannot, lambda rule: tuple(rule.missing))
+    waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
         ids = (
             f"{rule.rule_id}{_DRAFT if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"

@@ -11,7 +11,7 @@ from drivelint.arrays import floats
 from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.inspect.model import Actor, ClassCount, Clock
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.result.text import utc
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
             sized=sum(a.length_m is not None and a.width_m is not None for a in some),
             moving=sum(a.way_m > MIN_MOVED_M for a in some),
         )
-        for name, some in grouped(found, lambda actor: actor.actor_class).items()
+        for name, some in group_rows(found, lambda actor: actor.actor_class).items()
     ]
     return sorted(counts, key=lambda c: (-c.n, c.actor_class or "~"))
 

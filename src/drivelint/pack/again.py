@@ -20,7 +20,7 @@ from drivelint.explain.source import open_drive
 from drivelint.pack import finding_rows, finding_sql
 from drivelint.pack.bag import Problem
 from drivelint.report.progress import Silent
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.run import CheckOptions, check
 from drivelint.sql import store
 
@@ -99,7 +99,7 @@ def finding_evidence(
     rules = {rule.id: rule for rule in known or rules_of(result, asked)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
-    for (drive_id, ego_id), mine in grouped(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
+    for (drive_id, ego_id), mine in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
         trace = Path(asked.traces[drive_id])
         drive, _ = open_drive(trace.parent, asked, drive_id, ego_id, trace=trace, map_=asked.map)
         found |= _of_drive(drive, mine, rules, asked, memory)

@@ -108,7 +108,7 @@ def _content(request: PackRequest) -> Content:
     """Return what makes a pack of a check's result. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     asked = run_request.load(request.folder)
-    if asked.own:
+    if asked.manifest_options:
         raise UsageError(
             f"{request.folder}: its logs have options of their own, by a manifest: audit that, and pack the audit"
         )

@@ -12,7 +12,7 @@ from drivelint.pictures.camera_log import CameraLog, camera_topics
 from drivelint.pictures.clock import DriveClock, nearest_frame
 from drivelint.pictures.frames import FrameError, VideoFrame
 from drivelint.pictures.shots import SHOTS_NS, planned_shots
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.result.schemas import empty_table
 from drivelint.sql.store import arrow_schemas
 
@@ -70,7 +70,7 @@ class Camerawork:
         """Return the table `picture` of a result, in order, and why pictures are missing, a line for each camera."""
         rows: list[dict[str, Any]] = []
         troubles: dict[Trouble, None] = {}
-        of_drives = grouped(planned_shots(result, self.topics), lambda shot: shot.drive_id)
+        of_drives = group_rows(planned_shots(result, self.topics), lambda shot: shot.drive_id)
         for drive_id, shots in sorted(of_drives.items()):
             drive = self._drives[drive_id]
             try:

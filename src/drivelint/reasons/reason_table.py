@@ -33,24 +33,24 @@ def _json(arguments: Mapping[str, Any]) -> str:
 
 
 def make_reason_table(
-    con: duckdb.DuckDBPyConnection, select: str, own: Mapping[int, Mapping[str, ReasonText]] | None = None
+    con: duckdb.DuckDBPyConnection, select: str, rule_texts: Mapping[int, Mapping[str, ReasonText]] | None = None
 ) -> None:
     """Make the temporary table `_worded` of the distinct rows of `select`: rule_no, cause, start_ns (not NULL, the log's start).
 
-    It has the same columns, the words of the cause, its code and its arguments as JSON. `own`: rule_no -> the codes of that rule.
+    It has the same columns, the words of the cause, its code and its arguments as JSON. `rule_texts`: rule_no -> the codes of that rule.
     """
     con.execute(_TABLE)
     causes = con.execute(
         f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
     ).fetchall()
-    found = [reason_text.parse_reason(cause) for _, cause, _ in causes]
-    told = [reason_text.sentence(cause, start_ns, (own or {}).get(no)) for no, cause, start_ns in causes]
+    reasons = [reason_text.parse_reason(cause) for _, cause, _ in causes]
+    sentences = [reason_text.sentence(cause, start_ns, (rule_texts or {}).get(no)) for no, cause, start_ns in causes]
     rows = {
         "rule_no": pa.array([no for no, _, _ in causes], pa.int32()),
         "cause": pa.array([cause for _, cause, _ in causes], pa.string()),
         "start_ns": pa.array([start_ns for _, _, start_ns in causes], pa.int64()),
-        "words": pa.array(told, pa.string()),
-        "cause_code": pa.array([each.code for each in found], pa.string()),
-        "cause_args": pa.array([_json(each.arguments) if each.arguments else None for each in found], pa.string()),
+        "words": pa.array(sentences, pa.string()),
+        "cause_code": pa.array([each.code for each in reasons], pa.string()),
+        "cause_args": pa.array([_json(each.arguments) if each.arguments else None for each in reasons], pa.string()),
     }
     store.insert(con, "_worded", pa.table(rows))

@@ -71,24 +71,29 @@ def parse_reason(reason: str) -> Reason:
         return Reason(PLAIN_TEXT, {PLAIN_TEXT: reason})
 
 
-def sentence(reason: str, start_ns: int = 0, own: Mapping[str, ReasonText] | None = None) -> str:
-    """Return a reason in words, its advice last. `start_ns`: when the log starts, since times are told from it; `own`: the rule's words."""
+def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
+    """Return a reason in words, its advice last.
+
+    `start_ns`: when the log starts, since times are told from it; `rule_texts`: the rule's words.
+    """
     code, arguments = parse_reason(reason)
-    return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, own)
+    return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)
 
 
-def _sentence(code: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, ReasonText] | None) -> str:
-    words = text_of(code, own)
-    told = _filled(words.says, arguments, start_ns, own)
-    return f"{told}: {_filled(words.advice, arguments, start_ns, own)}" if words.advice else told
+def _sentence(
+    code: str, arguments: Mapping[str, Any], start_ns: int, rule_texts: Mapping[str, ReasonText] | None
+) -> str:
+    words = text_of(code, rule_texts)
+    text = _filled(words.says, arguments, start_ns, rule_texts)
+    return f"{text}: {_filled(words.advice, arguments, start_ns, rule_texts)}" if words.advice else text
 
 
 def advice_sentence(
-    code: str, arguments: Mapping[str, Any], start_ns: int = 0, own: Mapping[str, ReasonText] | None = None
+    code: str, arguments: Mapping[str, Any], start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None
 ) -> str | None:
     """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
-    nested = (advice_sentence(*each, start_ns, own) for each in _nested(arguments))
-    return _sentence(code, arguments, start_ns, own) if text_of(code, own).advice or any(nested) else None
+    nested = (advice_sentence(*each, start_ns, rule_texts) for each in _nested(arguments))
+    return _sentence(code, arguments, start_ns, rule_texts) if text_of(code, rule_texts).advice or any(nested) else None
 
 
 def codes_in(code: str, arguments: Mapping[str, Any]) -> set[str]:
@@ -102,17 +107,19 @@ def _nested(arguments: Mapping[str, Any]) -> list[Reason]:
     return [reason for reason in found if reason.code != PLAIN_TEXT]
 
 
-def text_of(code: str, own: Mapping[str, ReasonText] | None = None) -> ReasonText:
+def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> ReasonText:
     """Return the text of a code; a code without a text is its own text."""
-    return (own or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
+    return (rule_texts or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
 
 
-def _filled(template: str, arguments: Mapping[str, Any], start_ns: int, own: Mapping[str, ReasonText] | None) -> str:
-    told = {name: _told(name, value, start_ns, own) for name, value in arguments.items()}
+def _filled(
+    template: str, arguments: Mapping[str, Any], start_ns: int, rule_texts: Mapping[str, ReasonText] | None
+) -> str:
+    argument_words = {name: _argument_words(name, value, start_ns, rule_texts) for name, value in arguments.items()}
     for part in _OPTIONAL.findall(template):
-        absent = any(told.get(name) is None for name, _ in _ARGUMENT.findall(part))
+        absent = any(argument_words.get(name) is None for name, _ in _ARGUMENT.findall(part))
         template = template.replace(f"[{part}]", "" if absent else part, 1)
-    return _ARGUMENT.sub(lambda found: _formatted(told.get(found[1]), found[2] or ""), template)
+    return _ARGUMENT.sub(lambda found: _formatted(argument_words.get(found[1]), found[2] or ""), template)
 
 
 def _formatted(value: Any, spec: str) -> str:
@@ -121,10 +128,10 @@ def _formatted(value: Any, spec: str) -> str:
     return format(value, spec) if isinstance(value, int | float) else str(value)
 
 
-def _told(name: str, value: Any, start_ns: int, own: Mapping[str, ReasonText] | None) -> Any:
+def _argument_words(name: str, value: Any, start_ns: int, rule_texts: Mapping[str, ReasonText] | None) -> Any:
     """Return an argument as it is put into words: a time from the start, a reason in its words, a value in those of its name."""
     if name.endswith("_ns") and isinstance(value, int):
         return f"{(value - start_ns) / 1e9:.3f} s"
     if isinstance(value, str):
-        return _read()[1].get(name, {}).get(value) or sentence(value, start_ns, own)
+        return _read()[1].get(name, {}).get(value) or sentence(value, start_ns, rule_texts)
     return value

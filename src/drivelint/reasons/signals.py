@@ -24,9 +24,9 @@ ADVICE: Final[dict[str, str]] = {
 }
 SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
 """What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
-MISSING: Final = "missing_"
+MISSING_PREFIX: Final = "missing_"
 """Begins the reason code of a rule that is unknown for want of a signal."""
-UNRECORDED: Final = "unrecorded_"
+UNRECORDED_PREFIX: Final = "unrecorded_"
 """Begins the reason code of a rule that is not applicable because the log has nothing of a signal that few logs have."""
 SIGNALS_OF_FEW_LOGS: Final = {
     "indicator", "brake_light", "declared_events", "modes", *(f"mode_{mode}" for mode in ON_OFF_EVENTS)
@@ -64,8 +64,11 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
     """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
-    if code.startswith((MISSING, UNRECORDED)) and code not in REMEDIES:
-        return how_to_provide(code.removeprefix(MISSING).removeprefix(UNRECORDED), log_format, advice) + _AGAIN
+    if code.startswith((MISSING_PREFIX, UNRECORDED_PREFIX)) and code not in REMEDIES:
+        return (
+            how_to_provide(code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX), log_format, advice)
+            + _AGAIN
+        )
     condition = code.removesuffix("_unknown")
     if condition in DRIVE_CONDITION_VALUES or condition == "limit":
         return (

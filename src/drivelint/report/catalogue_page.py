@@ -17,8 +17,8 @@ from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIGNAL_STATES
 from drivelint.errors import RuleError
 from drivelint.facts import toml_beside
-from drivelint.phrases import shown
-from drivelint.result.counts import grouped
+from drivelint.phrases import escape_invisible
+from drivelint.result.counts import group_rows
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-_MANY = 8  # rules; more are counted
+_MAX_LISTED_RULES = 8  # rules; more are counted
 _COMMENT = re.compile(r"--.*")
 _TAG = re.compile(r"<(?=[A-Za-z/!?])(?!br>)")
 _CITED = re.compile(r"\b(?:R|H)\d+")
@@ -105,7 +105,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
 def page(rules: Iterable[Rule], folder: Path) -> str:
     """Return the page for rules whose packs lie in `folder` (for its clauses.toml files)."""
     rules = sorted(rules, key=lambda rule: rule.id)
-    packs = grouped(rules, lambda rule: rule.pack)
+    packs = group_rows(rules, lambda rule: rule.pack)
     known = {pack: read_clauses(folder / pack) for pack in packs}
     return text_template(__file__, "catalogue.md.j2", finalize=_inert_cell).render(
         rules=rules,
@@ -132,7 +132,7 @@ def _inert_cell(value: Any) -> Any:
     """Return what may stand in a cell: no HTML but a break, no link or picture of a stranger's rule."""
     if not isinstance(value, str):
         return value
-    return cell(shown(_TAG.sub("&lt;", value).replace("](", "]\\(")))
+    return cell(escape_invisible(_TAG.sub("&lt;", value).replace("](", "]\\(")))
 
 
 def map_features() -> dict[str, Any]:
@@ -146,22 +146,22 @@ def _sign(kind: str, name_part: str) -> str:
     return f"`signal` {codes}; or {name_part} in its name"
 
 
-def _asking(rules: Iterable[Rule], asked: Sequence[str], reads: Sequence[str]) -> str:
-    """Return the ids of the rules, or how many there are, that require or are restricted by one of `asked`, or name one in their SQL.
+def _asking(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
+    """Return the ids of the rules, or how many there are, that require or are restricted by one of `requirements`.
 
-    The latter only of rules that read one of the tables `reads`, if any are given.
+    Or that name one in their SQL: of these only rules that read one of the tables `reads`, if any are given.
     """
-    named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in asked))
+    named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in requirements))
     ids = [
         f"`{rule.id}`"
         for rule in rules
-        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(asked)
+        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(requirements)
         or (
             (not reads or not {*rule.reads}.isdisjoint(reads))
             and named.search(_COMMENT.sub("", "\n".join(rule.sections.values())))
         )
     ]
-    return f"{len(ids)} rules" if len(ids) > _MANY else ", ".join(ids) or "no rule yet"
+    return f"{len(ids)} rules" if len(ids) > _MAX_LISTED_RULES else ", ".join(ids) or "no rule yet"
 
 
 def _applies(rule: Rule) -> str:

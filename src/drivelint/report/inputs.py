@@ -8,7 +8,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
-from drivelint.reasons.signals import MISSING, UNRECORDED
+from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX
 from drivelint.report.law import law_words
 from drivelint.result import counts
 from drivelint.result.model import MISFITS, ego_absences, off_map_reason
@@ -25,7 +25,7 @@ LAW: Final = "law"
 _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
 """Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
-_NAMED: Final = 2
+_MAX_NAMES: Final = 2
 _NEVER_MOVES: Final = "ego_never_moves"
 _NO_MAP: Final = "missing_map"
 _EGO: Final = ["drive_id", "ego_id"]
@@ -60,9 +60,7 @@ def _map(drives: Sequence[Row]) -> InputNote:
         return InputNote("map", "none", is_warning=bool(drives))
     reasons = [reason for drive in on_map if (reason := off_map_reason(drive)) is not None]
     n = plural(len(on_map), "drive")
-    words = (
-        f"{listed(sorted({drive['map_name'] for drive in on_map}), _NAMED)} fits {len(on_map) - len(reasons)} of {n}"
-    )
+    words = f"{listed(sorted({drive['map_name'] for drive in on_map}), _MAX_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
     off_egos, egos = sum(map(_egos_off_the_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
     if reasons:
         words += f" ({reasons[0]})"
@@ -91,10 +89,12 @@ def _log(drives: Sequence[Row]) -> InputNote:
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
     given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMED_INFO})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
-    parts = [f"parts lost in {listed(lossy, _NAMED)}"] if lossy else []
+    parts = [f"parts lost in {listed(lossy, _MAX_NAMES)}"] if lossy else []
     absent = [(drive["drive_id"], words) for drive in drives for words in ego_absences(drive)]
     parts += (
-        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _NAMED)] if absent else []
+        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _MAX_NAMES)]
+        if absent
+        else []
     )
     parts += assumed
     if not parts:
@@ -102,7 +102,7 @@ def _log(drives: Sequence[Row]) -> InputNote:
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
-        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _NAMED)})")
+        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _MAX_NAMES)})")
     parts += (copied := _copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
 
@@ -116,12 +116,12 @@ def _whole(drives: Sequence[Row]) -> str:
 
 def _copies(drives: Sequence[Row]) -> list[str]:
     """Return which logs have the content of another one under another name, in words: their findings are counted once more."""
-    same = counts.grouped(drives, lambda drive: drive["sha256"]).values()
+    same = counts.group_rows(drives, lambda drive: drive["sha256"]).values()
     copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]
     if not copied:
         return []
     told = [f"{copy} of {first}" for copy, first in sorted(copied)]
-    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _NAMED)}"]
+    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _MAX_NAMES)}"]
 
 
 def _unrecorded(result: Result) -> list[InputNote]:
@@ -140,7 +140,7 @@ def _parked(result: Result) -> list[InputNote]:
 
 def _by_signal(result: Result, rows: Sequence[Row]) -> str:
     """Return the signals that verdicts lack, each with its number of rules, the most first."""
-    missing = counts.grouped(rows, lambda row: signal_name(row["reason_code"]))
+    missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
     return listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
@@ -149,7 +149,7 @@ def _by_signal(result: Result, rows: Sequence[Row]) -> str:
 def _not_judged(result: Result, drives: int) -> InputNote:
     """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
     rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
-    signals = [row for row in rows if row["reason_code"].startswith(MISSING)]
+    signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
     parts = [plural(drives, "drive")] if drives else []
     if signals:
         parts.append(_by_signal(result, signals))
@@ -176,7 +176,9 @@ def rules_without_map(result: Result) -> int:
 
 def signal_name(reason_code: str) -> str:
     """Return what is missing, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
-    return reason_code.removeprefix(MISSING).removeprefix(UNRECORDED).removeprefix("mode_").replace("_", " ")
+    return (
+        reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
+    )
 
 
 def _n_rules(rows: Iterable[Row]) -> int:

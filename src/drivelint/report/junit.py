@@ -69,7 +69,7 @@ def render(result: Result) -> bytes:
     if too_little := too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
     if gone := gating_gone(result):
-        suites.append(("baseline", list(map(_gone, gone))))
+        suites.append(("baseline", list(map(_unfixed_case, gone))))
     for name, mine in suites:
         counted = _suite(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
@@ -88,7 +88,7 @@ def _of_drive(drive: Row) -> Iterator[Case]:
         yield Case("the map fits the drive", "error", "map", [reason])
 
 
-def _gone(entry: ComparedFinding) -> Case:
+def _unfixed_case(entry: ComparedFinding) -> Case:
     """Return the test case of a finding of the baseline that is gone and not known to be fixed."""
     name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
     return Case(

@@ -10,7 +10,7 @@ from urllib.parse import quote
 import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
-from drivelint.phrases import inert_line, plural, shown
+from drivelint.phrases import escape_invisible, inert_line, plural
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import headline
@@ -113,7 +113,7 @@ def escaped(words_: str) -> str:
 
     A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
     """
-    line = shown(" ".join(words_.split()))
+    line = escape_invisible(" ".join(words_.split()))
     apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", line)
     escaped = re.sub(r"([\\`*_\[\]<>|~&!$])", r"\\\1", apart)
     return re.sub(r"^([-+#])", r"\\\1", escaped)
@@ -137,7 +137,7 @@ def _undecided(result: Result) -> list[dict[str, Any]]:
             "rules": sorted(row["rule_id"] for row in alike),
             "n": sum(row["count_all"] for row in alike),
         }
-        for (verdict, reason), alike in counts.grouped(rows, lambda row: (row["verdict"], row["reason"])).items()
+        for (verdict, reason), alike in counts.group_rows(rows, lambda row: (row["verdict"], row["reason"])).items()
     ]
     return sorted(found, key=lambda row: (row["verdict"], -row["n"], row["reason"]))
 

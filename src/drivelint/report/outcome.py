@@ -42,7 +42,7 @@ _NO_MAP: Final = {
     NOT_IN_FOLDER: "no map in the folder is of the place",
 }
 """Check that leaves a drive without a map -> words."""
-_COUNTED: Final = "counted"
+_COUNTED_LABEL: Final = "counted"
 """Findings that the asked confidence does not let through."""
 
 
@@ -75,7 +75,7 @@ class RuleCounts(NamedTuple):
     that the rule needs; they are not among the idle.
     """
 
-    judged: int
+    judged_somewhere: int
     partly: int
     never: int
     idle: int
@@ -119,7 +119,7 @@ def headline(result: Result) -> Headline:
 
 def one_per_event(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
     """Return one finding of each event; of one whose findings stand differently, as new and as known, one of each standing."""
-    of_standing = counts.grouped(rows, lambda row: standing(gate, row["finding_id"]))
+    of_standing = counts.group_rows(rows, lambda row: standing(gate, row["finding_id"]))
     kept = {id(row) for mine in of_standing.values() for row in counts.one_per_event(mine)}
     return [row for row in rows if id(row) in kept]
 
@@ -170,22 +170,22 @@ def _label(result: Result, has_findings: bool) -> str:
 def _is_mostly_open(result: Result) -> bool:
     """Whether more rules are undecided than decided, counted for each drive and ego where they may apply."""
     rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
-    where = counts.grouped(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
+    where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
     said = [{row["verdict"] for row in mine} for mine in where.values()]
     decided = sum(bool(each & {"pass", "fail"}) for each in said)
     return sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said) > decided
 
 
-def _without_findings(result: Result, told: Mapping[str, int], label: str, *, whole: bool) -> str:
+def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: str, *, whole: bool) -> str:
     judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
     if not judged or not result.verdicts.num_rows:
         return "nothing was judged"
     if (
-        not told["pass"] + told["fail"]
-        and told["unknown"] + told["error"] + counts.unrecorded(result.verdicts).num_rows
+        not verdict_counts["pass"] + verdict_counts["fail"]
+        and verdict_counts["unknown"] + verdict_counts["error"] + counts.unrecorded(result.verdicts).num_rows
     ):
         return "no findings, as nothing could be decided"
-    if not told["pass"] + told["fail"]:
+    if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, as no rule applied: what they are about did not happen"
     if label == _MOSTLY:
         return "no findings, but most could not be judged"
@@ -198,13 +198,13 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
     gate = result.gate
     if gate is None:
         return f"{by_severity(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
-    groups = counts.grouped(rows, lambda row: gate.standing(row["finding_id"]))
+    groups = counts.group_rows(rows, lambda row: gate.standing(row["finding_id"]))
     said = []
     for name, mine in groups.items():
         if name not in LET_THROUGH:
             n, gating = len(mine), len(counts.one_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
-            label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED}[name]
+            label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED_LABEL}[name]
             said.append(f"{n} {label} ({by_severity(mine)}{some})")
     said += [
         f"{len(groups[name])} {words} ({by_severity(groups[name])})"
@@ -243,7 +243,7 @@ def _let_through(gate: Gate | None, contacts: Sequence[Row]) -> str:
         return ""
     new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH}
     if new:
-        label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED
+        label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED_LABEL
         return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
     why = {gate.standing(row["finding_id"]) for row in contacts}
     return f" ({' or '.join(words for name, words in LET_THROUGH.items() if name in why)})"

@@ -69,8 +69,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     contents[REPORT_FILES["junit"]] = junit.render(result)
     if result.gate is not None:
         contents[GATE_FILE] = gate.render(result.gate)
-    if result.asked is not None:
-        contents[RUN_FILE] = request.render(result.asked, out)
+    if result.run_options is not None:
+        contents[RUN_FILE] = request.render(result.run_options, out)
     contents[MARK] = summary.render(result)
     moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
     if work is not None:

@@ -32,7 +32,7 @@ class Progress:
     def advance(self, n: int = 1) -> None:
         """Report `n` more units of the current stage done."""
 
-    def doing(self, what: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, part: float = 0.0) -> None:
         """Say what is done within the stage. `part`: so many units are done of those in hand, which are not yet reported as done."""
 
     def note(self, text: str) -> None:
@@ -50,7 +50,7 @@ class NotePrinter(Silent):
     """A `Progress` for a stderr that is no terminal: what a person should read, and every minute how far it is, one line each."""
 
     def __init__(self) -> None:
-        self._name, self._what, self._done, self._part = "", "", 0, 0.0
+        self._name, self._activity, self._done, self._part = "", "", 0, 0.0
         self._told_s = self._begun_s = time.monotonic()
         self._had = 0
         self._total: int | None = None
@@ -58,7 +58,7 @@ class NotePrinter(Silent):
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage; nothing is printed yet."""
         self._name, self._total, self._begun_s = name, total, time.monotonic()
-        self._what, self._done, self._part, self._had = "", 0, 0.0, 0
+        self._activity, self._done, self._part, self._had = "", 0, 0.0, 0
 
     def advance(self, n: int = 1) -> None:
         """Count the units, and print how far the stage is, if nothing was printed of it for a while."""
@@ -67,9 +67,9 @@ class NotePrinter(Silent):
             self._had = self._done  # an earlier run did them: they say nothing of how long the others take
         self.tell_if_due()
 
-    def doing(self, what: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, part: float = 0.0) -> None:
         """Keep what is done."""
-        self._what, self._part = what, part
+        self._activity, self._part = activity, part
 
     def tell_if_due(self) -> None:
         """Print how far the stage is, and how long the rest may take, if nothing was printed of it for a while."""
@@ -83,7 +83,7 @@ class NotePrinter(Silent):
         left_s = (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_SHARE * todo) and new else None
         self.note(
             f"{self._name}: {self._done:,} of {self._total:,}"
-            f"{f' ({self._what})' if self._what else ''}{'' if left_s is None else f', {_duration(left_s)} left'}"
+            f"{f' ({self._activity})' if self._activity else ''}{'' if left_s is None else f', {_duration(left_s)} left'}"
         )
 
     def note(self, text: str) -> None:
@@ -140,9 +140,9 @@ class Bar(Progress):
         self._done += n
         self._progress.update(self._task, completed=self._done)
 
-    def doing(self, what: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, part: float = 0.0) -> None:
         """Show it beside the bar, which moves on by the part of a unit."""
-        self._progress.update(self._task, description=what, completed=self._done + part)
+        self._progress.update(self._task, description=activity, completed=self._done + part)
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.report.worst_first import is_contact
 from drivelint.result.certainty import POSSIBLE, SURE, certainty
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,7 +20,7 @@ SAME_NS: Final = 1_000_000_000
 def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
     """Return the id of each finding that is a contact -> the findings of other rules that tell of the same one."""
     contacts = [row for row in rows if is_contact(row, rules)]
-    met = grouped(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
+    met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     return {
         row["finding_id"]: [
             other
@@ -34,13 +34,13 @@ def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, lis
     }
 
 
-def as_others_say(finding: Row, others: Iterable[Row]) -> str:
+def as_others_say(finding: Row, other_findings: Iterable[Row]) -> str:
     """Return in words how sure the other findings of the same contact are, if they are not as sure as this one; '' if they are."""
-    said = certainty(finding)
-    for other in others:
+    own_certainty = certainty(finding)
+    for other in other_findings:
         of = f"by {other['rule_id']}, in {other['n_stays']} of {other['n_copies']} copies"
-        if (said, certainty(other)) == (POSSIBLE, SURE):
+        if (own_certainty, certainty(other)) == (POSSIBLE, SURE):
             return f"the contact itself is sure {of}"
-        if (said, certainty(other)) == (SURE, POSSIBLE):
+        if (own_certainty, certainty(other)) == (SURE, POSSIBLE):
             return f"the same contact is only possible {of}"
     return ""

@@ -187,14 +187,14 @@ class _Run:
 
 def _logs_as_named(result: Result) -> Mapping[str, str]:
     """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
-    if result.asked is not None:
-        return result.asked.named
+    if result.run_options is not None:
+        return result.run_options.relative_paths
     if result.folder is None or not (result.folder / RUN_FILE).is_file():
         return {}
-    return request.load(result.folder).named
+    return request.load(result.folder).relative_paths
 
 
-def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:
+def _rule(rule: Row, verdict_counts: Mapping[str, int]) -> dict[str, Any]:
     params = [f"{p['name']} = {p['value']}{' ' + p['unit'] if p['unit'] else ''}" for p in rule["params"]]
     lines = [rule["clause"], rule["hypothesis"], f"Derived as: {rule['derivation']}. Status: {rule['status']}."]
     lines += [f"Parameters: {'; '.join(params)}."] if params else []
@@ -210,7 +210,7 @@ def _rule(rule: Row, told: Mapping[str, int]) -> dict[str, Any]:
             "version": rule["rule_version"],
             "clause": rule["clause"],
             "requires": rule["requires"],
-            "verdicts": dict(told),
+            "verdicts": dict(verdict_counts),
         },
     }
 

@@ -55,12 +55,12 @@ def content(result: Result) -> dict[str, Any]:
             {"pack": pack, "verdicts": told}
             for pack, told in counts.verdicts_by_pack(result.rules, result.verdicts).items()
         ],
-        "rules": _counted(result, result.rules.select(_RULE), near),
-        "drives": _counted(result, result.drives.select(_DRIVE), near),
+        "rules": _with_counts(result, result.rules.select(_RULE), near),
+        "drives": _with_counts(result, result.drives.select(_DRIVE), near),
     }
 
 
-def _counted(result: Result, rows: pa.Table, near: pa.Table) -> list[dict[str, Any]]:
+def _with_counts(result: Result, rows: pa.Table, near: pa.Table) -> list[dict[str, Any]]:
     """Return rows, of which the first column is the id, with the numbers of their verdicts, near misses and findings."""
     key = rows.column_names[0]
     verdicts = counts.verdicts_by(result.verdicts, key)

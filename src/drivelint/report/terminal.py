@@ -17,7 +17,7 @@ from drivelint.report import NARROW_WIDTH, terminal_summary
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
-from drivelint.result.text import NONE, comparison, number, rule_name, seconds, with_count
+from drivelint.result.text import NO_VALUE, comparison, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -56,7 +56,7 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
         _drives(result, wide=wide),
         _rules(result, wide=wide),
         *_findings(result, wide=wide),
-        _measured(result, "Near misses: kept, but only just", near, "yellow", wide=wide),
+        _measurement_table(result, "Near misses: kept, but only just", near, "yellow", wide=wide),
         _open(result),
         _quality(result),
         _assumptions(result),
@@ -75,7 +75,7 @@ def _drives(result: Result, *, wide: bool) -> Table:
         name = Text(row["drive_id"], style="" if row["status"] == "judged" else "yellow")
         if row["lossy"]:
             name.append(" (lossy)", style="yellow")
-        duration = NONE if row["duration_s"] is None else f"{row['duration_s']:.1f} s"
+        duration = NO_VALUE if row["duration_s"] is None else f"{row['duration_s']:.1f} s"
         extent = [f"{row['km']:.2f}", duration] if wide else []
         table.add_row(name, *extent, *_count_cells(told[row["drive_id"]]))
     return table
@@ -105,18 +105,18 @@ def _findings(result: Result, *, wide: bool) -> list[Table | None]:
     """Return the findings; where a gate lets some through, those that it stops come first."""
     gate, rows = result.gate, result.findings
     if gate is None:
-        return [_measured(result, "Findings", rows, "red", wide=wide)]
+        return [_measurement_table(result, "Findings", rows, "red", wide=wide)]
     stops = pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
     title = "New findings" if gate.baseline is not None else "Findings"
     return [
-        _measured(result, title, rows.filter(stops), "red", wide=wide),
-        _measured(
+        _measurement_table(result, title, rows.filter(stops), "red", wide=wide),
+        _measurement_table(
             result, "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), "dim", wide=wide
         ),
     ]
 
 
-def _measured(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
+def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
     """Return findings or near misses with what was measured; None for none. The drive is named where it changes.
 
     In a narrow terminal what was measured stands below the rule, so that no number and no name is torn apart.
@@ -155,7 +155,7 @@ def _open(result: Result) -> Table | None:
     """Return what could not be judged and why: drives, then unknown and erred verdicts by reason."""
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
     rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
-    why = counts.grouped(rows, lambda row: (row["verdict"], row["reason"]))
+    why = counts.group_rows(rows, lambda row: (row["verdict"], row["reason"]))
     if not lost and not why:
         return None
     table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1})
@@ -163,10 +163,10 @@ def _open(result: Result) -> Table | None:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
     order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
     of_egos = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "ego_id"])
-    egos = counts.grouped(of_egos, lambda row: (row["verdict"], row["reason"]))
+    egos = counts.group_rows(of_egos, lambda row: (row["verdict"], row["reason"]))
     several = len({row["ego_id"] for row in of_egos}) > 1
     for verdict, reason in order[:MAX_ROWS]:
-        rules = _few([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
+        rules = _first_rules([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
         text = Text(reason)
         if several:
             text.append(f"\nego {listed([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
@@ -174,7 +174,7 @@ def _open(result: Result) -> Table | None:
     return table
 
 
-def _few(rules: list[tuple[str, int]]) -> list[str]:
+def _first_rules(rules: list[tuple[str, int]]) -> list[str]:
     """Return the first rules with their counts, and how many more there are of which packs."""
     packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES:]})
     more = [f"and {len(rules) - MAX_RULES} more of {', '.join(packs)}"] if packs else []
@@ -185,7 +185,7 @@ def _quality(result: Result) -> Table | None:
     """Return the data-quality findings of logs and maps that are more than information, one row each."""
     checks = [(drive["drive_id"], check) for drive in result.drives.to_pylist() for check in drive["quality"]]
     worse = [(drive_id, check) for drive_id, check in checks if check["severity"] != "info"]
-    seen = counts.grouped(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
+    seen = counts.group_rows(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
     if not seen:
         return None
     table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "what was seen": 3})
@@ -222,9 +222,9 @@ def _number_columns(table: Table, names: Iterable[str]) -> None:
         table.add_column(name, justify="right", no_wrap=True)
 
 
-def _count_cells(told: dict[str, Any]) -> list[Text]:
+def _count_cells(verdict_counts: dict[str, Any]) -> list[Text]:
     """Return one cell per verdict; zeros are a quiet dot, so that what happened stands out."""
     return [
-        Text(str(told[verdict]), style=_STYLE[verdict]) if told[verdict] else Text("·", style="dim")
+        Text(str(verdict_counts[verdict]), style=_STYLE[verdict]) if verdict_counts[verdict] else Text("·", style="dim")
         for verdict in counts.VERDICTS
     ]

@@ -111,22 +111,24 @@ def _verdict(result: Result) -> Text:
     return text
 
 
-def _table(names: Iterable[str], most: Mapping[str, int]) -> Table:
-    """Return a table; `most`: the columns of words and their greatest widths."""
+def _table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
+    """Return a table; `max_widths`: the columns of words and their greatest widths."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
     for name in names:
-        justify: JustifyMethod = "left" if name in most else "right"
-        table.add_column(name, justify=justify, no_wrap=True, overflow="ellipsis", max_width=most.get(name))
+        justify: JustifyMethod = "left" if name in max_widths else "right"
+        table.add_column(name, justify=justify, no_wrap=True, overflow="ellipsis", max_width=max_widths.get(name))
     return table
 
 
-def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str, Any], width: int) -> Table:
+def _drives(
+    result: Result, gating_findings: list[Row], all_findings: list[Row], rules: dict[str, Any], width: int
+) -> Table:
     """Return one row a drive, the worst first: its worst finding, and its findings by severity.
 
-    `every`: with those that a gate lets through; of a drive that has no others the worst of them is named.
+    `all_findings`: with those that a gate lets through; of a drive that has no others the worst of them is named.
     """
-    of_drive = counts.grouped(found, lambda row: row["drive_id"])
-    let_through = counts.grouped(every, lambda row: row["drive_id"])
+    of_drive = counts.group_rows(gating_findings, lambda row: row["drive_id"])
+    let_through = counts.group_rows(all_findings, lambda row: row["drive_id"])
     unknown = counts.verdicts_by(result.verdicts, "drive_id")
     lacking = set(counts.unrecorded(result.verdicts)["drive_id"].to_pylist())
     starts = result.start_times
@@ -149,7 +151,9 @@ def _drives(result: Result, found: list[Row], every: list[Row], rules: dict[str,
         if mine:
             worst = _worst(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
-            worst = _known(result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1)
+            worst = _finding_let_through(
+                result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1
+            )
         else:
             worst = _without_finding(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
@@ -171,12 +175,14 @@ def _without_finding(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: 
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
-def _known(result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
+def _finding_let_through(
+    result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
+) -> Text:
     """Return a finding that a gate lets through, and why."""
     how = standing(result.gate, row["finding_id"])
-    said = _worst(row, rules, start_ns, several_egos=several_egos)
+    text = _worst(row, rules, start_ns, several_egos=several_egos)
     # one that is only possible says so itself
-    return said if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), said)
+    return text if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), text)
 
 
 def _cell(n: int, style: str) -> Text:
@@ -220,16 +226,16 @@ def _let_through(result: Result, every: list[Row]) -> str:
     return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH.items() if counted[name])
 
 
-def _broken(found: list[Row], without: str) -> Table:
+def _broken(findings: list[Row], without: str) -> Table:
     """Return one row a broken rule, the worst first; with how many findings are only possible, where some are.
 
     `without`: the findings that are not among them.
     """
-    some_possible = any(doubt(row) for row in found)
+    some_possible = any(doubt(row) for row in findings)
     first = f"broken rule (without {without})" if without else "broken rule"
     columns = (first, "findings", *(["possible"] if some_possible else []), "drives", "worst margin")
     table = _table(columns, {first: 60})
-    of_rule = counts.grouped(found, lambda row: row["rule_id"])
+    of_rule = counts.group_rows(findings, lambda row: row["rule_id"])
     for rule_id, rows in list(of_rule.items())[:MOST_RULES]:
         margins = [row["margin"] for row in rows if row["margin"] is not None]
         severity = rows[0]["severity"]
@@ -246,7 +252,7 @@ def _broken(found: list[Row], without: str) -> Table:
 def _lines(result: Result) -> list[Text]:
     """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
     n = rule_counts(result)
-    said = [f"{n.judged} judged", f"{n.never} never judgeable" if n.never else ""]
+    said = [f"{n.judged_somewhere} judged", f"{n.never} never judgeable" if n.never else ""]
     said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
     said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
@@ -274,15 +280,15 @@ def _unknown(result: Result) -> list[Text]:
     )
     others = [row for row in rows if not row["reason_code"].startswith("missing_")]
 
-    def rules(these: list[Row]) -> int:
-        return len({row["rule_id"] for row in these})
+    def rules(verdicts: list[Row]) -> int:
+        return len({row["rule_id"] for row in verdicts})
 
-    groups = counts.grouped(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
     order = sorted(groups.items(), key=lambda group: (-rules(group[1]), -len(group[1]), group[0]))
     lines = []
-    for _, these in order[:MOST_REASONS]:
-        times = f", {len(these)} times" if len(these) > 1 else ""
-        words = f"{these[0]['verdict']} ({plural(rules(these), 'rule')}{times}): {these[0]['reason']}"
+    for _, group in order[:MOST_REASONS]:
+        times = f", {len(group)} times" if len(group) > 1 else ""
+        words = f"{group[0]['verdict']} ({plural(rules(group), 'rule')}{times}): {group[0]['reason']}"
         lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
@@ -298,15 +304,15 @@ def _inputs(result: Result) -> Text:
     return line
 
 
-def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
+def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     end = exit_status(result)
     style = _STYLE_OF.get(LABELS.get(end.code, ""), _CAREFUL)
     gate = result.gate
     alone = "" if gate is not None and gate.baseline is not None else " (no baseline)"
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
-        said = descriptions.since_baseline(gate.baseline)
-        lines.append(Text(f"baseline of its findings {said}"))
+        changes = descriptions.since_baseline(gate.baseline)
+        lines.append(Text(f"baseline of its findings {changes}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:
@@ -315,8 +321,8 @@ def _end(result: Result, found: list[Row], out: str | None) -> list[Text]:
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))
         return lines
     lines.append(Text(f"open     {out}/report.html"))
-    if found:
-        worst = found[0]
+    if findings:
+        worst = findings[0]
         name = f"{worst['rule_id']}@{worst['drive_id']}"
         name = name if inert_line(name) == name else worst["finding_id"]  # what is shown must be what a shell takes
         lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))

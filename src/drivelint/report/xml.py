@@ -7,14 +7,14 @@ from typing import Final
 
 from lxml import etree
 
-from drivelint.phrases import shown
+from drivelint.phrases import escape_invisible
 
 _NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def replace_non_xml(text: str) -> str:
     """Return text without the characters that XML cannot hold, and with those shown that nobody sees: a log's own words."""
-    return shown(_NOT_XML.sub("\ufffd", text))
+    return escape_invisible(_NOT_XML.sub("\ufffd", text))
 
 
 def add(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:

@@ -37,7 +37,7 @@ def render(result: Result) -> bytes:
     root = etree.Element("CheckerResults", version="1.0.0")
     reasons = counts.distinct_rows(result.verdicts, ["drive_id", "rule_id", "verdict", "reason"])
     place = itemgetter("drive_id", "rule_id")
-    said, found = counts.grouped(reasons, place), counts.grouped(result.findings.to_pylist(), place)
+    said, found = counts.group_rows(reasons, place), counts.group_rows(result.findings.to_pylist(), place)
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, held against the drive {drive['drive_id']}"
@@ -51,7 +51,7 @@ def render(result: Result) -> bytes:
             at = drive["drive_id"], rule["rule_id"]
             total += _checker(bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate)
         judged = drive["status"] == "judged"
-        summary = _counted(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
+        summary = _counts_text(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
         bundle.set("summary", replace_non_xml(summary))
     for number, issue in enumerate(root.iter("Issue")):  # through the whole file, as ASAM's reader wants it
         issue.set("issueId", str(number))
@@ -71,20 +71,22 @@ def _checker(
     bundle: etree._Element,
     rule: Row,
     drive: Row,
-    said: Sequence[Row],
+    verdict_rows: Sequence[Row],
     findings: Sequence[Row],
     *,
     gate: Gate | None,
 ) -> Counter[str]:
     """Write one rule in one drive: parameters, issues, the rule, counts. Return its verdicts."""
-    told: Counter[str] = Counter()
-    for row in said:
-        told[row["verdict"]] += row["count_all"]
-    judged = told["pass"] or told["fail"] or findings
-    status = "error" if told["error"] else "completed" if judged else "skipped"
-    why = "" if status == "completed" else "; ".join(with_count(row["reason"], row["count_all"]) for row in said)
+    verdict_counts: Counter[str] = Counter()
+    for row in verdict_rows:
+        verdict_counts[row["verdict"]] += row["count_all"]
+    judged = verdict_counts["pass"] or verdict_counts["fail"] or findings
+    status = "error" if verdict_counts["error"] else "completed" if judged else "skipped"
+    why = (
+        "" if status == "completed" else "; ".join(with_count(row["reason"], row["count_all"]) for row in verdict_rows)
+    )
     none = "the drive was not judged" if drive["status"] != "judged" else "no verdict"
-    summary = _counted(told) if said else none
+    summary = _counts_text(verdict_counts) if verdict_rows else none
     checker = add(
         bundle,
         "Checker",
@@ -97,14 +99,14 @@ def _checker(
         add(checker, "Param", name=param["name"], value=f"{param['value']} {param['unit'] or ''}".rstrip())
     for row in findings:
         _finding(checker, row, rule, drive["t_start_ns"], gate)
-    for row in said if status != "skipped" else ():
+    for row in verdict_rows if status != "skipped" else ():
         if row["verdict"] in {"unknown", "error"}:
             text = f"{row['verdict']}, neither kept nor violated: {with_count(row['reason'], row['count_all'])}"
             _issue(checker, rule, INFORMATION, text)
     add(checker, "AddressedRule", ruleUID=rule_uid(rule["rule_id"], rule["pack"]))
     for verdict in counts.VERDICTS:
-        add(checker, "Metadata", key=verdict, value=str(told[verdict]), description="verdicts of this kind")
-    return told
+        add(checker, "Metadata", key=verdict, value=str(verdict_counts[verdict]), description="verdicts of this kind")
+    return verdict_counts
 
 
 def _finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None, gate: Gate | None) -> None:
@@ -133,5 +135,5 @@ def _issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._
     return add(checker, "Issue", issueId="", description=text, level=level, ruleUID=uid)
 
 
-def _counted(told: Mapping[str, int]) -> str:
-    return ", ".join(f"{told.get(verdict, 0)} {verdict.replace('_', ' ')}" for verdict in counts.VERDICTS)
+def _counts_text(verdict_counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{verdict_counts.get(verdict, 0)} {verdict.replace('_', ' ')}" for verdict in counts.VERDICTS)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.reasons.signals import UNRECORDED
+from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import POSSIBLE, certainty
 
 if TYPE_CHECKING:
@@ -32,9 +32,9 @@ def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int
     return {value: found.get(value, 0) for value in values}
 
 
-def count_assuming(verdicts: pa.Table, what: str) -> int:
+def count_assuming(verdicts: pa.Table, assumption: str) -> int:
     """Return the number of verdicts with this assumption in the column `assumes`."""
-    return tally(verdicts, (what,), "assumes")[what]
+    return tally(verdicts, (assumption,), "assumes")[assumption]
 
 
 def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
@@ -69,7 +69,7 @@ def undecided(verdicts: pa.Table) -> pa.Table:
 
 def unrecorded(verdicts: pa.Table) -> pa.Table:
     """Return the verdicts that are not applicable because the log has nothing of a signal: what they are about may have happened."""
-    return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED))
+    return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX))
 
 
 def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -90,16 +90,16 @@ def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, An
     return [row for _, row in sorted(places, key=itemgetter(0))]
 
 
-def _is_same_event(other: Mapping[str, Any], row: Mapping[str, Any]) -> bool:
+def _is_same_event(other_finding: Mapping[str, Any], finding: Mapping[str, Any]) -> bool:
     """Whether two findings of one rule and the same parties are of one event."""
-    at_once = other["t_start_ns"] <= row["t_end_ns"] and row["t_start_ns"] <= other["t_end_ns"]
-    of_other_profile = other["profile"] != row["profile"]
-    return bool(at_once and of_other_profile == (other["ego_id"] == row["ego_id"]))
+    at_once = other_finding["t_start_ns"] <= finding["t_end_ns"] and finding["t_start_ns"] <= other_finding["t_end_ns"]
+    of_other_profile = other_finding["profile"] != finding["profile"]
+    return bool(at_once and of_other_profile == (other_finding["ego_id"] == finding["ego_id"]))
 
 
-def grouped(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:
+def group_rows(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:
     """Return key -> its rows, both in the order of the rows."""
-    found: dict[_Key, list[_Row]] = {}
+    groups: dict[_Key, list[_Row]] = {}
     for row in rows:
-        found.setdefault(key(row), []).append(row)
-    return found
+        groups.setdefault(key(row), []).append(row)
+    return groups

@@ -41,7 +41,7 @@ def working_folder(
     """
     prepare_folder(out)
     present = _present(out, patterns)
-    foreign = sorted(present - written(out) - {MANIFEST})
+    foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
             f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
@@ -53,7 +53,7 @@ def working_folder(
         work, before, is_done = out / f"{_WORK}.{os.getpid()}", _identity(out / mark), False
         try:
             work.mkdir()
-            _remove(out, sorted(_ours(out, patterns, overwrite=overwrite).intersection(reports)))
+            _remove(out, sorted(_result_files(out, patterns, overwrite=overwrite).intersection(reports)))
             yield work
             is_done = True
         finally:
@@ -66,8 +66,8 @@ def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool
     """Move an earlier result into its folder within `out`; without its mark there is no result in `out` from the first move on."""
     earlier = out / EARLIER
     with suppress(OutputError):  # what stays there is replaced; why the run ended must not be hidden by it
-        _remove(earlier, sorted(_ours(earlier, patterns, overwrite=False)))
-    names = _ours(out, patterns, overwrite=overwrite)
+        _remove(earlier, sorted(_result_files(earlier, patterns, overwrite=False)))
+    names = _result_files(out, patterns, overwrite=overwrite)
     try:
         for name in (mark, *sorted(names - {mark}), MANIFEST):
             if (out / name).exists():
@@ -135,7 +135,7 @@ def _locked(out: Path) -> Iterator[bool]:
 def replace(
     out: Path,
     contents: dict[str, bytes],
-    moved: dict[str, Path],
+    finished_files: dict[str, Path],
     mark: str,
     patterns: Sequence[str],
     *,
@@ -146,27 +146,30 @@ def replace(
     What drivelint wrote there earlier and these files lack goes; with `overwrite` whatever has the name of a result does.
     Errors: `OutputError`.
     """
-    names = {*contents, *moved}
-    before = _ours(out, patterns, overwrite=overwrite)
+    names = {*contents, *finished_files}
+    before = _result_files(out, patterns, overwrite=overwrite)
     # should the machine fail halfway, the next run knows both the old and the new files
     publish(out, {MANIFEST: manifest(before | names)}, {})
-    gone: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
+    unused_files: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
     hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
     hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
-    publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**gone, **moved}, mark)
-    _remove_empty(out, gone)
+    publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**unused_files, **finished_files}, mark)
+    _remove_empty(out, unused_files)
     earlier = out / EARLIER
-    _remove(earlier, [*sorted(_ours(earlier, patterns, overwrite=False)), *([MANIFEST] if written(earlier) else [])])
+    _remove(
+        earlier,
+        [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
+    )
     with suppress(OSError):  # somebody's file is there, or there is none
         earlier.rmdir()
 
 
 def add(out: Path, name: str, content: bytes) -> None:
     """Write one more file into the folder of a result. Errors: `OutputError`."""
-    publish(out, {MANIFEST: manifest({*written(out), name}, _hashes(out)), name: content}, {})
+    publish(out, {MANIFEST: manifest({*written_files(out), name}, _hashes(out)), name: content}, {})
 
 
-def changed(out: Path) -> list[str]:
+def changed_files(out: Path) -> list[str]:
     """Return the tables, and the summary, of a result that are not as they were written; none where nothing says how they were."""
     return [name for name, said in _hashes(out).items() if _sha256(out / name) != said]
 
@@ -196,13 +199,13 @@ def _present(out: Path, patterns: Sequence[str]) -> set[str]:
     return {path.relative_to(out).as_posix() for pattern in patterns for path in out.glob(pattern)}
 
 
-def _ours(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
+def _result_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
     """Return the names of an earlier result's files, without their list: those that are listed, or all that may be overwritten."""
     present = _present(out, patterns) - {MANIFEST}
-    return present if overwrite else present & written(out)
+    return present if overwrite else present & written_files(out)
 
 
-def written(out: Path) -> set[str]:
+def written_files(out: Path) -> set[str]:
     """Return the names of the files that drivelint wrote into a folder, without their list; none where nothing says so."""
     try:
         return set(map(str, json.loads((out / MANIFEST).read_text(encoding="utf-8"))[_KEY]))

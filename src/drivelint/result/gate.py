@@ -69,8 +69,7 @@ class NewUnknowns:
     reason: str
 
 
-@dataclass(frozen=True)
-class Difference:
+class Difference(msgspec.Struct, frozen=True):
     """Two results side by side: every finding of both is one entry, NEW's first.
 
     `base_verdicts`, `verdicts`: verdict -> rows, zeros included. `base_only`, `new_only`: drives that the other has not.
@@ -78,7 +77,7 @@ class Difference:
     """
 
     entries: tuple[ComparedFinding, ...]
-    opened: tuple[NewUnknowns, ...]
+    new_unknowns: tuple[NewUnknowns, ...] = msgspec.field(name="opened")
     base_verdicts: dict[str, int]
     verdicts: dict[str, int]
     base_only: tuple[str, ...]
@@ -87,7 +86,7 @@ class Difference:
     name: str = "new"
     is_partial: bool = False
     """The newer run was interrupted."""
-    undecided: dict[str, int] = field(default_factory=dict)
+    undecided: dict[str, int] = msgspec.field(default_factory=dict)
     rules_not_run: tuple[str, ...] = ()
     n_both: int | None = None
     """Drives that both have."""

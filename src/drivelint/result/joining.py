@@ -38,10 +38,12 @@ def join(results: Sequence[Result]) -> Result:
             once = f"DISTINCT ON ({order})" if name == "lanes" else ""
             tables[name] = con.execute(f"SELECT {once} * FROM _rows ORDER BY {order}").to_arrow_table()
             con.unregister("_rows")
-    asked = [result.asked for result in results if result.asked is not None]
-    if asked:
-        traces = {drive: path for each in reversed(asked) for drive, path in each.traces.items()}
-        named = {drive: path for each in reversed(asked) for drive, path in each.named.items()}
-        own = {drive: options for each in reversed(asked) for drive, options in each.own.items()}
-        tables["asked"] = replace(asked[0], traces=traces, named=dict(sorted(named.items())), own=own)
+    options = [result.run_options for result in results if result.run_options is not None]
+    if options:
+        traces = {drive: path for each in reversed(options) for drive, path in each.traces.items()}
+        paths = {drive: path for each in reversed(options) for drive, path in each.relative_paths.items()}
+        manifest_options = {drive: mine for each in reversed(options) for drive, mine in each.manifest_options.items()}
+        tables["run_options"] = replace(
+            options[0], traces=traces, relative_paths=dict(sorted(paths.items())), manifest_options=manifest_options
+        )
     return replace(first, **tables, interrupted=any(result.interrupted for result in results))

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate as gates
-from drivelint.result.folder import changed, left_by_killed_run
+from drivelint.result.folder import changed_files, left_by_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
@@ -54,7 +54,7 @@ def load_result(folder: Path) -> Result:
         )
     except DriveLintError as error:
         raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
-    if wrong := changed(folder):
+    if wrong := changed_files(folder):
         raise UsageError(
             f"{folder / wrong[0]}: is not as drivelint check wrote it with the others: check the drives again"
         )

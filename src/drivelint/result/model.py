@@ -13,8 +13,8 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
-from drivelint.reasons.signals import UNRECORDED
-from drivelint.result.counts import SEVERITIES, grouped, one_per_event, unrecorded
+from drivelint.reasons.signals import UNRECORDED_PREFIX
+from drivelint.result.counts import SEVERITIES, group_rows, one_per_event, unrecorded
 from drivelint.result.gate import NOT_FIXED
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import conform, empty_table
@@ -50,7 +50,7 @@ class Result:
     `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
     `min_judged`: the least share of rules that must be decided, see `decided_share`; None: any.
     `interrupted`: the run was, before all drives were judged.
-    `gate`: what findings are known or waived, or None: all gate. `asked`: what the run was asked to do, if that is known.
+    `gate`: what findings are known or waived, or None: all gate. `run_options`: what the run was asked to do, if that is known.
     `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
     `halted`: where and by what alarm a watch halted the drive; None: none did. `ended_early`: why what was watched broke off; None: it
     did not.
@@ -76,7 +76,7 @@ class Result:
     min_judged: float | None = None
     interrupted: bool = False
     gate: Gate | None = None
-    asked: RunRequest | None = None
+    run_options: RunRequest | None = None
     folder: Path | None = None
     notes: tuple[str, ...] = ()
     halted: str | None = None
@@ -215,7 +215,9 @@ def gating_unknowns(result: Result) -> pa.Table:
     So do those of rules that were not judged because the log has nothing of a signal.
     """
     rows = _of_stable_rules(result, result.verdicts)
-    rows = rows.filter(pc.or_(pc.equal(rows["verdict"], "unknown"), pc.starts_with(rows["reason_code"], UNRECORDED)))
+    rows = rows.filter(
+        pc.or_(pc.equal(rows["verdict"], "unknown"), pc.starts_with(rows["reason_code"], UNRECORDED_PREFIX))
+    )
     required = pa.array(result.required, pa.string())
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
 
@@ -234,7 +236,7 @@ def too_little_decided(result: Result) -> str | None:
 def decided_share(verdicts: pa.Table) -> float | None:
     """Return the share of rules that were decided somewhere, of those that may apply, counted for each drive and ego; None: none may."""
     kinds = verdicts["verdict"].to_pylist()
-    lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED).to_pylist()
+    lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX).to_pylist()
     keys = zip(*(verdicts[name].to_pylist() for name in ("drive_id", "ego_id", "rule_id")), strict=True)
     is_decided: dict[tuple[str, str, str], bool] = {}
     for key, kind, lacks in zip(keys, kinds, lacking, strict=True):
@@ -308,20 +310,20 @@ def _let_through(result: Result) -> str:
     """Return how many severe findings baseline, waivers and confidence let through, in words; '' without any of these."""
     if (gate := result.gate) is None:
         return ""
-    of_standing = grouped(_severe(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"]))
+    of_standing = group_rows(_severe(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"]))
     asked = {"known": gate.baseline is not None, "waived": bool(gate.waivers), "possible": gate.confidence is not None}
     words = {"known": "known", "waived": "waived", "possible": "only possible"}
     through = [f"{len(one_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told]
     return f" (of that severity {', '.join(through)})" if through else ""
 
 
-def _gone_sentence(result: Result, gone: Sequence[ComparedFinding]) -> str:
+def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return how many of the baseline's severe findings are gone without being fixed, and why."""
-    told = Counter(entry.standing for entry in gone)
-    why = [f"{told[status]} {words}" for status, words in NOT_FIXED.items() if told[status]]
-    verb = "is" if len(gone) == 1 else "are"
-    said = f"{plural(len(gone), 'finding')} of the baseline at or above severity {result.fail_on}"
-    return f"{said} {verb} gone but not fixed: {', '.join(why)}"
+    status_counts = Counter(entry.standing for entry in unfixed)
+    why = [f"{status_counts[status]} {words}" for status, words in NOT_FIXED.items() if status_counts[status]]
+    verb = "is" if len(unfixed) == 1 else "are"
+    subject = f"{plural(len(unfixed), 'finding')} of the baseline at or above severity {result.fail_on}"
+    return f"{subject} {verb} gone but not fixed: {', '.join(why)}"
 
 
 def _unknown_sentence(result: Result, unknown: pa.Table) -> str:

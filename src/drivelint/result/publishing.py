@@ -35,18 +35,20 @@ def prepare_folder(out: Path) -> None:
         raise _unwritable(out, error) from error
 
 
-def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None], mark: str | None = None) -> None:
+def publish(
+    out: Path, contents: dict[str, bytes], finished_files: dict[str, Path | None], mark: str | None = None
+) -> None:
     """Write files into the folder `out`, all of them complete on disk before the first gets its name.
 
-    `contents`: name -> bytes; `moved`: name -> a finished file that is taken over, or None: what an earlier run left
-    under that name goes, because it is not of this run. Names are published in order, those of `moved` first. `mark`: the name
+    `contents`: name -> bytes; `finished_files`: name -> a finished file that is taken over, or None: what an earlier run left
+    under that name goes, because it is not of this run. Names are published in order, those of `finished_files` first. `mark`: the name
     of the file that tells that the folder is whole: the earlier one goes before anything else changes.
     Errors: `OutputError` when the folder cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:
         out.mkdir(parents=True, exist_ok=True)
-        for name, source in moved.items():
+        for name, source in finished_files.items():
             if source is not None:
                 staged.append(_temporary(out / name))
                 shutil.move(source, staged[-1][0])
@@ -58,7 +60,7 @@ def publish(out: Path, contents: dict[str, bytes], moved: dict[str, Path | None]
         for name in [mark] if mark else []:
             (out / name).unlink(missing_ok=True)
             _sync(out)
-        for name in [name for name, source in moved.items() if source is None]:
+        for name in [name for name, source in finished_files.items() if source is None]:
             (out / name).unlink(missing_ok=True)
         for temporary, final in staged:
             temporary.replace(final)

@@ -18,28 +18,30 @@ from drivelint.errors import UsageError
 from drivelint.result.names import RUN_FILE
 
 _PATHS: Final = ("map", "map_dir")
+_JSON_NAMES: Final = {"relative_paths": "named", "manifest_options": "own"}
+"""Field -> its key in the file, where that is another."""
 
 
 @dataclass(frozen=True)
 class RunRequest(DriveInput):
     """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
 
-    `named`: drive_id -> that path from the folder in which the check ran, with `/`; a log outside that folder has none.
-    `ego` is what was given: the egos that were judged are those of the verdicts. `own`: drive_id -> what a manifest said of that log
-    and its map, in place of the options of the run.
+    `relative_paths`: drive_id -> that path from the folder in which the check ran, with `/`; a log outside that folder has none.
+    `ego` is what was given: the egos that were judged are those of the verdicts. `manifest_options`: drive_id -> what a manifest said of
+    that log and its map, in place of the options of the run.
     """
 
     traces: dict[str, str] = field(default_factory=dict)
-    named: dict[str, str] = field(default_factory=dict)
+    relative_paths: dict[str, str] = field(default_factory=dict)
     profiles: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
     robustness: bool | None = None
-    own: dict[str, DriveInput] = field(default_factory=dict)
+    manifest_options: dict[str, DriveInput] = field(default_factory=dict)
 
     def of_drive(self, drive_id: str) -> RunRequest:
         """Return the request with the options that hold for a drive."""
-        mine = self.own.get(drive_id)
+        mine = self.manifest_options.get(drive_id)
         return (
             self
             if mine is None
@@ -48,19 +50,24 @@ class RunRequest(DriveInput):
 
     @classmethod
     def from_options(
-        cls, given: DriveInput, traces: dict[str, str], own: dict[str, DriveInput] | None = None
+        cls, options: DriveInput, traces: dict[str, str], manifest_options: dict[str, DriveInput] | None = None
     ) -> RunRequest:
         """Return what was asked with the options of `check`, of which all but the traces are kept as they are."""
-        apart = {"traces", "named", "own"}
-        kept = {each.name: getattr(given, each.name) for each in fields(cls) if each.name not in apart}
-        named = {drive: path for drive, path in sorted((name, _named(path)) for name, path in traces.items()) if path}
-        return cls(**kept, traces=traces, named=named, own=own or {})
+        apart = {"traces", *_JSON_NAMES}
+        kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
+        relative_paths = {
+            drive: path
+            for drive, path in sorted((name, _path_from_workdir(path)) for name, path in traces.items())
+            if path
+        }
+        return cls(**kept, traces=traces, relative_paths=relative_paths, manifest_options=manifest_options or {})
 
 
-def render(asked: RunRequest, out: Path) -> bytes:
+def render(run_options: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
-    told: dict[str, Any] = msgspec.to_builtins(asked, enc_hook=str)
-    plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(told.pop("traces").items())}, **told}
+    content: dict[str, Any] = msgspec.to_builtins(run_options, enc_hook=str)
+    named = {_JSON_NAMES.get(name, name): value for name, value in content.items() if name != "traces"}
+    plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(content["traces"].items())}, **named}
     plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]
     _make_relative(plain, out)
     for mine in plain["own"].values():
@@ -84,6 +91,7 @@ def load(folder: Path) -> RunRequest:
             _join_to(folder, each)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
+        plain |= {field_: plain.pop(name) for field_, name in _JSON_NAMES.items() if name in plain}
         return msgspec.convert(plain, RunRequest, dec_hook=lambda kind, value: kind(value))
     except FileNotFoundError as error:
         raise UsageError(
@@ -107,7 +115,7 @@ def _join_to(folder: Path, plain: dict[str, Any]) -> None:
     plain |= {key: str(folder / plain[key]) for key in _PATHS if plain[key] is not None}
 
 
-def _named(path: str) -> str:
+def _path_from_workdir(path: str) -> str:
     """Return a path from the working folder, through links as it was given if it can be; '' for one outside."""
     here = Path.cwd()
     as_given = PurePath(os.path.abspath(path))  # noqa: PTH100 - resolve() follows links

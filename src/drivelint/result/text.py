@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from drivelint.result.certainty import doubt
 
-NONE: Final = "-"
+NO_VALUE: Final = "-"
 
 Row = Mapping[str, Any]
 """One row of an output table: column -> value."""
@@ -18,7 +18,7 @@ Row = Mapping[str, Any]
 def number(value: float | None, unit: str | None = None) -> str:
     """Return a measured value with two decimals and its unit, or a dash for none."""
     if value is None:
-        return NONE
+        return NO_VALUE
     text = f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
     return f"{text} {unit}" if unit else text
 
@@ -46,7 +46,7 @@ def measure(value: float | None, unit: str | None = None) -> str:
 
 def seconds(t_ns: int | None, start_ns: int | None) -> str:
     """Return a time on the log's clock as seconds since the drive's first time stamp."""
-    return NONE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
+    return NO_VALUE if t_ns is None else f"{(t_ns - (start_ns or 0)) / 1e9:.2f} s"
 
 
 def utc(t_ns: int | None) -> str | None:

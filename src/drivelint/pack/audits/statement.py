@@ -9,7 +9,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import ExitCode
-from drivelint.fleet_report.opened import opened_packed
+from drivelint.fleet_report.audit_views import opened_packed
 from drivelint.pack import bag
 from drivelint.pack.audits.tables import AUDIT
 from drivelint.pack.statement import PREDICATE, SEALED, TYPE, named, result_word

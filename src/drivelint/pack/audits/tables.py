@@ -29,7 +29,7 @@ from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
 from drivelint.pack.inputs import located
 from drivelint.result.certainty import LEAST_SHARE
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql.statements import statement
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.audit.store import ResultStore
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.pack.finding_sql import Row
 
 AUDIT: Final = f"{DATA}/audit"
@@ -79,12 +79,12 @@ def names(results: ResultStore) -> list[str]:
 def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
     """Return what follows from the tables in the pack `folder`, and must be said as it is in `evidence.json`."""
     counted = summed(con, 0)
-    fail_on = str(audit.told["fail_on"])
+    fail_on = str(audit.audit_json["fail_on"])
     # of the tables, which have those of copies and both of a touch of two egos
     ((n_findings,),) = con.execute("SELECT count(*) FROM findings").fetchall()
     not_judged = con.execute(statement("audit/not_judged")).to_arrow_table().to_pylist()
     return {
-        "audit": audit.told,
+        "audit": audit.audit_json,
         "n_drives": counted.n_drives,
         "n_lossy": counted.lossy,
         "n_findings": n_findings,
@@ -159,7 +159,7 @@ def packed_drives(
     con: duckdb.DuckDBPyConnection, audit: Audit, rules: pa.Table, findings: Sequence[Row], rules_dirs: tuple[Path, ...]
 ) -> Iterator[PackedDrive]:
     """Yield the drives of these findings, one after the other, as results of checks. `rules_dirs`: where they are now."""
-    for key, rows in grouped(findings, lambda row: row["key"]).items():
+    for key, rows in group_rows(findings, lambda row: row["key"]).items():
         (receipt,), (drive,) = (
             con.execute(f"FROM {table} WHERE key = ?", [key]).to_arrow_table().to_pylist()
             for table in ("receipts", "drives")
@@ -171,7 +171,7 @@ def packed_drives(
             findings=pa.Table.from_pylist(mine, schema=arrow_schemas()["finding"]),
             drives=pa.Table.from_pylist([about], schema=arrow_schemas()["drive"]),
             rules=rules,
-            fail_on=str(audit.told["fail_on"]),
+            fail_on=str(audit.audit_json["fail_on"]),
         )
         yield PackedDrive(key, receipt, result, asked_of(audit, receipt, rules_dirs))
 

@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, rows_sha256, with_key
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.fleet_report.opened import opened_packed
+from drivelint.fleet_report.audit_views import opened_packed
 from drivelint.pack import again, consistency, signature
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import statement
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.catalogue import Rule
-    from drivelint.fleet_report.opened import Audit
+    from drivelint.fleet_report.audit_views import Audit
     from drivelint.pack.finding_sql import Row
     from drivelint.pack.request import VerifyRequest
     from drivelint.result.model import Result
@@ -103,7 +103,7 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
 def _of_tables(pack: _Pack) -> Iterator[Problem]:
     """Yield in what the tables, receipts, rules and summary of the audit do not agree."""
     place = pack.folder / tables.AUDIT
-    told = pack.audit.told
+    told = pack.audit.audit_json
     said = json.loads((place / SUMMARY_FILE).read_bytes())
     for key in tables.unlike_summary(pack.con, pack.audit, said):
         yield Problem("summary.json does not fit the tables", key)
@@ -239,7 +239,7 @@ def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
 
 
 def _same_libraries(pack: _Pack) -> bool:
-    return bool(pack.audit.told["versions"].get("pyarrow") == versions()["pyarrow"])
+    return bool(pack.audit.audit_json["versions"].get("pyarrow") == versions()["pyarrow"])
 
 
 def _name(drive: tables.PackedDrive) -> str:
@@ -255,7 +255,7 @@ def _judging(pack: _Pack) -> str:
 
 def _notes(pack: _Pack) -> list[str]:
     """Return what was not held against the logs, and what is not drivelint's own."""
-    notes, evidence, told = [], pack.evidence, pack.audit.told["versions"]
+    notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
         ran = (
             f"{plural(pack.n_run, 'finding')} of theirs gave the numbers from the rows in the pack"

@@ -13,7 +13,7 @@ from drivelint.audit.run import RULES_FILE
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import UsageError
-from drivelint.fleet_report.opened import opened, opened_packed
+from drivelint.fleet_report.audit_views import open_audits, opened_packed
 from drivelint.pack import again, contents
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import statement
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def content(request: PackRequest) -> Content:
     """Return what makes a pack of an audit. Errors: `UsageError` for one that has not ended."""
-    with opened(str(request.folder)) as (_, audit, _):
+    with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
     return Content(lambda work: _payload(work, request), statement)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 MAX_LISTED: Final = 40
 """Findings of the earlier result that are listed of each kind."""
-_GONE: Final = ("changed", *NOT_FIXED, "fixed")
+_FOLDED_STATUSES: Final = ("changed", *NOT_FIXED, "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
 """State of a waiver -> words, those that need somebody to act first."""
 _LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
@@ -71,7 +71,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     shown = [kind for kind in _LABELS if kind != ("open" if gate.baseline is not None else "new")]
     given = {"waived": bool(gate.waivers), "known": gate.baseline is not None, "possible": gate.confidence is not None}
     before = gate.baseline
-    gone = {kind: before.with_diff_status(kind) for kind in _GONE} if before else {}
+    gone = {kind: before.with_diff_status(kind) for kind in _FOLDED_STATUSES} if before else {}
     return {
         "since": before.base_name if before else "",
         "confidence": gate.confidence,
@@ -92,5 +92,5 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
             for kind, entries in gone.items()
             if entries
         ],
-        "more_unknown": sum(each.n - each.base_n for each in before.opened) if before else 0,
+        "more_unknown": sum(each.n - each.base_n for each in before.new_unknowns) if before else 0,
     }

@@ -13,7 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
-from drivelint.phrases import shown
+from drivelint.phrases import escape_invisible
 from drivelint.report.html.anchors import anchor
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.schemas import OUTPUT_VERSION
@@ -45,9 +45,11 @@ def page_environment(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style = _joined([*(TEMPLATES / name for name in base), *((folder or TEMPLATES) / name for name in styles)])
-    script = _joined(TEMPLATES / name for name in scripts)
-    more = _joined([TEMPLATES / PICTURE_STYLE])
+    style = _concatenated_texts(
+        [*(TEMPLATES / name for name in base), *((folder or TEMPLATES) / name for name in styles)]
+    )
+    script = _concatenated_texts(TEMPLATES / name for name in scripts)
+    more = _concatenated_texts([TEMPLATES / PICTURE_STYLE])
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
         script=Markup(script),  # noqa: S704 - ours
@@ -76,10 +78,10 @@ def visible(value: Any) -> Any:
 
     The unit of an acceleration, alone or after a number, is typeset.
     """
-    return _MPS2.sub("m/s\u00b2", shown(value)) if type(value) is str else value  # Markup is ours
+    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is ours
 
 
-def _joined(files: Iterable[Path]) -> str:
+def _concatenated_texts(files: Iterable[Path]) -> str:
     return "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
 
 

@@ -17,7 +17,7 @@ from drivelint.report.html.svg import num
 from drivelint.report.same_contact import as_others_say
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.counts import SEVERITIES, grouped
+from drivelint.result.counts import SEVERITIES, group_rows
 from drivelint.result.text import measure, non_breaking, number, seconds, utc_at, went_wrong
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class FindingLine(NamedTuple):
     stretch: str
     required: str
     gauge: dict[str, str] | None
-    told: str
+    sentence: str
     course: dict[str, Any] | None
     standing: BaselineStatus | None
     sure: dict[str, str] | None
@@ -97,18 +97,18 @@ def finding_line(
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
         required=required,
         gauge=_gauge(row["observed"], row["required"]),
-        told=(_told(row, rule, required) if sense else row["reason"]) + first_contact,
+        sentence=(_measurement_sentence(row, rule, required) if sense else row["reason"]) + first_contact,
         course=None if steps is None else margin_series(steps, row["t_worst_ns"], unit, start_ns),
         standing=status,
         sure=sure,
     )
 
 
-def _told(row: Row, rule: Row, required: str) -> str:
+def _measurement_sentence(row: Row, rule: Row, required: str) -> str:
     """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
-    what = f"{rule['observes']} " if rule["observes"] else ""
-    said = f"{what}{measure(row['observed'], row['unit'])}, must be {required}"
-    return said if row["reason_measures"] else f"{said} ({row['reason']})"
+    quantity = f"{rule['observes']} " if rule["observes"] else ""
+    sentence = f"{quantity}{measure(row['observed'], row['unit'])}, must be {required}"
+    return sentence if row["reason_measures"] else f"{sentence} ({row['reason']})"
 
 
 def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
@@ -151,7 +151,7 @@ def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any
     `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
     `drive`: its row. `cameras`, `pictured`: no pictures from cameras yet, see `add_pictures`.
     """
-    groups, leading = grouped(lines, lambda line: incident_key(line.row)), _in_summary(lines)
+    groups, leading = group_rows(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
         _moment(at, found, drive)
         | {"plan": pictures.get(at), "leading": at in leading, "rank": leading.get(at)}
@@ -167,38 +167,38 @@ def plan_views(
     road: Road,
     starts: Mapping[str, int],
     *,
-    most: int,
+    max_views: int,
 ) -> dict[Key, dict[str, Any]]:
-    """Return the plan views of the first `most` incidents of `lines`. `before`: of a contact the speeds before it, in words."""
-    told = grouped(lines, lambda line: incident_key(line.row))
-    drawn: dict[Key, dict[str, Any]] = {}
-    for at, found in [(at, found) for at, found in told.items() if at in scenes][:most]:
+    """Return the plan views of the first `max_views` incidents of `lines`. `before`: of a contact the speeds before it, in words."""
+    lines_by_incident = group_rows(lines, lambda line: incident_key(line.row))
+    views: dict[Key, dict[str, Any]] = {}
+    for at, found in [(at, found) for at, found in lines_by_incident.items() if at in scenes][:max_views]:
         about = any(_SPACES in line.rule["tags"] for line in found)
         contact = next((line.row for line in found if line.kind == "fail" and CONTACT in line.rule["tags"]), None)
         before = None if contact is None else before_contact(scenes[at], contact, starts.get(at[0], 0))
         picture = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
-        drawn[at] = picture | {"before": before["words"] if before else ""}
-    return drawn
+        views[at] = picture | {"before": before["words"] if before else ""}
+    return views
 
 
 def _objects(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(at: Key, found: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
-    failed = [line for line in found if line.kind == "fail"]
+def _moment(at: Key, incident_lines: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
+    failed = [line for line in incident_lines if line.kind == "fail"]
     title: Callable[[Row], str] = went_wrong if failed else itemgetter("title")
-    gravest = sorted(failed or found, key=lambda line: SEVERITIES.index(line.row["severity"]))
-    cards = grouped(found, lambda line: line.row["rule_id"])
+    gravest = sorted(failed or incident_lines, key=lambda line: SEVERITIES.index(line.row["severity"]))
+    cards = group_rows(incident_lines, lambda line: line.row["rule_id"])
     return {
         "anchor": anchor("moment", *at),
-        "time": found[0].time,
+        "time": incident_lines[0].time,
         "t_ns": at[2],
         "t": centiseconds(at[2], drive["t_start_ns"] or 0),
         "t_utc": utc_at(at[2], drive),
-        "keys": " ".join(sorted({name for line in found for name in line.keys.split()})),
+        "keys": " ".join(sorted({name for line in incident_lines for name in line.keys.split()})),
         "ego_id": at[1],
-        "objects": sorted(_objects(found)),
+        "objects": sorted(_objects(incident_lines)),
         "kind": "fail" if failed else "near",
         "severity": gravest[0].row["severity"],
         "titles": list(dict.fromkeys(title(line.rule) for line in gravest)),

@@ -44,10 +44,12 @@ _BINS: Final = 12
 _PREFERRED: Final = "nominal"
 
 
-def overtake_views(records: Sequence[Row], starts: Mapping[str, int], judged: Collection[str]) -> dict[str, Any] | None:
+def overtake_views(
+    records: Sequence[Row], starts: Mapping[str, int], judged_profiles: Collection[str]
+) -> dict[str, Any] | None:
     """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none.
 
-    `judged`: the profiles that verdicts are about; any other is a what-if.
+    `judged_profiles`: the profiles that verdicts are about; any other is a what-if.
     """
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
@@ -58,7 +60,7 @@ def overtake_views(records: Sequence[Row], starts: Mapping[str, int], judged: Co
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
     return {
         "profiles": profiles,
-        "what_ifs": sorted(set(profiles) - set(judged)),
+        "what_ifs": sorted(set(profiles) - set(judged_profiles)),
         "overtakes": [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
         "n": len(records),
         "zones": _zones(listed, profiles, starts),
@@ -218,23 +220,23 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
         "bars": bars,
         "x_ticks": x_ticks,
         "y_ticks": y_ticks,
-        "rows": [_taken(name, records) for name in profiles],
+        "rows": [_zone_counts(name, records) for name in profiles],
     }
 
 
-def _taken(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
+def _zone_counts(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
     """Return a profile with the numbers taken and not taken in zones A to D, and where the zone is not known."""
     n = Counter((row["zone"], row["taken"]) for row in records if row["profile"] == profile)
     *known, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))
     return profile, known, unknown
 
 
-def _bars(known: Sequence[Row]) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
-    far = max(row["da_m"] for row in known)
+def _bars(opportunities: Sequence[Row]) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
+    far = max(row["da_m"] for row in opportunities)
     width = round_step(max(far, 10.0) / _BINS)
     n = int(far // width) + 1
     counts = [[0, 0] for _ in range(n)]
-    for row in known:
+    for row in opportunities:
         counts[int(row["da_m"] // width)][0 if row["taken"] else 1] += 1
     x = Axis(0.0, n * width, 44.0, _BARS_W - 12.0)
     y = Axis(0.0, float(max(sum(pair) for pair in counts)), _BARS_H - 38.0, 10.0)

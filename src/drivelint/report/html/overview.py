@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_NAMED: Final = 4
+_MAX_NAMED_RULES: Final = 4
 _LONG_KM: Final = 100.0
 _STORY_DRIVES: Final = 6
 _STORY_PARTIES: Final = 6
@@ -41,7 +41,7 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     hrefs = {line.row["finding_id"]: line.href for line in lines}
     ordered = result.findings.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist()
     touches = [row for row in ordered if is_contact(row, rules)]
-    met = counts.grouped(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
+    met = counts.group_rows(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
         first = min(found, key=sureness)
@@ -61,7 +61,11 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     if not named:
         return None
     sure = not all(doubt for *_, doubt in named)
-    return {"named": [each[:2] for each in named[:_NAMED]], "n_more": len(named[_NAMED:]), "sure": sure}
+    return {
+        "named": [each[:2] for each in named[:_MAX_NAMED_RULES]],
+        "n_more": len(named[_MAX_NAMED_RULES:]),
+        "sure": sure,
+    }
 
 
 def rates(result: Result) -> dict[str, Any]:
@@ -71,7 +75,7 @@ def rates(result: Result) -> dict[str, Any]:
     """
     km, hours = (float(pc.sum(result.drives[name]).as_py() or 0.0) for name in ("km", "duration_s"))
     hours /= 3600
-    found = counts.grouped(result.findings.select(["severity", "drive_id"]).to_pylist(), lambda row: row["severity"])
+    found = counts.group_rows(result.findings.select(["severity", "drive_id"]).to_pylist(), lambda row: row["severity"])
     rows = [
         {
             "severity": severity,
@@ -90,7 +94,7 @@ def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[Findi
     """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page."""
     columns = result.findings.select(["rule_id", "drive_id"]).to_pylist()
     verdicts = counts.verdicts_by(result.verdicts, "rule_id")
-    shown = counts.grouped(lines, lambda line: line.row["rule_id"])
+    shown = counts.group_rows(lines, lambda line: line.row["rule_id"])
     found = [
         {
             "rule": rules[rule_id],
@@ -100,7 +104,7 @@ def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[Findi
             "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
             "worst": min(shown.get(rule_id, []), key=_margin, default=None),
         }
-        for rule_id, rows in counts.grouped(columns, lambda row: row["rule_id"]).items()
+        for rule_id, rows in counts.group_rows(columns, lambda row: row["rule_id"]).items()
     ]
     return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
 
@@ -112,7 +116,7 @@ def _margin(line: FindingLine) -> float:
 def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
     """Return how many verdicts of each kind every pack has, and of how many rules."""
     told = counts.verdicts_by_pack(result.rules, result.verdicts)
-    rules = counts.grouped(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
+    rules = counts.group_rows(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
     return [
         {
             "pack": pack,
@@ -163,4 +167,4 @@ def first_page_texts(
         line for story in summaries for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_
     ]
     profiles = {line.row["profile"] or "" for line in lines}
-    return [b["rule"]["title"] for b in rules] + [line.told for line in worst + leading] + sorted(profiles)
+    return [b["rule"]["title"] for b in rules] + [line.sentence for line in worst + leading] + sorted(profiles)

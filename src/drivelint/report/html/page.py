@@ -32,7 +32,7 @@ from drivelint.report.outcome import rule_counts
 from drivelint.report.same_contact import same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 from drivelint.result.model import exit_status
 from drivelint.result.text import number
 
@@ -74,18 +74,20 @@ def content(result: Result) -> dict[str, Any]:
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
     told = counts.verdicts_by(result.verdicts, "drive_id")
-    by_drive = counts.grouped(result.findings.select(["drive_id", "severity"]).to_pylist(), lambda row: row["drive_id"])
+    by_drive = counts.group_rows(
+        result.findings.select(["drive_id", "severity"]).to_pylist(), lambda row: row["drive_id"]
+    )
     rows = _worst_rows(result, rules)
     shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
-    lines = _lines(result, rows, rules, starts, courses, shown=shown)
+    lines = _lines(result, rows, rules, starts, courses, linked_drives=shown)
     failed = [line for line in lines if line.kind == "fail"]
     moment: Callable[[Row], Key] = itemgetter("drive_id", "ego_id", "t_ns")
     scenes = {moment(row): row for row in result.scenes.to_pylist()}
-    spaces = grouped(result.spaces.to_pylist(), moment)
+    spaces = group_rows(result.spaces.to_pylist(), moment)
     road = Road(result.lanes)
-    drawn = plan_views(lines, scenes, spaces, road, starts, most=MAX_PICTURES)
-    listed = grouped(lines, lambda line: line.row["drive_id"])
+    drawn = plan_views(lines, scenes, spaces, road, starts, max_views=MAX_PICTURES)
+    listed = group_rows(lines, lambda line: line.row["drive_id"])
     anchors = {line.anchor: line.standing.filter_key if line.standing else "" for line in failed}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
     sections = [
@@ -183,9 +185,9 @@ def _lines(
     starts: Mapping[str, int],
     courses: Mapping[tuple[Any, ...], Row],
     *,
-    shown: set[str],
+    linked_drives: set[str],
 ) -> list[FindingLine]:
-    """Return the rows with their words, those of drives in `shown` with links."""
+    """Return the rows with their words, those of drives in `linked_drives` with links."""
     same = same_contact((row for kind, row in rows if kind == "fail"), rules)
     return [
         finding_line(
@@ -193,7 +195,7 @@ def _lines(
             kind,
             rules[row["rule_id"]],
             starts.get(row["drive_id"], 0),
-            linked=row["drive_id"] in shown,
+            linked=row["drive_id"] in linked_drives,
             steps=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
             same=same.get(row["finding_id"], ()) if kind == "fail" else (),
@@ -202,12 +204,14 @@ def _lines(
     ]
 
 
-def _with_section(drives: Sequence[Row], worst: Iterable[str], told: Mapping[str, Mapping[str, int]]) -> set[str]:
+def _with_section(
+    drives: Sequence[Row], worst: Iterable[str], verdict_counts: Mapping[str, Mapping[str, int]]
+) -> set[str]:
     """Return the ids of the drives that get a section: those with the worst findings first, which are in `worst`."""
     place = {drive_id: n for n, drive_id in enumerate(dict.fromkeys(worst))}
 
     def weight(row: Row) -> tuple[int, int]:
-        verdicts = told[row["drive_id"]]
+        verdicts = verdict_counts[row["drive_id"]]
         if row["drive_id"] in place:
             return 0, place[row["drive_id"]]
         return (1, 0) if verdicts["unknown"] or verdicts["error"] else (2, 0)
@@ -218,7 +222,7 @@ def _with_section(drives: Sequence[Row], worst: Iterable[str], told: Mapping[str
 
 def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[Row]]:
     mine = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drives), pa.string())))
-    return grouped(mine.to_pylist(), lambda row: row["drive_id"])
+    return group_rows(mine.to_pylist(), lambda row: row["drive_id"])
 
 
 def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
@@ -238,15 +242,15 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
 
 
 def _section(
-    row: Row, tracks: Sequence[Timeline], seen: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
+    row: Row, tracks: Sequence[Timeline], moments: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
 ) -> dict[str, Any]:
     """Return a drive with the actors involved and its egos: of each ego the timeline and the incidents."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = separate_shared_rules(tracks)
-    without = sorted({m["ego_id"] for m in seen} - {t.ego_id for t in tracks})
+    without = sorted({m["ego_id"] for m in moments} - {t.ego_id for t in tracks})
     tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
-    egos = [{"timeline": t, "moments": [m for m in seen if m["ego_id"] == t.ego_id]} for t in tracks]
-    missing = grouped(row["not_judged"], lambda gap: gap["reason"])
+    egos = [{"timeline": t, "moments": [m for m in moments if m["ego_id"] == t.ego_id]} for t in tracks]
+    missing = group_rows(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
         "folded": folded,
@@ -256,7 +260,7 @@ def _section(
             for why, gaps in missing.items()
         ],
         "egos": sorted(egos, key=lambda ego: (-len(ego["moments"]), ego["timeline"].ego_id)) if len(egos) > 1 else egos,
-        "moments": seen,
+        "moments": moments,
         "unfolded": unfolded,
         "quality": sorted(row["quality"], key=lambda check: weight.get(check["severity"], 3)),
     }
@@ -282,10 +286,10 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     why = _first_reason(result.verdicts)
     order = ("not_applicable", "unknown")
     groups = []
-    for pack, mine in grouped(_rules(result, rules), lambda rule: rule["pack"]).items():
+    for pack, mine in group_rows(_rules(result, rules), lambda rule: rule["pack"]).items():
         judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in mine)
         idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
-        folds = grouped(idle, lambda item: (item[0], item[1].kind, _said_of_idle(item[2]["verdicts"])))
+        folds = group_rows(idle, lambda item: (item[0], item[1].kind, _said_of_idle(item[2]["verdicts"])))
         weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), *item[0][1:]))
         groups.append(
             {
@@ -306,11 +310,11 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     return groups
 
 
-def _said_of_idle(told: Mapping[str, int]) -> str:
+def _said_of_idle(verdict_counts: Mapping[str, int]) -> str:
     """Return what is said of a rule that was judged nowhere: for some egos it may not have applied, and be unknown for others."""
-    if not told["unknown"]:
+    if not verdict_counts["unknown"]:
         return "never applied"
-    return "not applicable or not judged" if told["not_applicable"] else "not judged"
+    return "not applicable or not judged" if verdict_counts["not_applicable"] else "not judged"
 
 
 def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
@@ -319,7 +323,7 @@ def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))
     return {
         rule_id: (told[0]["verdict"], verdict_reason(told[0]))
-        for rule_id, told in grouped(rows, lambda row: row["rule_id"]).items()
+        for rule_id, told in group_rows(rows, lambda row: row["rule_id"]).items()
         if all(
             row["verdict"] == "not_applicable" or (row["verdict"] == "unknown" and can_be_provided(row["reason_code"]))
             for row in told

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
     """Return drive and time -> the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
     rows = pictures.to_pylist()
     shown: dict[Moment, list[dict[str, Any]]] = {}
-    for (drive_id, t_ns, _, camera), mine in grouped(
+    for (drive_id, t_ns, _, camera), mine in group_rows(
         rows, lambda row: (row["drive_id"], row["t_ns"], row["camera_no"], row["camera"])
     ).items():
         shown.setdefault((drive_id, t_ns), []).append(

@@ -108,10 +108,10 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
     }
 
 
-def _fit(ego: Row, yaw: float, shown: Points) -> _View:
+def _fit(ego: Row, yaw: float, points: Points) -> _View:
     """Return the view, this heading to the right, that shows these map points with some road around them."""
     raw = _View(ego["x_m"], ego["y_m"], math.cos(yaw), math.sin(yaw), 0.0, 0.0, 1.0, 0.0)
-    flat = raw(shown)
+    flat = raw(points)
     u, v = flat[:, 0] - WIDTH / 2, -flat[:, 1]
     along = max(float(np.ptp(u)) + 2 * _PAD_M[0], _LEAST_M[0])
     across = max(float(np.ptp(v)) + 2 * _PAD_M[1], _LEAST_M[1])

@@ -54,7 +54,7 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[st
     """Return why verdicts are unknown or errors, alike reasons as one row: what can be provided first, then the most frequent."""
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
     rows = counts.distinct_rows(counts.undecided(verdicts), keys)
-    groups = counts.grouped(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
+    groups = counts.group_rows(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
     found = [
         {
             "verdict": verdict,

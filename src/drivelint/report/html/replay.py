@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from drivelint.report.html.svg import polygon
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -41,7 +41,7 @@ def replays(
     """
     told: dict[str, Markup] = {}
     n = 0
-    for drive_id, rows in grouped(scenes, lambda scene: scene["drive_id"]).items():
+    for drive_id, rows in group_rows(scenes, lambda scene: scene["drive_id"]).items():
         start = starts.get(drive_id) or 0
         lanes = road.lanes_of(rows[0]["environment_id"])
         tracks = _tracks(rows)

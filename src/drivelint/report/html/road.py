@@ -12,7 +12,7 @@ import numpy as np
 
 from drivelint.arrays import wrapped
 from drivelint.report.html.svg import polygon, polyline
-from drivelint.result.counts import grouped
+from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -41,7 +41,7 @@ class Road:
         for row in rows:
             for side in ("left", "right"):
                 row[side] = np.column_stack([row[f"{side}_x_m"], row[f"{side}_y_m"]])
-        maps = grouped(rows, lambda row: row["environment_id"])
+        maps = group_rows(rows, lambda row: row["environment_id"])
         self._maps = {name: Lanes(f"m{n}", rows) for n, (name, rows) in enumerate(sorted(maps.items()))}
         self._none = Lanes("m", [])
 

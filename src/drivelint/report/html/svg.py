@@ -55,9 +55,9 @@ class Axis(NamedTuple):
             return (self.start + self.end) / 2
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
-    def ticks(self, most: int) -> list[tuple[str, str]]:
-        """Return places and labels of at most about `most` round values."""
-        step = round_step((self.high - self.low) / most) if self.high > self.low else 1.0
+    def ticks(self, max_ticks: int) -> list[tuple[str, str]]:
+        """Return places and labels of at most about `max_ticks` round values."""
+        step = round_step((self.high - self.low) / max_ticks) if self.high > self.low else 1.0
         first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
         digits = max(0, -math.floor(math.log10(step) + 1e-9))
         return [(num(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
 from drivelint.report.html.svg import percent
-from drivelint.result.counts import SEVERITIES, grouped
+from drivelint.result.counts import SEVERITIES, group_rows
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
@@ -100,10 +100,10 @@ def timelines(
     `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
     """
     clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
-    found = grouped(findings, lambda row: row["ego_id"])
+    found = group_rows(findings, lambda row: row["ego_id"])
     return [
         _timeline(told, found.get(ego, []), rules, anchors, clock)
-        for ego, told in grouped(verdicts, lambda row: row["ego_id"]).items()
+        for ego, told in group_rows(verdicts, lambda row: row["ego_id"]).items()
     ]
 
 
@@ -116,10 +116,10 @@ def _timeline(
 ) -> Timeline:
     """Return the timeline of one ego."""
     of: Callable[[Row], tuple[str, str | None]] = itemgetter("rule_id", "profile")
-    ego, found = verdicts[0]["ego_id"], grouped(findings, of)
+    ego, found = verdicts[0]["ego_id"], group_rows(findings, of)
     rows: list[TimelineRow] = []
     folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
-    for key, told in grouped(verdicts, of).items():
+    for key, told in group_rows(verdicts, of).items():
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
@@ -150,10 +150,10 @@ def empty_timeline(ego_id: str) -> Timeline:
     return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_ORDER, 0))
 
 
-def separate_shared_rules(drawn: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
-    """Return the folded rules that all egos share, and the timelines without them."""
-    common = {(f.verdict, f.kind): f.reasons for f in drawn[0].folded} if drawn else {}
-    for t in drawn[1:]:
+def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
+    """Return the folded rules that all egos share, and the ego_timelines without them."""
+    common = {(f.verdict, f.kind): f.reasons for f in ego_timelines[0].folded} if ego_timelines else {}
+    for t in ego_timelines[1:]:
         mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
         common = {
             key: {rule: reasons | mine[key][rule] for rule, reasons in why.items() if rule in mine.get(key, {})}
@@ -168,7 +168,7 @@ def separate_shared_rules(drawn: Sequence[Timeline]) -> tuple[list[FoldedRules],
         ]
         return [f for f in left if f.reasons]
 
-    return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in drawn]
+    return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in ego_timelines]
 
 
 def _is_missing(row: Row) -> bool:
@@ -176,12 +176,12 @@ def _is_missing(row: Row) -> bool:
     return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
 
 
-def _bands(told: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
+def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
     bands = []
     for verdict in _LAYERS:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
-        rows = [row for row in told if row["verdict"] == verdict]
+        rows = [row for row in stretches if row["verdict"] == verdict]
         for (start, end), reason in sorted((_span(row, clock), verdict_reason(row)) for row in rows):
             if spans and start <= spans[-1][1]:
                 spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})

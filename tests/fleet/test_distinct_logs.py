@@ -8,14 +8,16 @@ from typing import Any
 import duckdb
 import pytest
 
+from drivelint import fleet
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
-from drivelint.fleet.counted import COUNTED, create_counted_views
 from drivelint.fleet.coverage import coverage
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
+from drivelint.fleet.missing_signals import missing_signals
 from drivelint.fleet.rates import rates
+from drivelint.fleet_report.audit_views import BASE, Audit
 from drivelint.fleet_report.difference import difference
 from drivelint.fleet_report.difference_text import to_text
-from drivelint.fleet_report.opened import BASE, Audit
 from drivelint.sql.statements import statement
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
@@ -79,22 +81,22 @@ def test_what_two_results_share_counts_once_and_what_one_of_them_has_counts() ->
     drives = [result("a", ("1", 3.0)), result("b", ("1", 3.0), ("2", 4.0))]
     findings = [found("a"), found("b"), found("b", ego_id="2", finding_id="other ego"), found("b", object_id="9")]
     con = judged(drives, [said("a", "fail"), said("b", "fail"), said("b", "unknown")], findings)
-    rows = con.sql(f"SELECT key, result_key, ego_id, object_id FROM {COUNTED}findings ORDER BY ALL").fetchall()
+    rows = con.sql(f"SELECT key, result_key, ego_id, object_id FROM {COUNTED_PREFIX}findings ORDER BY ALL").fetchall()
     assert [row[0] for row in rows] == ["a"] * 3
     assert [row[1] for row in rows] == ["a", "b", "b"]
-    assert con.sql(f"SELECT verdict FROM {COUNTED}verdicts ORDER BY ALL").fetchall() == [("fail",), ("unknown",)]
+    assert con.sql(f"SELECT verdict FROM {COUNTED_PREFIX}verdicts ORDER BY ALL").fetchall() == [("fail",), ("unknown",)]
 
 
 def test_the_first_result_does_not_depend_on_keys() -> None:
     """Keys are hashes of versions too: two audits of the same logs must take the same results."""
     con = judged([result("a", ("1", 3.0), file_name="z.mcap"), result("b", ("1", 3.0), file_name="y.mcap")])
-    assert con.sql(f"SELECT key FROM {COUNTED}drives").fetchall() == [("b",)]
+    assert con.sql(f"SELECT key FROM {COUNTED_PREFIX}drives").fetchall() == [("b",)]
 
 
 def test_a_tag_with_several_values_is_not_known_of_a_log() -> None:
     tags = ({"release": "a", "site": "x"}, {"release": "b", "site": "x"}, {"vehicle": "v"})
     con = judged([result(name, ("1", 3.0), tags=each) for name, each in zip("abc", tags, strict=True)])
-    ((told,),) = con.sql(f"SELECT tags FROM {COUNTED}drives").fetchall()
+    ((told,),) = con.sql(f"SELECT tags FROM {COUNTED_PREFIX}drives").fetchall()
     assert told == {"site": "x", "vehicle": "v"}
     assert {each.tag_value: each.km for each in rates(con, "release")} == {"a": 3.0, "b": 3.0, None: 3.0}
 
@@ -161,3 +163,12 @@ def test_the_software_of_a_log_with_two_releases_is_not_known_for_diff() -> None
     (of_both,) = compared(ONCE, copies).comparison.differences
     assert "software" not in of_one.causes_not_known
     assert "software" in of_both.causes_not_known
+
+
+def test_earlier_module_names_are_deprecated() -> None:
+    with pytest.warns(DeprecationWarning, match=r"fleet\.counted is deprecated: use drivelint\.fleet\.distinct_logs"):
+        assert fleet.counted.create_counted_views is create_counted_views
+    with pytest.warns(DeprecationWarning, match="missing is deprecated"):
+        assert fleet.missing.missing is missing_signals
+    with pytest.raises(AttributeError, match="no attribute 'lost'"):
+        fleet.lost  # noqa: B018 - it is looked up

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from drivelint.fleet.counted import subject
+from drivelint.fleet.distinct_logs import subject
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import duckdb
 
 
@@ -53,15 +56,23 @@ class Missing:
     """The undecided verdicts: those that lack a signal, and those with another reason. The most frequent come first."""
 
     signals: tuple[MissingSignal, ...]
-    others: tuple[Undecided, ...]
+    other_reasons: tuple[Undecided, ...]
 
 
-def missing(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
+def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
     """Return what the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
     egos = subject(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
-    others = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
+    other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
     return Missing(
         tuple(MissingSignal(*row) for row in signals),
-        tuple(Undecided(*row) for row in others),
+        tuple(Undecided(*row) for row in other_reasons),
     )
+
+
+def __getattr__(name: str) -> Callable[..., Missing]:
+    """Return `missing_signals` under its earlier name `missing`, with a note that the name is deprecated."""
+    if name != "missing":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    warnings.warn(f"{__name__}.missing is deprecated: use {__name__}.missing_signals", DeprecationWarning, stacklevel=2)
+    return missing_signals

@@ -34,7 +34,7 @@ class Audit:
 
     dest: str
     results: ResultStore
-    told: dict[str, Any]
+    audit_json: dict[str, Any]
     standing: Standing
 
     @property
@@ -50,13 +50,13 @@ class Audit:
     @property
     def settings(self) -> dict[str, Any]:
         """What decided the verdicts: the fields of `JudgeSettings` but `memory`."""
-        found: dict[str, Any] = self.told["settings"]
+        found: dict[str, Any] = self.audit_json["settings"]
         return found
 
     @property
     def version(self) -> str | None:
         """The version of drivelint that made it."""
-        found: str | None = self.told.get("versions", {}).get("drivelint")
+        found: str | None = self.audit_json.get("versions", {}).get("drivelint")
         return found
 
     @property
@@ -76,27 +76,27 @@ def is_audit(dest: str) -> bool:
 
 
 @contextmanager
-def opened(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit | None]]:
+def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit | None]]:
     """Open an audit, and an earlier one under the names that begin with `BASE`.
 
     Errors: `UsageError` where there is none, or one whose files were changed since.
     """
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        found = _open(con, dest, Path(home) / "new", "")
-        yield con, found, None if base is None else _open(con, base, Path(home) / "base", BASE)
+        audit = _open(con, dest, Path(home) / "new", "")
+        yield con, audit, None if base is None else _open(con, base, Path(home) / "base", BASE)
 
 
 @contextmanager
 def opened_packed(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
-    """Open the audit of an evidence pack, which lists its files and compares rows and receipts by itself. Errors: as `opened`."""
+    """Open the audit of an evidence pack, which lists its files and compares rows and receipts by itself. Errors: as `open_audits`."""
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         yield con, _open(con, str(folder), Path(home) / "new", "", is_packed=True)
 
 
 @contextmanager
 def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
-    """Open two audits, the earlier one under the names that begin with `BASE`. Errors: as `opened`."""
-    with opened(new, base) as (con, later, earlier):
+    """Open two audits, the earlier one under the names that begin with `BASE`. Errors: as `open_audits`."""
+    with open_audits(new, base) as (con, later, earlier):
         if earlier is None:
             raise UsageError(f"{base}: no audit is here")
         yield con, earlier, later

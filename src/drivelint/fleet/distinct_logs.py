@@ -20,7 +20,7 @@ from drivelint.sql.statements import statement
 if TYPE_CHECKING:
     import duckdb
 
-COUNTED: Final = "counted_"
+COUNTED_PREFIX: Final = "counted_"
 """What the names of these views begin with."""
 _SAME: Final = {
     "verdicts": "t.ego_id, t.rule_id, t.profile, t.object_id, t.occurrence, t.ref_id, t.t_start_ns, t.verdict",
@@ -35,7 +35,7 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     `of`: what the names of the audit's views begin with. `drives` has the first result of each log, with the egos of all its results; a tag
     with several values is left out. In `verdicts` and `findings`, `key` is that of the row in `drives`, `result_key` that of the result.
     """
-    counted = f"{COUNTED}{of}"
+    counted = f"{COUNTED_PREFIX}{of}"
     first = statement("fleet/first_result")
     con.execute(statement("fleet/counted_key", of=of, counted=counted, first=first))
     con.execute(statement("fleet/counted_drives", of=of, counted=counted))
