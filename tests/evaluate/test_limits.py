@@ -151,11 +151,11 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
 
     class Deaf:
         @staticmethod
-        def known(_task: str) -> dict[str, limits.Excess]:
+        def excesses(_task: str) -> dict[str, limits.Excess]:
             return {}
 
         @staticmethod
-        def found(_task: str, _rule_id: str, excess: limits.Excess) -> None:
+        def restart_without(_task: str, _rule_id: str, excess: limits.Excess) -> None:
             found.append((excess, next(bytes_now)))
             ended.set()
 
@@ -163,7 +163,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
     monkeypatch.setattr(limits, "_LOOK_S", 0.001)
     monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
-    held_to = limits.RuleLimits(60.0, deaf=cast("limits.DeafRules", Deaf))
+    held_to = limits.RuleLimits(60.0, deaf_rules=cast("limits.DeafRules", Deaf))
     held_to.memory = lambda: 1_000
     with duckdb.connect() as con, held_to.hold(con, "mine.grows", alone=True) as held:
         assert ended.wait(30.0)
@@ -225,8 +225,8 @@ def told(how):
     os._exit(0)
 
 class Deaf:
-    known = staticmethod(lambda task: {})
-    found = staticmethod(lambda task, rule, excess: told("deaf " + excess))
+    excesses = staticmethod(lambda task: {})
+    restart_without = staticmethod(lambda task, rule, excess: told("deaf " + excess))
 
 rule = limits.RuleLimits.hold
 def hold(self, con, rule_id, *, alone):

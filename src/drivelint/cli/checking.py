@@ -257,7 +257,7 @@ def _judge(
     if jobs > 1:
         from drivelint import parallel
 
-        return parallel.check(settings, jobs, progress, interruption=interruption, deaf=deaf, keep=keep)
+        return parallel.check(settings, jobs, progress, interruption=interruption, deaf_rules=deaf, keep=keep)
     from drivelint import run
 
     return run.check(settings, progress, interruption, deaf, keep)

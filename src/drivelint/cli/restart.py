@@ -44,17 +44,17 @@ class Restart:
         """Return one where a process can be replaced; Windows starts another one beside it."""
         return cls(progress, work) if os.name == "posix" else None
 
-    def known(self, task: str) -> dict[str, Excess]:
+    def excesses(self, task: str) -> dict[str, Excess]:
         """Return the rules that did not end in an earlier process, and the limit that they went beyond."""
         return self._known.get(task, {})
 
-    def found(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
+    def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """Replace this process by one that does not try this rule."""
         self._progress.note(f"rule {rule_id} {_SAID[excess]} and cannot be stopped: starting again without it")
         temporary.remove_all()
         if self._work is not None:
             shutil.rmtree(self._work, ignore_errors=True)
-        known = {**self._known, task: {**self.known(task), rule_id: excess}}
+        known = {**self._known, task: {**self.excesses(task), rule_id: excess}}
         self._progress.leave()
         sys.stderr.flush()
         os.execve(  # noqa: S606 - this very command

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
-_MAX_LISTED_EGOS: Final = 6
+_MAX_LISTED_NAMES: Final = 6
 """Egos that a line names before it says how many more there are."""
 _DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
@@ -262,12 +262,14 @@ def _decidable_rules(drive: model.Drive, log: str) -> Group:
 
 def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
-    selection = listed(drive.selection, _MAX_LISTED_EGOS)
+    selection = listed(drive.selection, _MAX_LISTED_NAMES)
     who = ""
     if not drive.egos:
         who = f" with --ego {ego.actor.actor_id}"
     elif len(drive.egos) > 1:
-        who = f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _MAX_LISTED_EGOS)}"
+        who = (
+            f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
+        )
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
     parts: list[RenderableType] = [Text(f"{log} can decide {_how_many(ego, drive, selection)}{who}.", style=style)]
     if ego.can:

@@ -138,7 +138,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
     result, evidence = stated.result, stated.evidence
     notes = _notes(evidence, result)
     try:
-        check_request = _check_request(request.folder, evidence)
+        check_request = _request_with_pack_paths(request.folder, evidence)
         if evidence["inputs"] is None and not request.traces:
             wrong, told = consistency.of_findings(request.folder, result, check_request)
             notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
@@ -177,7 +177,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
     return notes
 
 
-def _check_request(folder: Path, evidence: dict[str, Any]) -> RunRequest:
+def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunRequest:
     """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
 
     inputs = evidence["inputs"]

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 from drivelint import catalogue
-from drivelint.engine.barrier import refused
+from drivelint.engine.barrier import refusal_of
 from drivelint.errors import DriveLintError, TraceError, UsageError
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
@@ -270,13 +270,13 @@ class Watch:
                 trace = read()
                 outcome = self._judge.judge([trace], start_ns)[0]
             except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
-                outcome = refused(Path(self._options.source), error).error
+                outcome = refusal_of(Path(self._options.source), error).error
             return _Pass(trace, outcome, time.perf_counter() - begun_s)
 
         try:
             read = self._source.window(frames, self._folder, self._ingest)
         except Exception as error:  # noqa: BLE001 - as above
-            judged = refused(Path(self._options.source), error).error
+            judged = refusal_of(Path(self._options.source), error).error
             return lambda: _Pass(None, judged, 0.0)
         return judge
 

@@ -158,7 +158,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     """
     inputs = pack.evidence["inputs"]
     try:
-        drive = drive._replace(check_request=_check_request(pack, drive))
+        drive = drive._replace(check_request=_request_with_pack_paths(pack, drive))
     except UNREADABLE as error:
         return [Problem("evidence.json not readable", str(error))]
     if log is None and inputs is None:
@@ -193,7 +193,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     return [*wrong, *differing, *(Problem("result not reproduced", f"{path}: no finding gives it") for path in extra)]
 
 
-def _check_request(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
+def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
     """Return the check of a drive with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
     check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
