@@ -84,8 +84,8 @@ def _enough(
     """Return, of each table, the fewest of the tried rows with which the numbers stay the same; None: all rows give others."""
     choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
 
-    def enough(table_rows: Mapping[str, pa.Table]) -> bool:
-        for table, rows in table_rows.items():
+    def enough(rows_by_table: Mapping[str, pa.Table]) -> bool:
+        for table, rows in rows_by_table.items():
             con.register(table, rows)
         return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
 

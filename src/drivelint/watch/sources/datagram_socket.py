@@ -49,9 +49,9 @@ def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]
         yield Datagram(data, sender, at_ns, dropped, local=_LINUX and _is_local(sender))
 
 
-def _time_and_drops(ancillary: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
+def _time_and_drops(ancillary_data: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
     at_ns, dropped = time.monotonic_ns(), 0
-    for level, kind, content in ancillary:
+    for level, kind, content in ancillary_data:
         if level == socket.SOL_SOCKET and kind == _TIME and len(content) >= _TIMESPEC.size:
             seconds, nanos = _TIMESPEC.unpack_from(content)
             at_ns = seconds * 1_000_000_000 + nanos
