@@ -27,7 +27,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import store
-from drivelint.sql.derivations import ALWAYS_NEEDED, derivations, needed
+from drivelint.sql.derivations import ALWAYS_NEEDED, derivations, needed_derivations
 from tests.formats.opendrive import xodr
 from tests.together import Question, SceneTables, answers
 
@@ -345,7 +345,7 @@ def derived(
     wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
     with patch("drivelint.sql.derivations.ALWAYS_NEEDED", ()):
-        of_the_map = {d.table for d in needed(wanted) if d.of_the_map}
+        of_the_map = {d.table for d in needed_derivations(wanted) if d.of_the_map}
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map
             bench._maps = frozenset()  # all of the map once more, with these
@@ -388,7 +388,7 @@ def judged(
     store.insert(con, "profile", profile_table(load_profiles(), profiles))
     bench = JudgingSession(con, catalogue.select_rules(_rules(), tuple(rules), ()), {}, None)
     if place:
-        of_the_map = {d.table for d in needed(bench._tables) if d.of_the_map}
+        of_the_map = {d.table for d in needed_derivations(bench._tables) if d.of_the_map}
         if of_the_map <= place.bench._tables:  # they stand there already
             bench._maps = place.bench._maps
         place.bench._tables |= of_the_map

@@ -64,7 +64,7 @@ def test_the_code_and_the_declarations_count() -> None:
     whole = memo.foundation(memo.SQL_CODE)
     assert whole != memo.foundation(memo.SQL_CODE[1:])
     files = {file.name for pattern in memo.SQL_CODE for file in Path(memo.__file__).parent.glob(pattern)}
-    assert {"syntax.py", "check.py", "allowed.py", "derivations.py", "memo.py"} <= files
+    assert {"syntax.py", "check.py", "allowed_sql.py", "derivations.py", "memo.py"} <= files
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\xff", b"\x81\xa1a\xa1b"])

@@ -1,8 +1,8 @@
 -- What all drives that have a receipt come to, each for itself. Which count once is told of a whole audit: see `fleet/totals.sql`.
 SELECT
     count(*) AS n_drives,
-    count(*) FILTER (status = 'judged') AS judged,
-    count(*) FILTER (status = 'refused') AS refused,
+    count(*) FILTER (status = 'judged') AS n_judged,
+    count(*) FILTER (status = 'refused') AS n_refused,
     count(*) FILTER (status = 'quarantined') AS quarantined,
     count(DISTINCT content) FILTER (lossy) AS lossy,
     count(DISTINCT content) FILTER (off_map) AS off_map,

@@ -53,20 +53,20 @@ class WorkerLostError(DriveLintError):
 class _Part(NamedTuple):
     """The logs that one process judges. `n_logs`: of the whole run; `is_output`: for the record of its inputs; None: none is kept.
 
-    `deaf`: task -> rule -> limit, of rules that did not end in an earlier process.
+    `deaf_excesses`: task -> rule -> limit, of rules that did not end in an earlier process.
     """
 
     settings: CheckOptions
     paths: Sequence[Path]
     n_logs: int
     is_output: IsOutput | None
-    deaf: dict[str, dict[str, Excess]]
+    deaf_excesses: dict[str, dict[str, Excess]]
 
 
 class _Ended(NamedTuple):
     """What a part came to, and what was read for it."""
 
-    judged: JudgedLogs
+    judged_logs: JudgedLogs
     inputs: Inputs | None
 
 
@@ -138,10 +138,10 @@ def _judged_by_workers(
     if recording is not None:
         for each in ended:
             recording.add(each.inputs)
-    return _without_copies([each.judged for each in ended])
+    return _without_copies([each.judged_logs for each in ended])
 
 
-def _cut(paths: Sequence[Path], most: int) -> list[list[Path]]:
+def _cut(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
     """Cut logs into at most so many parts of about as many bytes; a log that cannot be looked at counts as an empty one."""
     sizes = []
     for path in paths:
@@ -153,7 +153,7 @@ def _cut(paths: Sequence[Path], most: int) -> list[list[Path]]:
     parts: dict[int, list[Path]] = defaultdict(list)
     for path, size in zip(paths, sizes, strict=True):
         middle = done + (size + 1) / 2
-        parts[min(most - 1, int(most * middle / whole))].append(path)
+        parts[min(max_parts - 1, int(max_parts * middle / whole))].append(path)
         done += size + 1
     return [parts[no] for no in sorted(parts)]
 
@@ -192,12 +192,12 @@ class _Listener:
         self.progress = progress
         self._notes = run.LogNotes(progress, n_logs)
 
-    def hear(self, told: _Told) -> None:
+    def hear(self, call: _Told) -> None:
         """Show one call of a worker."""
-        if told.method == "add":
-            self._notes.add(*told.arguments)
+        if call.method == "add":
+            self._notes.add(*call.arguments)
         else:
-            getattr(self.progress, told.method)(*told.arguments)
+            getattr(self.progress, call.method)(*call.arguments)
 
 
 class _Worker:
@@ -226,33 +226,37 @@ class _Worker:
     def hear(self) -> None:
         """Take one message. Errors: the one that ended the part; `WorkerLostError`."""
         try:
-            told = self.pipe.recv()
+            message = self.pipe.recv()
         except (EOFError, OSError):
             self._process.join()
             raise WorkerLostError(
                 f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, "
                 "as for lack of memory): check again with fewer --jobs"
             ) from None
-        if isinstance(told, _Ended):
-            self.ended = told
-        elif isinstance(told, BaseException):
-            raise told
-        elif isinstance(told, _Deaf):
-            self._begin_again(told)
+        if isinstance(message, _Ended):
+            self.ended = message
+        elif isinstance(message, BaseException):
+            raise message
+        elif isinstance(message, _Deaf):
+            self._begin_again(message)
         else:
-            self._n_done += told.arguments[0] if told.method == "advance" else 0
-            self._listener.hear(told)
+            self._n_done += message.arguments[0] if message.method == "advance" else 0
+            self._listener.hear(message)
 
-    def _begin_again(self, deaf: _Deaf) -> None:
+    def _begin_again(self, endless_rule: _Deaf) -> None:
         """Start the process again without a rule that does not end."""
         self.stop()
         self._listener.progress.note(
-            f"rule {deaf.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
+            f"rule {endless_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0
-        known = {**self._part.deaf, deaf.task: {**self._part.deaf.get(deaf.task, {}), deaf.rule_id: deaf.excess}}
-        self._part = self._part._replace(deaf=known)
+        task, deaf_excesses = endless_rule.task, self._part.deaf_excesses
+        deaf_excesses = {
+            **deaf_excesses,
+            task: {**deaf_excesses.get(task, {}), endless_rule.rule_id: endless_rule.excess},
+        }
+        self._part = self._part._replace(deaf_excesses=deaf_excesses)
         self.start()
 
     def stop(self) -> None:
@@ -271,10 +275,10 @@ class _Teller(Progress):
         self._lock = Lock()
         self._counts = True
 
-    def send(self, told: object) -> None:
+    def send(self, message: object) -> None:
         """Send a message to the process that listens."""
         with self._lock:
-            self._pipe.send(told)
+            self._pipe.send(message)
 
     def stage(self, name: str, total: int | None = None) -> None:  # noqa: ARG002 - the run has its own
         """See `Progress`."""
@@ -311,13 +315,13 @@ class _SentNotes(run.LogNotes):
 class _DeafInWorker:
     """Ends a worker because of a rule that does not end, and says so: see `DeafRules`."""
 
-    def __init__(self, known: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
-        self._known = known
+    def __init__(self, deaf_excesses: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
+        self._deaf_excesses = deaf_excesses
         self._teller = teller
 
     def excesses(self, task: str) -> Mapping[str, Excess]:
         """See `DeafRules`."""
-        return self._known.get(task, {})
+        return self._deaf_excesses.get(task, {})
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
@@ -333,15 +337,15 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
-        teller.send(_judged(part, teller, interruption))
+        teller.send(_judge_part(part, teller, interruption))
     except DriveLintError as error:
         teller.send(error)
     except Exception as error:  # noqa: BLE001 - whatever it is, the run ends with it
         teller.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
 
 
-def _judged(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.deaf, teller)
+def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
+    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.deaf_excesses, teller)
     with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
@@ -354,7 +358,7 @@ def _judged(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
             interruption=interruption,
             deaf_rules=deaf,
         )
-    return _Ended(judged, None if recording is None or part.deaf else recording.inputs())
+    return _Ended(judged, None if recording is None or part.deaf_excesses else recording.inputs())
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:

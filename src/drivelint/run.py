@@ -192,7 +192,7 @@ def judge_logs(
                     release=memory.release,
                 )
             )
-        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf=deaf_rules)
+        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf_rules=deaf_rules)
         session = JudgingSession(
             con,
             rules,
@@ -206,7 +206,7 @@ def judge_logs(
             errors=None if settings.robustness is False else MeasurementErrors(),
             copies_of_all=settings.robustness is True,
             limits=limits,
-            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf=deaf_rules),
+            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf_rules=deaf_rules),
         )
         ids: dict[Path, str] = {}
         read = _announced(_read(paths, settings), len(paths), progress)
@@ -219,7 +219,9 @@ def judge_logs(
             _judge_copies(session, progress)
         finally:
             session.close()
-        done = {path for path, name in ids.items() if name in session.judged} | {each.path for each in refused_logs}
+        done = {path for path, name in ids.items() if name in session.judged_drive_ids} | {
+            each.path for each in refused_logs
+        }
         missed = sorted(set(paths) - done) if interruption.requested else []
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused_logs]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
@@ -238,7 +240,7 @@ def judge_logs(
             interrupted=bool(missed),
             run_options=RunRequest.from_options(
                 settings,
-                {name: str(path) for path, name in reversed(ids.items()) if name in session.judged},
+                {name: str(path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids},
                 {
                     name: settings.manifest_options[path]
                     for path, name in reversed(ids.items())

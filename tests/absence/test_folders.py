@@ -91,7 +91,7 @@ def test_an_audit_names_it(logs: Path, elsewhere: Path, attack: str, tmp_path: P
     told = ATTACKS[attack](logs, elsewhere)
     request = AuditRequest(sources=(str(logs),), out=str(tmp_path / "audit"), settings=JudgeSettings(rules=(RULE,)))
     counted = audit(request, Silent(), InThisProcess())
-    assert (counted.judged, counted.refused, counted.exit_code("critical", strict=False)) == (1, 1, 4)
+    assert (counted.n_judged, counted.n_refused, counted.exit_code("critical", strict=False)) == (1, 1, 4)
     assert told in counted.not_judged[0]["reason"]
 
 

@@ -35,7 +35,7 @@ class InThisProcess:
         task = self.tasks.pop(0)
         if any(self.poison in drive.log for drive in task.drives):
             self.lost.append(len(task.drives))
-            return [Outcome(task, lost="the worker died")]
+            return [Outcome(task, loss_reason="the worker died")]
         return [Outcome(task, run_task(task))]
 
     def close(self) -> None:

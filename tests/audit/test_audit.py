@@ -56,7 +56,7 @@ def test_the_planted_contacts_and_only_they_are_found(
     out, counted = undisturbed
     found = asked(out, "SELECT DISTINCT d.file_name AS name FROM findings f JOIN drives d USING (key)")
     assert {row["name"] for row in found} == drives.planted
-    assert (counted.n_drives, counted.judged, counted.reused) == (N_DRIVES, N_DRIVES, 0)
+    assert (counted.n_drives, counted.n_judged, counted.reused) == (N_DRIVES, N_DRIVES, 0)
     assert counted.failed == {"critical": len(drives.planted)}
     assert counted.exit_code("critical", strict=False) == ExitCode.FAILED
 
@@ -203,7 +203,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
 ) -> None:
     executor = InThisProcess(poison="drive-00003")
     counted = judged(drives, tmp_path / "out", executor)
-    assert (counted.judged, counted.quarantined) == (N_DRIVES - 1, 1)
+    assert (counted.n_judged, counted.quarantined) == (N_DRIVES - 1, 1)
     assert len(executor.lost) == MOST_ATTEMPTS
     assert executor.lost[1:] == [1] * (MOST_ATTEMPTS - 1)
     (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
@@ -234,13 +234,13 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     whole = log.read_bytes()
     log.write_bytes(whole[: len(whole) // 2])
     first = judged(few, tmp_path / "out")
-    assert (first.judged, first.refused) == (3, 1)
+    assert (first.n_judged, first.n_refused) == (3, 1)
     assert judged(few, tmp_path / "out").reused == 4
     again = judged(few, tmp_path / "out", retry_errors=True)
-    assert (again.refused, again.reused) == (1, 3)
+    assert (again.n_refused, again.reused) == (1, 3)
     log.write_bytes(whole)
     mended = judged(few, tmp_path / "out", retry_errors=True)
-    assert (mended.judged, mended.refused, mended.n_drives) == (4, 0, 4)
+    assert (mended.n_judged, mended.n_refused, mended.n_drives) == (4, 0, 4)
 
 
 @pytest.mark.slow
@@ -336,7 +336,7 @@ def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> No
     beside = pc.if_else(states["is_ego"], pc.add(states["y_m"], 60.0), states["y_m"])
     pq.write_table(states.set_column(states.schema.get_field_index("y_m"), "y_m", beside), log)
     told = judged(few, tmp_path / "out")
-    assert (told.judged, told.off_map) == (4, 1)
+    assert (told.n_judged, told.off_map) == (4, 1)
     assert told.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
     assert "4 judged, 1 off their map" in summary_text(told, "out", ExitCode.NOT_JUDGED)
 
@@ -346,10 +346,10 @@ def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_
     few = fleet.write(tmp_path / "fleet", 12)
     (tmp_path / "fleet" / "logs" / "drive-00001.parquet").write_bytes(b"PAR1")
     first = judged(few, tmp_path / "out", shard=(1, 1))
-    assert (first.refused, first.failed) == (1, {"critical": len(few.planted - {"drive-00001.parquet"})})
+    assert (first.n_refused, first.failed) == (1, {"critical": len(few.planted - {"drive-00001.parquet"})})
     merge(str(tmp_path / "out"), Silent())
     again = judged(few, tmp_path / "out", shard=(1, 1))
-    assert (again.judged, again.refused, again.failed) == (first.judged, first.refused, first.failed)
+    assert (again.n_judged, again.n_refused, again.failed) == (first.n_judged, first.n_refused, first.failed)
     assert again.exit_code("critical", strict=False) == first.exit_code("critical", strict=False) == ExitCode.FAILED
 
 

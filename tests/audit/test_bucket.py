@@ -59,7 +59,7 @@ def test_logs_map_manifest_and_results_in_a_bucket_give_the_tables_of_a_folder(
     drives: fleet.Fleet, digest: str | None, server: str
 ) -> None:
     counted = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
-    assert (counted.judged, counted.digest) == (N_DRIVES, digest)
+    assert (counted.n_judged, counted.digest) == (N_DRIVES, digest)
     again = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     assert (again.reused, again.digest) == (N_DRIVES, digest)
 
@@ -98,7 +98,7 @@ def test_a_store_that_fails_now_and_then_gives_the_same_tables(
         got = judged(drives, "s3://fleet/faulty", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     _use(monkeypatch, server)
     assert all(counted.values()), counted
-    assert (got.judged, got.digest) == (N_DRIVES, digest)
+    assert (got.n_judged, got.digest) == (N_DRIVES, digest)
 
 
 @pytest.mark.slow
@@ -121,7 +121,7 @@ def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_remove
 @pytest.mark.slow
 def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:
     counted = judged(drives, "s3://fleet/prefix", sources="s3://fleet/data/logs/", road="s3://fleet/data/ring.xodr")
-    assert counted.judged == N_DRIVES
+    assert counted.n_judged == N_DRIVES
 
 
 def test_a_log_that_changes_between_listing_and_reading_is_refused(server: str, tmp_path: Path) -> None:

@@ -40,16 +40,16 @@ def test_each_drive_is_given_to_one_of_two(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     first, second = Claims(results, 0.5), Claims(results, 0.5)
     with first.alive(), second.alive():
-        one = first.mine(_drives(6))
+        one = first.claimed_drives(_drives(6))
         got = [next(one), next(one)]
-        rest = list(second.mine(_drives(6)))
+        rest = list(second.claimed_drives(_drives(6)))
         assert second.n_waiting == 2
         assert list(one) == []
         assert first.n_waiting == 4
-        first.done(got)
-        second.done(rest)
+        first.mark_done(got)
+        second.mark_done(rest)
         for each in (first, second):
-            assert list(each.mine(_drives(6))) == []
+            assert list(each.claimed_drives(_drives(6))) == []
             assert each.n_waiting == 0
     assert sorted(drive.log for drive in got + rest) == [f"log{i}" for i in range(6)]
 
@@ -58,10 +58,10 @@ def test_what_a_dead_one_has_claimed_is_taken_over(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     dead = Claims(results, 0.3)
     with dead.alive():
-        next(iter(dead.mine(_drives(3))))
+        next(iter(dead.claimed_drives(_drives(3))))
     living = Claims(results, 0.3)
     with living.alive():
-        assert [drive.log for drive in living.mine(_drives(3))] == ["log0", "log1", "log2"]
+        assert [drive.log for drive in living.claimed_drives(_drives(3))] == ["log0", "log1", "log2"]
 
 
 def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> None:
@@ -73,10 +73,10 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
         claims = Claims(results, 2.0)
         with claims.alive():
             while True:
-                given = tasks(claims.mine(_drives(n)), "", "run", JudgeSettings(), ahead=TASK_DRIVES)
+                given = tasks(claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), ahead=TASK_DRIVES)
                 for task in given:
                     done[no] += [drive.log for drive in task.drives]
-                    claims.done(task.drives)
+                    claims.mark_done(task.drives)
                 if not claims.n_waiting:
                     return
                 if not claims.n_taken:

@@ -115,7 +115,7 @@ def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) ->
     for worker in cluster.workers:
         worker.send_signal(signal.SIGKILL)
     (outcome,) = executor.wait()
-    assert "the worker died" in outcome.lost
+    assert "the worker died" in outcome.loss_reason
     # a scheduler that has not missed the second one hands it the next task
     _until(lambda: not executor._client.nthreads(), "the scheduler counts no worker")
     executor.submit(60.0)

@@ -175,7 +175,7 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
         {"log": "a.csv", "status": "refused", "reason": "map nowhere.xodr does not exist", "n": 1},
         {"log": "b.csv", "status": "refused", "reason": "b.csv: the file is empty", "n": 1},
     ]
-    counted = AuditSummary(n_drives=5, refused=5, digest="0", not_judged=rows)
+    counted = AuditSummary(n_drives=5, n_refused=5, digest="0", not_judged=rows)
     lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
     assert "  refused (a.csv): map nowhere.xodr does not exist" in lines
     assert "  refused: b.csv: the file is empty" in lines

@@ -44,7 +44,7 @@ def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_w
         ),
         Silent(),
     )
-    assert (counted.judged, counted.quarantined) == (5, 1)
+    assert (counted.n_judged, counted.quarantined) == (5, 1)
     assert "MB of memory, and may take 600 MB" in counted.not_judged[0]["reason"]
     alone = judged(drives, tmp_path / "out", prune=True)
     assert (alone.reused, alone.digest) == (5, undisturbed.digest)
@@ -140,7 +140,7 @@ def test_only_what_a_worker_computes_itself_counts_and_its_start_does_not(monkey
     clocks.computed += 2.0
     lost = worker.look()
     assert lost is not None
-    assert lost.lost == "the worker took too long: it computed for more than 10 s"
+    assert lost.loss_reason == "the worker took too long: it computed for more than 10 s"
 
 
 def test_a_worker_that_does_nothing_at_all_is_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,7 +153,7 @@ def test_a_worker_that_does_nothing_at_all_is_not_waited_for(monkeypatch: pytest
     clocks.wall = 11.0
     lost = worker.look()
     assert lost is not None
-    assert "it did nothing for 10 s" in str(lost.lost)
+    assert "it did nothing for 10 s" in str(lost.loss_reason)
 
 
 STAYS = """
@@ -186,5 +186,5 @@ def test_a_worker_that_dies_between_two_tasks_is_replaced(tmp_path: Path) -> Non
     ("beyond_limits", "code"), [(2, ExitCode.NOT_JUDGED), (1, ExitCode.USAGE), (0, ExitCode.USAGE)]
 )
 def test_rules_that_only_took_too_much_are_no_mistake_of_the_user(beyond_limits: int, code: ExitCode) -> None:
-    counted = AuditSummary(n_drives=1, judged=1, errors=2, beyond_limits=beyond_limits)
+    counted = AuditSummary(n_drives=1, n_judged=1, errors=2, beyond_limits=beyond_limits)
     assert counted.exit_code("never", strict=False) == code

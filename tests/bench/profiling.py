@@ -14,7 +14,7 @@ from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import read_trace
 from drivelint.sql import store
-from drivelint.sql.derivations import needed
+from drivelint.sql.derivations import needed_derivations
 from tests.bench.table import Row
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def profile(place: Place) -> list[Row]:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
         bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None)
         bench._load([Drive(trace, road)])
-        for step in needed(tables):
+        for step in needed_derivations(tables):
             if not step.of_the_map:
                 begin = time.perf_counter()
                 plan = con.execute(

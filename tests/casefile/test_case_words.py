@@ -78,7 +78,7 @@ def test_tables_and_columns_are_named_with_the_nearest(tmp_path: Path) -> None:
         ({"ego_state": {"t_s": 0, "zzz": "off"}}, r"no column 'zzz'; it has: drive_id, "),
     ):
         with pytest.raises(RuleError, match=message):
-            judge(rule, Case(name="scene", given=given, expect="pass"))
+            judge(rule, Case(name="scene", given_tables=given, expect="pass"))
 
 
 COLUMNS = [(table, name, column) for table, columns in store.word_columns().items() for name, column in columns.items()]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.casefile import Case, case_location, difference, numbered_cases, read_cases
 from drivelint.casefile.merged_cases import (
-    _FOUND,
+    _FINDING_ORDER,
     _ORDER,
     CaseOutcome,
     NumberedCase,
@@ -79,7 +79,9 @@ def _outcomes(groups: Sequence[_Group]) -> list[CaseOutcome]:
         for table, rows in scene.items():
             fill(con, table, rows)
         evaluate(con, [group.rule for group in groups], {group.rule.id: group.members[0].params for group in groups})
-        return [CaseOutcome(_rows("verdict", _ORDER, group), _rows("finding", _FOUND, group)) for group in groups]
+        return [
+            CaseOutcome(_rows("verdict", _ORDER, group), _rows("finding", _FINDING_ORDER, group)) for group in groups
+        ]
     finally:
         con.execute(";".join(f"DELETE FROM {table}" for table in (*scene, "verdict", "finding", "margin")))
 

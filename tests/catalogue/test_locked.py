@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.casefile import Case, judge
-from drivelint.catalogue import Rule, allowed
+from drivelint.catalogue import Rule, allowed_sql
 from drivelint.catalogue.check import check_query
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import RuleError
@@ -156,7 +156,7 @@ UNION ALL BY NAME SELECT drive_id, ego_id, t_ns, 1 AS observed, 2 AS required FR
 def test_no_macro_of_ours_has_the_name_of_a_function_of_the_database() -> None:
     with duckdb.connect() as con:
         names = {name for (name,) in con.execute("SELECT DISTINCT function_name FROM duckdb_functions()").fetchall()}
-    assert not allowed.macros() & names
+    assert not allowed_sql.macros() & names
 
 
 def test_every_allowed_function_gives_the_same_answer_every_time() -> None:
@@ -164,7 +164,7 @@ def test_every_allowed_function_gives_the_same_answer_every_time() -> None:
         rows = con.execute("SELECT function_name, stability, has_side_effects FROM duckdb_functions()").fetchall()
     unstable = {name for name, stability, effects in rows if stability == "VOLATILE" or effects}
     assert {"random", "nextval"} <= unstable
-    assert not allowed.functions() & unstable
+    assert not allowed_sql.functions() & unstable
 
 
 def beyond_the_checker(tmp_path: Path, sql: str) -> Rule:
@@ -191,7 +191,7 @@ def test_the_database_refuses_what_the_checker_would_have_let_pass(tmp_path: Pat
     with store.connect(threads=1) as con:
         assert con.execute(f"SELECT count(*) FROM ST_Read('{file}')").fetchall() == [(1,)]  # it could be read
     rule = beyond_the_checker(tmp_path, of(source.format(file=file), "1"))
-    case = Case(name="open", given={"ego_state": {"t_s": "0..1 by 0.1", "speed_mps": 2}}, expect="pass")
+    case = Case(name="open", given_tables={"ego_state": {"t_s": "0..1 by 0.1", "speed_mps": 2}}, expect="pass")
     verdicts, _ = judge(rule, case)
     assert [row["verdict"] for row in verdicts] == ["error"]
     assert message in verdicts[0]["reason"]

@@ -41,7 +41,7 @@ def _compared(rule: Rule, case: Case) -> int:
     found = read_parts(rule)
     assert found is not None
     con = case_database()
-    scene = complete_scene(rule, case.given, case.missing)
+    scene = complete_scene(rule, case.given_tables, case.missing_signals)
     try:
         for table, rows in scene.items():
             fill(con, table, rows)

@@ -68,12 +68,14 @@ def verdicts(
     rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()
 ) -> list[Row]:
     """Return the verdict rows of a scene."""
-    return _outcome(rule, Case(name="scene", given=given, expect="pass", params=params or {}, missing=missing)).verdicts
+    return _outcome(
+        rule, Case(name="scene", given_tables=given, expect="pass", params=params or {}, missing_signals=missing)
+    ).verdicts
 
 
 def findings(rule: Rule, given: dict[str, Any]) -> list[Row]:
     """Return the finding rows of a scene."""
-    return _outcome(rule, Case(name="scene", given=given, expect="pass")).findings
+    return _outcome(rule, Case(name="scene", given_tables=given, expect="pass")).findings
 
 
 _LAST: dict[str, CaseOutcome] = {}

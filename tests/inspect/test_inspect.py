@@ -83,10 +83,12 @@ def test_which_rules_can_be_decided_and_why_not_the_others() -> None:
     assert {rule.split(".")[1] for rule in ego.can} >= {"r162", "r163", "overtake-zone"}
     assert len(ego.can) + 4 == len(drive.rules)
     assert {rule.rule_id for rule in ego.cannot} == {*LIGHTS, "ukhc.exit-sign-signal"}
-    assert all("indicator" in rule.missing for rule in ego.cannot)
-    indicator = ego.missing[0]
+    assert all("indicator" in rule.missing_signals for rule in ego.cannot)
+    indicator = ego.missing_signals[0]
     assert (indicator.signal, len(indicator.rules)) == ("indicator", 4)
-    assert set(indicator.alone) == {rule.rule_id for rule in ego.cannot if rule.missing == ["indicator"]} >= LIGHTS
+    assert (
+        set(indicator.alone) == {rule.rule_id for rule in ego.cannot if rule.missing_signals == ["indicator"]} >= LIGHTS
+    )
 
 
 @pytest.mark.slow
@@ -123,11 +125,15 @@ def test_a_map_without_limits_and_road_types_promises_no_rule_about_them(tmp_pat
         (ego,) = drive.egos
         named = {rule.rule_id.split(".")[1]: rule for rule in ego.cannot}
         assert named.keys() == missing
-        assert (named["r124"].missing, named["r124"].breach_only) == (["speed_limits"], True)
+        assert (named["r124"].missing_signals, named["r124"].breach_only) == (["speed_limits"], True)
         assert (
-            next(item for item in ego.missing if item.signal == "speed_limits").reason == "the map has no speed limits"
+            next(item for item in ego.missing_signals if item.signal == "speed_limits").reason
+            == "the map has no speed limits"
         )
-        assert "r265" not in named or (named["r265"].missing, named["r265"].breach_only) == (["road_types"], False)
+        assert "r265" not in named or (named["r265"].missing_signals, named["r265"].breach_only) == (
+            ["road_types"],
+            False,
+        )
 
 
 def test_without_a_map_it_is_the_map_that_is_missing() -> None:
@@ -136,8 +142,8 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     assert (drive.road, ego.registration) == (None, None)
     # rules that follow the ego's own way need no map but for its speed limits
     known = {"map", "speed_limits", *SAID_BY_THE_LOG, *CONDITION_VALUES}
-    assert {signal for rule in ego.cannot for signal in rule.missing} <= known
-    assert next(item for item in ego.missing if item.signal == "map").provide.endswith("--map FILE")
+    assert {signal for rule in ego.cannot for signal in rule.missing_signals} <= known
+    assert next(item for item in ego.missing_signals if item.signal == "map").provide.endswith("--map FILE")
 
 
 def test_an_ego_that_is_no_vehicle_is_advised_to_choose_another(tmp_path: Path) -> None:
@@ -149,7 +155,7 @@ def test_an_ego_that_is_no_vehicle_is_advised_to_choose_another(tmp_path: Path) 
         frames.append(truth)
     drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)), map=ROAD)
     (ego,) = drive.egos
-    registration = next(item for item in ego.missing if item.signal == "registration")
+    registration = next(item for item in ego.missing_signals if item.signal == "registration")
     assert registration.provide == "choose the ego with --ego ID (drivelint inspect LOG --ego all lists the ids)"
     assert registration.reason.endswith(f"so it may not be the vehicle under test: {registration.provide}")
 
@@ -159,7 +165,7 @@ def test_a_map_of_another_place_is_told_and_not_used() -> None:
     assert found.drive is not None
     assert "of another place" in (found.drive.road_problem or "")
     assert found.drive.road is None
-    assert found.drive.egos[0].missing[0].reason.startswith("the map is not used")
+    assert found.drive.egos[0].missing_signals[0].reason.startswith("the map is not used")
     assert exit_code(found) is ExitCode.NOT_JUDGED
 
 
@@ -210,7 +216,7 @@ def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
         truth.moving_object[0].vehicle_classification.light_state.indicator_state = 2
     drive = looked(osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames)), ego="all")
     assert [ego.actor.actor_id for ego in drive.egos] == ["0", "1", "2"]
-    lacking = {ego.actor.actor_id: {item.signal for item in ego.missing} for ego in drive.egos}
+    lacking = {ego.actor.actor_id: {item.signal for item in ego.missing_signals} for ego in drive.egos}
     assert lacking["1"] >= {"map", "ego_size"}
     assert "ego_size" not in lacking["0"]
 
@@ -251,7 +257,7 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert mine.clock == good.clock
     assert mine.egos[0].actor.way_m == good.egos[0].actor.way_m
     assert not [q for q in mine.quality if q.severity == "error"]
-    lacking = {item.signal for item in mine.egos[0].missing}
+    lacking = {item.signal for item in mine.egos[0].missing_signals}
     # which the table does not have
     assert {"map", "ego_size"} <= lacking <= {"map", "speed_limits", *SAID_BY_THE_LOG, *CONDITION_VALUES}
 

@@ -93,7 +93,7 @@ def follow_tables(pack: Path) -> None:
     """Let the summary and the hashes in `evidence.json` say what the changed tables say."""
     with opened_packed(pack / AUDIT) as (con, _):
         counted = summed(con, 0)
-    change_json(pack / AUDIT / "summary.json", lambda told: told.update(vars(counted)))
+    change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.plain()))
     change_evidence(pack, lambda _told: None)
 
 

@@ -394,7 +394,7 @@ def test_what_is_changed_is_named(name: str, packed: PackedAudit, tmp_path: Path
     pack = copied(packed, tmp_path)
     kind, what = (TAMPERED | FORGED)[name](pack, packed)
     found = verify(VerifyRequest(pack, packed.public))
-    named = [str(problem.what) for problem in found.problems if problem.kind == kind]
+    named = [str(problem.subject) for problem in found.problems if problem.kind == kind]
     assert any(what in each for each in named), found.problems
     assert (script(pack, packed.public, tmp_path).returncode == 1) == (name in TAMPERED)
 
@@ -423,7 +423,7 @@ def test_rows_that_do_not_follow_from_the_log_are_named(packed: PackedAudit, tmp
     audited.sign_anew(pack, packed.key)
     found = verify(VerifyRequest(pack, packed.public))
     assert {problem.kind for problem in found.problems} == {"result not reproduced"}
-    named = {problem.what.partition(" (")[0] for problem in found.problems if "rows of" in problem.what}
+    named = {problem.subject.partition(" (")[0] for problem in found.problems if "rows of" in problem.subject}
     assert len(named) == 2
 
 

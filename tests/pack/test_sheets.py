@@ -69,7 +69,7 @@ def test_verify_writes_the_pages_again(packed: Packed, mine: Path) -> None:
     edit(page, "How sure", "How certain")
     reseal(mine, packed.key)
     found = verify(VerifyRequest(mine, packed.public))
-    assert [(each.kind, each.what) for each in found.problems] == [
+    assert [(each.kind, each.subject) for each in found.problems] == [
         ("result not reproduced", f"data/incidents/{page.name}")
     ]
     assert "an incident sheet as PDF is as the pack says: the page beside it is what is written again" in found.notes
@@ -80,7 +80,7 @@ def test_a_sheet_that_evidence_does_not_name(packed: Packed, mine: Path) -> None
     shutil.copy(min((mine / "data/incidents").glob("*.html")), mine / "data/incidents/more.html")
     reseal(mine, packed.key)
     (problem,) = verify(VerifyRequest(mine, packed.public)).problems
-    assert (problem.kind, problem.what) == ("file that nothing names", "data/incidents/more.html")
+    assert (problem.kind, problem.subject) == ("file that nothing names", "data/incidents/more.html")
 
 
 @pytest.mark.parametrize("name", ["data/incidents/more.html", "data/result/run.json"])
@@ -89,7 +89,7 @@ def test_a_sheet_of_no_finding(packed: Packed, mine: Path, name: str) -> None:
     change_evidence(mine, lambda told: told["incidents"].extend({name, "data/incidents/more.html"}))
     reseal(mine, packed.key)
     found = verify(VerifyRequest(mine, packed.public)).problems
-    assert {(each.kind, each.what) for each in found} == {
+    assert {(each.kind, each.subject) for each in found} == {
         ("evidence.json does not fit the result", each) for each in (name, "data/incidents/more.html")
     }
     assert all(each.kind == "evidence.json does not fit the result" for each in found)

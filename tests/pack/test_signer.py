@@ -225,7 +225,7 @@ def test_what_the_signer_forged_is_named(name: str, unjudged: Path, packed: Pack
     sign_anew(pack, packed.key)
     assert script(pack, packed.public, tmp_path).returncode == 0
     found = verify(VerifyRequest(pack, packed.public)).problems
-    assert any(each.kind == kind and what in each.what for each in found), found
+    assert any(each.kind == kind and what in each.subject for each in found), found
     assert not (tmp_path / "written.csv").exists()
 
 
@@ -251,7 +251,7 @@ def test_a_log_that_its_signer_replaced(packed: Packed, tmp_path: Path) -> None:
     sign_anew(pack, packed.key)
     (found,) = verify(VerifyRequest(pack, packed.public)).problems
     assert found.kind == "inputs do not fit the result"
-    assert "another log" in found.what
+    assert "another log" in found.subject
 
 
 def test_a_map_that_its_signer_replaced(packed: Packed, tmp_path: Path) -> None:
@@ -260,7 +260,7 @@ def test_a_map_that_its_signer_replaced(packed: Packed, tmp_path: Path) -> None:
     sign_anew(pack, packed.key)
     (found,) = verify(VerifyRequest(pack, packed.public)).problems
     assert found.kind == "inputs do not fit the result"
-    assert "another map" in found.what
+    assert "another map" in found.subject
 
 
 def test_a_log_outside_of_the_pack_is_not_read(packed: Packed, tmp_path: Path) -> None:

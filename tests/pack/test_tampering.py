@@ -257,7 +257,7 @@ def test_what_was_changed_is_named(name: str, packed: Packed, tmp_path: Path) ->
     pack = copied(packed, tmp_path)
     kind, what = TAMPERED[name](pack, packed)
     found = verify(VerifyRequest(pack, packed.public)).problems
-    assert any(each.kind == kind and what in each.what for each in found), found
+    assert any(each.kind == kind and what in each.subject for each in found), found
     done = script(pack, packed.public, tmp_path)
     assert (done.returncode, "untouched" in done.stdout) == (1, False)
     assert done.stdout

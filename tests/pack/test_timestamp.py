@@ -182,7 +182,7 @@ def test_no_changed_byte_of_a_stamp_gives_another_time(stamped: Stamped) -> None
     right = timestamp.look(content, envelope, stamped.authority.root)
     assert right.problems == []
     found = [timestamp.look(other, envelope, stamped.authority.root) for other in change_all(content)]
-    assert {each.said for each in found if not each.problems} <= {right.said}
+    assert {each.description for each in found if not each.problems} <= {right.description}
     assert sum(1 for each in found if each.problems) > len(found) / 2
     for other in (content[:-1], content[: len(content) // 2], b"", content + b"\0"):
         assert timestamp.look(other, envelope, stamped.authority.root).problems != []

@@ -36,14 +36,14 @@ def kept(out: Path, key: str = KEY, content: bytes = b"rows") -> Receipt:
 
 
 def is_there(key: str = KEY) -> bool:
-    with store.opened(key) as found:
+    with store.open_receipt(key) as found:
         return found is not None
 
 
 def test_a_receipt_is_read_as_it_was_kept(home: Path, tmp_path: Path) -> None:
     receipt = kept(tmp_path / "out")
     (tmp_path / "out" / "a.parquet").write_bytes(b"another")
-    with store.opened(KEY) as found:
+    with store.open_receipt(KEY) as found:
         assert found is not None
         assert found.receipt == receipt
         contents, moved = found.unpack(tmp_path / "work")
@@ -105,7 +105,7 @@ def test_two_at_once_leave_a_whole_one(home: Path, tmp_path: Path) -> None:
     def reads(n: int) -> set[bytes]:
         found_ = set()
         for k in range(40):
-            with store.opened(KEY) as found:
+            with store.open_receipt(KEY) as found:
                 if found is not None:
                     contents, moved = found.unpack(tmp_path / f"work{n}-{k}")
                     found_ |= {contents["a.parquet"], moved["annotated/x.mcap"].read_bytes()}

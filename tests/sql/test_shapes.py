@@ -12,7 +12,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivelint.catalogue import allowed
+from drivelint.catalogue import allowed_sql
 from drivelint.resources import folder
 from drivelint.sql import store
 from tests.shared_data import ROOT
@@ -196,4 +196,4 @@ def test_distances_of_shapes_are_measured_in_one_place() -> None:
     assert len(files) > 100
     found = {path.name for path in files if calls.search(re.sub(r"--.*", "", path.read_text(encoding="utf-8")))}
     assert found == {"shapes.sql"}
-    assert [name for name in allowed.functions() if name.startswith("st_")] == []
+    assert [name for name in allowed_sql.functions() if name.startswith("st_")] == []

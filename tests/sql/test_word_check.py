@@ -243,7 +243,7 @@ def test_what_a_parameter_is_compared_with_is_known() -> None:
     found = checked(
         "SELECT actor_class = $kind, speed_mps > $most_mps, is_class(actor_class, $word) FROM pair"
     ).parameters
-    assert {name: [kind.known[0] for kind in kinds] for name, kinds in found.items()} == {
+    assert {name: [kind.possible_words[0] for kind in kinds] for name, kinds in found.items()} == {
         "kind": ["car"],
         "word": ["car"],
     }

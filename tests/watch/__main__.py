@@ -109,7 +109,7 @@ def memory(log: Path, road: Path, window_s: float, every_s: float) -> int:
         finally:
             over.set()
             sampler.join()
-    print(watched.told())
+    print(watched.timing_text())
     return 0
 
 

@@ -14,7 +14,7 @@ from drivelint.annotate.layout import layout
 from drivelint.annotate.measures import series_of
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import Annotation, write
-from drivelint.engine.barrier import refused
+from drivelint.engine.barrier import refusal_of
 from drivelint.engine.batch import are_large
 from drivelint.errors import ChangedLogError, DriveLintError
 from drivelint.result import collect
@@ -106,7 +106,7 @@ class Annotator:
             except (ChangedLogError, OutputError):
                 raise  # the verdicts are about what is not there any more; or no log can be written at all
             except Exception as error:  # noqa: BLE001 - verdicts are not given up for a picture of them
-                self._note(f"not annotated: {refused(drive.trace.path, error).error}")
+                self._note(f"not annotated: {refusal_of(drive.trace.path, error).error}")
         with _whole(self._folder / LAYOUT_FILE) as file:
             file.write(layout(self._series))
 

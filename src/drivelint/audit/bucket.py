@@ -65,10 +65,10 @@ def _store(root: str) -> Any:
     try:
         return from_url(root, client_options=_CLIENT, retry_config=_RETRY)
     except (exceptions.BaseError, ValueError) as error:
-        raise UsageError(f"{root}: {_told(error)}") from error
+        raise UsageError(f"{root}: {_error_text(error)}") from error
 
 
-def _opened(url: str) -> tuple[Any, str]:
+def _open_bucket(url: str) -> tuple[Any, str]:
     found = _URL.fullmatch(url)
     if found is None:
         raise UsageError(f"{url}: write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX or az://CONTAINER/PREFIX")
@@ -79,12 +79,12 @@ class Bucket:
     """A prefix of a bucket as `ResultStore`. An object is there whole or not at all; `create` is one conditional PUT."""
 
     def __init__(self, url: str) -> None:
-        self._client, self._prefix = _opened(url)
+        self._client, self._prefix = _open_bucket(url)
         self._url = url.rstrip("/")
 
     def create(self, name: str, content: bytes) -> bool:
         """See `ResultStore.create`."""
-        with self._told(name):
+        with self._output_errors(name):
             try:
                 obstore.put(self._client, self._path(name), content, mode="create")
             except (exceptions.AlreadyExistsError, exceptions.PreconditionError):
@@ -93,12 +93,12 @@ class Bucket:
 
     def write(self, name: str, content: bytes) -> None:
         """See `ResultStore.write`."""
-        with self._told(name):
+        with self._output_errors(name):
             obstore.put(self._client, self._path(name), content)
 
     def read(self, name: str) -> bytes | None:
         """See `ResultStore.read`."""
-        with self._told(name):
+        with self._output_errors(name):
             try:
                 return _whole(lambda: bytes(obstore.get(self._client, self._path(name)).bytes()))
             except FileNotFoundError:
@@ -106,13 +106,13 @@ class Bucket:
 
     def names(self, prefix: str) -> Iterator[str]:
         """See `ResultStore.names`."""
-        with self._told(prefix):
+        with self._output_errors(prefix):
             for about in _listed(self._client, self._path(prefix)):
                 yield about["path"].removeprefix(self._prefix).lstrip("/")
 
     def delete(self, names: Iterable[str]) -> None:
         """See `ResultStore.delete`."""
-        with self._told(""):
+        with self._output_errors(""):
             some = [self._path(name) for name in names]
             for start in range(0, len(some), 1_000):
                 obstore.delete(self._client, some[start : start + 1_000])
@@ -129,44 +129,44 @@ class Bucket:
         return f"{self._prefix}/{name}".strip("/")
 
     @contextmanager
-    def _told(self, name: str) -> Iterator[None]:
+    def _output_errors(self, name: str) -> Iterator[None]:
         try:
             yield
         except (exceptions.BaseError, OSError) as error:
-            raise OutputError(f"{self._url}/{name}: {_told(error)}: try again later") from error
+            raise OutputError(f"{self._url}/{name}: {_error_text(error)}: try again later") from error
 
 
 def list_objects(url: str) -> Iterator[Object]:
     """Yield the objects below a prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
-    client, prefix = _opened(url)
+    client, prefix = _open_bucket(url)
     root = "/".join(url.split("/")[:3])
     try:
         for about in _listed(client, prefix):
             yield Object(f"{root}/{about['path']}", about["size"], about["e_tag"] or "")
     except (exceptions.BaseError, OSError) as error:
-        raise StoreError(f"{url}: {_told(error)}: try again later") from error
+        raise StoreError(f"{url}: {_error_text(error)}: try again later") from error
 
 
 def look(url: str) -> Object | None:
     """Return an object's size and ETag; None: there is none of that name. Errors: `StoreError`."""
-    client, path = _opened(url)
+    client, path = _open_bucket(url)
     try:
         about = obstore.head(client, path)
     except FileNotFoundError:
         return None
     except (exceptions.BaseError, OSError) as error:
-        raise StoreError(f"{url}: {_told(error)}: try again later") from error
+        raise StoreError(f"{url}: {_error_text(error)}: try again later") from error
     return Object(url, about["size"], about["e_tag"] or "")
 
 
-def download(found: Object, folder: Path) -> Path:
+def download(bucket_object: Object, folder: Path) -> Path:
     """Copy an object into a folder, under its own name; return the copy's path.
 
     Errors: `TraceError` for an object that is gone or has changed since it was found; `StoreError`.
     """
-    client, path = _opened(found.url)
+    client, path = _open_bucket(bucket_object.url)
     copy = folder / (path.rpartition("/")[2] or "object")
-    options: Any = {"if_match": found.e_tag} if found.e_tag else {}
+    options: Any = {"if_match": bucket_object.e_tag} if bucket_object.e_tag else {}
 
     def write() -> None:
         with copy.open("wb") as file:
@@ -176,13 +176,15 @@ def download(found: Object, folder: Path) -> Path:
     try:
         _whole(write)
     except FileNotFoundError:
-        raise TraceError(f"{found.url}: no such object: check the URL") from None
+        raise TraceError(f"{bucket_object.url}: no such object: check the URL") from None
     except exceptions.PreconditionError:
-        raise TraceError(f"{found.url}: changed since it was listed: audit it again") from None
+        raise TraceError(f"{bucket_object.url}: changed since it was listed: audit it again") from None
     except (exceptions.BaseError, OSError) as error:
-        raise StoreError(f"{found.url}: {_told(error)}: try again later") from error
-    if copy.stat().st_size != found.size:
-        raise StoreError(f"{found.url}: {copy.stat().st_size} of {found.size} bytes came: try again later")
+        raise StoreError(f"{bucket_object.url}: {_error_text(error)}: try again later") from error
+    if copy.stat().st_size != bucket_object.size:
+        raise StoreError(
+            f"{bucket_object.url}: {copy.stat().st_size} of {bucket_object.size} bytes came: try again later"
+        )
     return copy
 
 
@@ -213,5 +215,5 @@ def _whole(job: Callable[[], T]) -> T:
     return job()
 
 
-def _told(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return " ".join(str(error).split())[:300]

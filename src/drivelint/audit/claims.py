@@ -11,6 +11,7 @@ import threading
 import time
 import uuid
 from contextlib import contextmanager
+from enum import Enum
 from itertools import islice
 from typing import TYPE_CHECKING, Final
 
@@ -24,6 +25,14 @@ if TYPE_CHECKING:
 
 LEASE_S: Final = 60.0
 """Seconds without a sign of life after which claims lapse; the clocks of the machines must agree better than that."""
+
+
+class Claim(Enum):
+    """Whose a drive is after an attempt to claim it. `NO_WORK_LEFT`: it has its result, or this audit judges it already."""
+
+    THIS_AUDIT = "this audit"
+    ANOTHER_AUDIT = "another audit"
+    NO_WORK_LEFT = "no work left"
 
 
 class Claims:
@@ -49,7 +58,7 @@ class Claims:
             beat.join()
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
-    def mine(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
+    def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
         """Yield the drives that this audit gets in one pass over `todo`, what is to be judged by all.
 
         `n_waiting` is then how many somebody else has who is alive: after a while they are done, or free. This never waits itself, as
@@ -60,10 +69,10 @@ class Claims:
         while some := list(islice(left, TASK_DRIVES)):
             alive: dict[str, bool] = {}
             for drive in some:
-                owner = self._take(drive)
-                if owner == "":
+                claim, owner = self._take(drive)
+                if claim is Claim.NO_WORK_LEFT:
                     continue
-                if owner is not None:
+                if claim is Claim.ANOTHER_AUDIT:
                     if owner not in alive:
                         alive[owner] = self._is_alive(owner)
                     if alive[owner]:
@@ -77,18 +86,18 @@ class Claims:
         """Wait for others, after a pass that got nothing."""
         time.sleep(self._lease_s / 6)
 
-    def done(self, drives: Iterable[AuditDrive]) -> None:
+    def mark_done(self, drives: Iterable[AuditDrive]) -> None:
         """Say that drives have their results."""
         for drive in drives:
             self._results.write(_name(drive), b'{"owner": ""}\n')
 
-    def _take(self, drive: AuditDrive) -> str | None:
-        """Claim a drive. Return None where it is ours now, '' where it is done, else who has it."""
+    def _take(self, drive: AuditDrive) -> tuple[Claim, str]:
+        """Claim a drive. Return whose it is now, and the id of its owner, '' where it is done."""
         if self._results.create(_name(drive), self._claim()):
-            return None
-        there = self._results.read(_name(drive))
-        owner = "" if there is None else str(json.loads(there)["owner"])
-        return "" if owner == self._owner else owner  # our own: it is being judged
+            return Claim.THIS_AUDIT, self._owner
+        content = self._results.read(_name(drive))
+        owner = "" if content is None else str(json.loads(content)["owner"])
+        return (Claim.NO_WORK_LEFT if owner in {"", self._owner} else Claim.ANOTHER_AUDIT), owner
 
     def _claim(self) -> bytes:
         return f'{{"owner": "{self._owner}"}}\n'.encode()

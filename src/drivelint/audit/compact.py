@@ -168,8 +168,8 @@ def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequen
     if lost:  # somebody removed the rows: without its receipt, a drive is judged again
         results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
         receipts = [receipt for receipt in receipts if receipt.batch not in lost]
-    known = _known(results, con, receipts, home)
-    new = [receipt for receipt in receipts if receipt.key not in known]
+    packed_keys = _packed_keys(results, con, receipts, home)
+    new = [receipt for receipt in receipts if receipt.key not in packed_keys]
     if new:
         table = pa.Table.from_pylist([receipt_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
         con.register("_packed", table.select(["key", "batch"]))
@@ -200,7 +200,9 @@ def batch_rows(
     return statement("audit/packed", order=_ORDER[table])
 
 
-def _known(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> set[str]:
+def _packed_keys(
+    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path
+) -> set[str]:
     """Return the keys that a chunk has already: a log that was moved, or a compaction that was killed."""
     ids = chunks(results)
     if not ids:

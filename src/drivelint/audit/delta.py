@@ -50,14 +50,14 @@ _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
 class Written(NamedTuple):
     """How many files a writing has added and taken out, in all tables."""
 
-    added: int
-    removed: int
+    n_added: int
+    n_removed: int
 
     def text(self, dest: str) -> str:
         """Return the sentence for a person."""
-        if not self.added and not self.removed:
+        if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"
-        return f"{dest}: {plural(self.added, 'file')} added to the Delta tables, {self.removed} taken out"
+        return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} taken out"
 
 
 def ready(dest: str, out: str, run: str) -> None:
@@ -76,7 +76,7 @@ def ready(dest: str, out: str, run: str) -> None:
         raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
     for table in NAMES:
         where = _where(dest, table)
-        _persistent(where, partial(_opened, where, table, run))
+        _persistent(where, partial(_open_table, where, table, run))
 
 
 def write(
@@ -88,7 +88,7 @@ def write(
     an audit's tables at a time. Errors: `UsageError` for a table of somebody else; `OutputError`.
     """
     ids = chunks(results)
-    added = removed = 0
+    n_added = n_removed = 0
     for table in NAMES:
         names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
         files = {_content_name(file): file for file in (results.fetch(name, home) for name in names)}
@@ -96,8 +96,8 @@ def write(
         where = _where(dest, table)
         job = partial(_write_table, where, table, files, schema, run=run, digest=digest)
         done = _persistent(where, job)
-        added, removed = added + done.added, removed + done.removed
-    return Written(added, removed)
+        n_added, n_removed = n_added + done.n_added, n_removed + done.n_removed
+    return Written(n_added, n_removed)
 
 
 def _write_table(
@@ -106,7 +106,7 @@ def _write_table(
     from deltalake import CommitProperties, Schema
     from deltalake.transaction import AddAction, RemoveAction, create_table_with_add_actions
 
-    store, there = open_store(where), _opened(where, table, run)
+    store, there = open_store(where), _open_table(where, table, run)
     active = {} if there is None else _active(there)
     now = int(time.time() * 1000)
     added = []
@@ -132,7 +132,7 @@ def _write_table(
     return Written(len(added), len(removed))
 
 
-def _opened(where: str, table: str, run: str) -> DeltaTable | None:
+def _open_table(where: str, table: str, run: str) -> DeltaTable | None:
     """Return the Delta table that is there; None: there is none. Errors: `UsageError` for that of another audit."""
     from deltalake import DeltaTable
     from deltalake.exceptions import TableNotFoundError

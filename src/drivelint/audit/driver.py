@@ -47,7 +47,7 @@ def tasks(
     settings: JudgeSettings,
     *,
     ahead: int,
-    most: int = TASK_DRIVES,
+    max_drives: int = TASK_DRIVES,
 ) -> Iterator[Task]:
     """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end."""
     left = iter(drives)
@@ -56,7 +56,7 @@ def tasks(
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
+            if len(part) >= max_drives or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part = []
         if part:
@@ -65,13 +65,13 @@ def tasks(
 
 @dataclass
 class Driver:
-    """Runs tasks on an executor. `tell` hears of every receipt, `done` of the drives that have theirs; `busy` is called between tasks."""
+    """Runs tasks on an executor. `tell` gets every receipt, `mark_done` the drives that have theirs; `busy` is called between tasks."""
 
     executor: Executor
     results: ResultStore
     tell: Callable[[Receipt], None]
     busy: Callable[[], None] = lambda: None
-    done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
+    mark_done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
         """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`; any other is that of its drives."""
@@ -94,7 +94,7 @@ class Driver:
                 if (why := _loss(outcome)) is not None:
                     again.extend(self._after_loss(outcome.task, why))
                 else:
-                    self.done(outcome.task.drives)
+                    self.mark_done(outcome.task.drives)
                 for receipt in outcome.receipts:
                     self.tell(receipt)
             self.busy()
@@ -108,7 +108,7 @@ class Driver:
             return [replace(task, attempts=attempts)]
         for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
             self.tell(receipt)
-        self.done(task.drives)
+        self.mark_done(task.drives)
         return []
 
     def _quarantine(self, drive: AuditDrive, why: str) -> list[Receipt]:
@@ -140,7 +140,7 @@ class Driver:
 def _loss(outcome: Outcome) -> str | None:
     """Return why a task has no result; None: it has one. An unexpected error, such as one for lack of memory, is of its drives."""
     if outcome.error is None:
-        return outcome.lost
+        return outcome.loss_reason
     words = (str(outcome.error).splitlines() or [""])[0][:200]
     return f"the worker met an unexpected error: {type(outcome.error).__name__}: {words}"
 

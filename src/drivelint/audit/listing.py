@@ -25,7 +25,7 @@ _AT_ONCE: Final = 20_000
 
 def fill(
     con: duckdb.DuckDBPyConnection,
-    named: Sequence[str],
+    source_names: Sequence[str],
     options: DriveInput,
     run_id: str,
     shard: tuple[int, int] | None,
@@ -34,12 +34,12 @@ def fill(
     con.execute(statement("audit/listed"))
     hashes = OptionHashes()
     some: list[dict[str, Any]] = []
-    for drive in sources.drives(named, options):
+    for drive in sources.drives(source_names, options):
         if shard and int(digest(drive.log)[:8], 16) % shard[1] != shard[0] - 1:
             continue
         options_id = hashes.of(drive.options)
         size, stamp = (drive.size, drive.stamp) if drive.stamp else _stamp(drive.log)
-        found = drive.found(size, stamp, run_id, options_id)
+        found = drive.with_ids(size, stamp, run_id, options_id)
         some.append(
             {
                 "source_id": found.source_id,

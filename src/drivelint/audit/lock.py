@@ -49,7 +49,7 @@ def _locked_folder(results: LocalFolder, *, shared: bool) -> Iterator[None]:
         try:
             fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
         except OSError:
-            raise _taken(str(results.root)) from None
+            raise _in_use_error(str(results.root)) from None
         yield
 
 
@@ -61,7 +61,7 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
     if not results.create(_NAME, sign()):
         seen = json.loads(results.read(_NAME) or b'{"at": 0}')["at"]
         if time.time() - seen < LAPSE_S:
-            raise _taken(f"sign of life {time.time() - seen:.0f} s ago")
+            raise _in_use_error(f"sign of life {time.time() - seen:.0f} s ago")
         results.write(_NAME, sign())
     stop = threading.Event()
 
@@ -80,5 +80,5 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
             results.delete([_NAME])
 
 
-def _taken(where: str) -> UsageError:
+def _in_use_error(where: str) -> UsageError:
     return UsageError(f"{where}: another audit is at work there: wait for its end, or share the drives with --claim")

@@ -47,7 +47,7 @@ class AuditDrive:
     source_id: str = ""
     options_id: str = ""
 
-    def found(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
+    def with_ids(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
         """Return the drive with what was found of its log, and its ids."""
         source_id = digest([run_id, options_id, self.log, size, stamp, self.tags])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)

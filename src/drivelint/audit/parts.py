@@ -32,10 +32,10 @@ def ask(results: ResultStore, part: str, n_drives: int) -> None:
     results.write(f"parts/begun/{part}", f"{n_drives}\n".encode())
 
 
-def asked(results: ResultStore) -> int | None:
+def n_expected_drives(results: ResultStore) -> int | None:
     """Return how many drives the parts without an end are to judge, or all parts; of shards all of them; None: not known."""
     said = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
-    open_ = missing(results) or sorted(said)
+    open_ = unfinished_parts(results) or sorted(said)
     if not open_:
         return None
     counted = [n for name, n in said.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
@@ -52,6 +52,6 @@ def begun(results: ResultStore) -> set[str]:
     return {Path(name).name for name in results.names("parts/begun")}
 
 
-def missing(results: ResultStore) -> list[str]:
+def unfinished_parts(results: ResultStore) -> list[str]:
     """Return the parts that have begun, or are expected, and have not come to their end."""
     return sorted(begun(results) - {Path(name).name for name in results.names("parts/ended")})

@@ -109,9 +109,9 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     part = parts.name_of(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
-        counted = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
+        audit_summary = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
         parts.end(results, part)
-    return counted
+    return audit_summary
 
 
 def _audited(
@@ -149,14 +149,14 @@ def _audited(
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale(con, retry=False))):
             raise UsageError(f"{plural(n_stale, 'log')} changed since: give the audit once without --shard and --claim")
-        counted = _judge(request, con, results, progress, id_=id_, executor=executor)
-        n_reused = n_known + counted.reused
+        audit_summary = _judge(request, con, results, progress, id_=id_, executor=executor)
+        n_reused = n_known + audit_summary.reused
         if not alone:
-            return replace(counted.plus(summed_receipts(con, _LISTED)), reused=n_reused)
-        counted = _close(con, results, Path(home), n_reused)
+            return replace(audit_summary.plus(summed_receipts(con, _LISTED)), reused=n_reused)
+        audit_summary = _close(con, results, Path(home), n_reused)
         if request.delta is not None:
-            _write_delta(request.delta, con, results, Path(home), progress, id_=id_, counted=counted)
-        return replace(counted, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
+            _write_delta(request.delta, con, results, Path(home), progress, id_=id_, audit_summary=audit_summary)
+        return replace(audit_summary, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
 
 def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
@@ -180,13 +180,13 @@ def _judge(
     executor: Executor | None,
 ) -> AuditSummary:
     """Have the listed drives judged that have no receipt; return what those come to."""
-    counted, fresh = AuditSummary(), 0
+    audit_summary, fresh = AuditSummary(), 0
     claims = Claims(results, request.lease_s) if request.claim else None
 
     def tell(receipt: Receipt) -> None:
         nonlocal fresh
         fresh += not receipt.reused
-        counted.count(receipt)
+        audit_summary.count(receipt)
         progress.advance()
         if receipt.status != "judged":
             progress.note(f"not judged: {receipt.reason}")
@@ -205,17 +205,17 @@ def _judge(
             ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = task_size(n_left, workers.capacity)
-            driver = Driver(workers, results, tell, busy, claims.done if claims else lambda _drives: None)
+            driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
             while True:
-                todo = claims.mine(listing.todo(con)) if claims else listing.todo(con)
-                driver.run(tasks(todo, request.out, id_, _settings_of_workers(request), ahead=ahead, most=most))
+                todo = claims.claimed_drives(listing.todo(con)) if claims else listing.todo(con)
+                driver.run(tasks(todo, request.out, id_, _settings_of_workers(request), ahead=ahead, max_drives=most))
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_taken:
                     claims.pause()
     finally:
         workers.close()
-    return counted
+    return audit_summary
 
 
 def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
@@ -255,7 +255,7 @@ def _stale(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
 
 
 def _close(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing: Sequence[str] = ()
+    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing_parts: Sequence[str] = ()
 ) -> AuditSummary:
     """Pack everything, write the summary and the list of files last, and return the summary."""
     sealed.unseal(results)
@@ -263,10 +263,10 @@ def _close(
     create_views(con, results, home)
     told = told_of(results, "the audit") or {}
     robust = bool(told.get("settings", {}).get("robustness"))
-    counted = replace(summed(con, n_reused), missing_parts=list(missing), robust=robust)
-    content = (json.dumps(vars(counted), indent=2, sort_keys=True) + "\n").encode()
+    audit_summary = replace(summed(con, n_reused), missing_parts=list(missing_parts), robust=robust)
+    content = (json.dumps(audit_summary.plain(), indent=2, sort_keys=True) + "\n").encode()
     sealed.seal(results, [AUDIT_FILE, RULES_FILE], content)
-    return counted
+    return audit_summary
 
 
 def _write_delta(
@@ -277,14 +277,14 @@ def _write_delta(
     progress: Progress,
     *,
     id_: str,
-    counted: AuditSummary,
+    audit_summary: AuditSummary,
 ) -> None:
     """Make the Delta tables have what was packed. Of an audit without all its parts they would look like those of a whole one."""
-    if counted.missing_parts:
+    if audit_summary.missing_parts:
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
     progress.stage("writing Delta tables", None)
-    progress.note(delta.write(con, results, home, dest, run=id_, digest=counted.digest).text(dest))
+    progress.note(delta.write(con, results, home, dest, run=id_, digest=audit_summary.digest).text(dest))
 
 
 def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditSummary:
@@ -305,10 +305,10 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
             results.sweep()
         sealed.require_rows_unchanged(results, out, packed=not _is_whole(results, out))
         results.delete(list(results.names("claims")))
-        counted = _close(con, results, Path(home), 0, parts.missing(results))
+        audit_summary = _close(con, results, Path(home), 0, parts.unfinished_parts(results))
         if delta_dest is not None:
-            _write_delta(delta_dest, con, results, Path(home), progress, id_=id_, counted=counted)
-        return replace(counted, n_asked=parts.asked(results))
+            _write_delta(delta_dest, con, results, Path(home), progress, id_=id_, audit_summary=audit_summary)
+        return replace(audit_summary, n_asked=parts.n_expected_drives(results))
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:

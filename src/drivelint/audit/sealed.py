@@ -93,7 +93,7 @@ def _has_ended(results: ResultStore) -> bool:
     """Whether an audit has come to its end: that of all drives has, or what was judged was summed up."""
     if results.read(SUMMARY_FILE) is not None:
         return True
-    return parts.begun(results) == {parts.ALL} and not parts.missing(results)
+    return parts.begun(results) == {parts.ALL} and not parts.unfinished_parts(results)
 
 
 def _names(results: ResultStore) -> set[str]:
@@ -110,35 +110,35 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
         for batch, receipts in groupby(some, key=lambda receipt: receipt.batch):
             if results.read(batch_name("drives", batch)) is None:
                 continue  # its drives are judged again
-            said = {each.key: (each.log, each.rows_sha256) for each in receipts}
-            _require_rows(results, dest, {table: batch_name(table, batch) for table in TABLES}, said)
+            expected_hashes = {each.key: (each.log, each.rows_sha256) for each in receipts}
+            _require_rows(results, dest, {table: batch_name(table, batch) for table in TABLES}, expected_hashes)
     for chunk in chunks(results) if packed else ():
         names = {table: chunk_name(table, chunk) for table in (*TABLES, "receipts")}
         with TemporaryDirectory(prefix="drivelint-audit-") as home:
             receipts = _read(results, dest, names.pop("receipts"), Path(home), RECEIPT_SCHEMA).to_pylist()
-        said = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
-        _require_rows(results, dest, names, said, nothing_else=True)
+        expected_hashes = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
+        _require_rows(results, dest, names, expected_hashes, nothing_else=True)
 
 
 def _require_rows(
     results: ResultStore,
     dest: str,
     names: dict[str, str],
-    said: dict[str, tuple[str, str]],
+    expected_hashes: dict[str, tuple[str, str]],
     *,
     nothing_else: bool = False,
 ) -> None:
-    """Compare rows with `said`: key -> log and hash. `names`: table -> its file; `nothing_else`: it has rows of no other drive."""
+    """Compare rows with `expected_hashes`: key -> log and hash. `names`: table -> its file; `nothing_else`: no rows of another drive."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         read = {
             table: _read(results, dest, name, Path(home), empty_rows()[table].schema) for table, name in names.items()
         }
     by_key = {table: dict(_by_key(rows)) for table, rows in read.items()}
-    for key, (log, rows_hash) in said.items():
+    for key, (log, rows_hash) in expected_hashes.items():
         if rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in read.items()}) != rows_hash:
             raise UsageError(f"{dest}: the rows of {log} are not as drivelint audit wrote them: {_AGAIN}")
     for table, rows in by_key.items():
-        n_told = sum(of.num_rows for key, of in rows.items() if key in said or not nothing_else)
+        n_told = sum(of.num_rows for key, of in rows.items() if key in expected_hashes or not nothing_else)
         if n_told != read[table].num_rows:
             raise UsageError(
                 f"{dest.rstrip('/')}/{names[table]}: has rows that drivelint audit did not write: {_AGAIN}"

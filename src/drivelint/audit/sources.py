@@ -183,28 +183,28 @@ def _first_row(path: Path) -> dict[str, Any]:
         return {}
 
 
-def _of_manifest(path: Path, named: str, options: DriveInput) -> Iterator[AuditDrive]:
+def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterator[AuditDrive]:
     for number, row in enumerate(_rows(path), start=1):
         log = row.pop("log")
         if not log:
-            raise UsageError(f"{named}, row {number}: no log: fill the column log")
+            raise UsageError(f"{manifest_name}, row {number}: no log: fill the column log")
         try:
             _require_values(row, options)
         except UsageError as error:
-            raise UsageError(f"{named}, row {number} ({log}): {error}: nothing was judged yet") from error
+            raise UsageError(f"{manifest_name}, row {number} ({log}): {error}: nothing was judged yet") from error
         own: dict[str, Any] = {}
         if place := row.pop("map", None):
-            own |= {"map": Path(_beside(named, place)), "map_dir": None}
+            own |= {"map": Path(_beside(manifest_name, place)), "map_dir": None}
         if ego := row.pop("ego", None):
             own["ego"] = ego
         if env := row.pop("environment", None):
             own["env"] = (*options.env, *_parts(env))
         if (mapping := row.pop("mapping", None)) and (Path(path).parent / mapping).is_file():
-            mapping = _beside(named, mapping)
+            mapping = _beside(manifest_name, mapping)
         said = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
         own |= {name: value for name, value in said.items() if value}
         tags = {name: value for name, value in sorted(row.items()) if value}
-        yield AuditDrive(_beside(named, log), replace(options, **own), tags)
+        yield AuditDrive(_beside(manifest_name, log), replace(options, **own), tags)
 
 
 def _require_values(row: Mapping[str, str], options: DriveInput) -> None:

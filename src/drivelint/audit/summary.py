@@ -26,6 +26,8 @@ MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 MOST_COPIES: Final = 3
 MOST_LOGS: Final = 3
+_NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
+"""Fields with another name in `summary.json`."""
 _UNDECIDED: Final = "nothing failed, as nothing could be decided"
 
 
@@ -43,11 +45,11 @@ class AuditSummary:
     """
 
     n_drives: int = 0
-    judged: int = 0
+    n_judged: int = 0
     reused: int = 0
     lossy: int = 0
     off_map: int = 0
-    refused: int = 0
+    n_refused: int = 0
     quarantined: int = 0
     km: float = 0.0
     hours: float = 0.0
@@ -85,8 +87,8 @@ class AuditSummary:
         """Add a drive."""
         self.n_drives += 1
         self.reused += receipt.reused
-        self.judged += receipt.status == "judged"
-        self.refused += receipt.status == "refused"
+        self.n_judged += receipt.status == "judged"
+        self.n_refused += receipt.status == "refused"
         self.quarantined += receipt.status == "quarantined"
         self.lossy += receipt.lossy
         self.off_map += receipt.off_map
@@ -97,14 +99,18 @@ class AuditSummary:
         self.errors += receipt.counts.get("error", 0)
         self.beyond_limits += receipt.beyond_limits
 
-    def plus(self, other: AuditSummary) -> AuditSummary:
+    def plain(self) -> dict[str, Any]:
+        """Return name in `summary.json` -> value."""
+        return {_NAMES_IN_FILE.get(name, name): value for name, value in vars(self).items()}
+
+    def plus(self, second: AuditSummary) -> AuditSummary:
         """Return what both come to together, but for what is only told of a whole audit."""
         names = (
             "n_drives",
-            "judged",
+            "n_judged",
             "lossy",
             "off_map",
-            "refused",
+            "n_refused",
             "quarantined",
             "copies",
             "km",
@@ -113,8 +119,8 @@ class AuditSummary:
             "errors",
             "beyond_limits",
         )
-        both = {name: getattr(self, name) + getattr(other, name) for name in names}
-        return replace(self, **both, failed=dict(Counter(self.failed) + Counter(other.failed)))
+        both = {name: getattr(self, name) + getattr(second, name) for name in names}
+        return replace(self, **both, failed=dict(Counter(self.failed) + Counter(second.failed)))
 
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
         """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0."""
@@ -125,7 +131,7 @@ class AuditSummary:
             return ExitCode.FAILED
         nothing = not self.n_drives and self.digest is not None  # of shards and claims, others may have had all
         if (
-            self.refused
+            self.n_refused
             or self.quarantined
             or self.beyond_limits
             or self.off_map
@@ -151,11 +157,11 @@ class Named(NamedTuple):
     logs: list[str]
 
 
-def logs_that_are(con: duckdb.DuckDBPyConnection, what: str) -> Named:
+def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> Named:
     """Return the logs that are `lossy` or `off_map`, of one content one; those of an older audit may not say the latter."""
-    if what not in con.table("receipts").columns:
+    if flag not in con.table("receipts").columns:
         return Named(0, [])
-    rows = con.execute(statement("audit/logs_that_are", what=what)).fetchall()
+    rows = con.execute(statement("audit/logs_that_are", what=flag)).fetchall()
     return Named(len(rows), [log for (log,) in rows[:MOST_LOGS]])
 
 

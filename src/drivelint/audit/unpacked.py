@@ -95,8 +95,8 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
         raise UsageError(
             f"a file there is not as drivelint audit wrote it ({why}): audit the drives again into another --out"
         ) from error
-    missing = parts.missing(results)
-    return Standing(told.get("digest"), len(loose), n, parts.asked(results), tuple(missing))
+    unfinished_parts = parts.unfinished_parts(results)
+    return Standing(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))
 
 
 def n_results(results: ResultStore, home: Path) -> int:

@@ -20,7 +20,7 @@ from drivelint.audit import bucket
 from drivelint.audit.model import AuditDrive, JudgeSettings, Receipt, Task, digest
 from drivelint.audit.store import open_store
 from drivelint.engine.apart import judge_apart
-from drivelint.engine.barrier import RefusedLog, refused
+from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
@@ -45,7 +45,7 @@ TABLES = ("verdicts", "findings", "drives")
 """The tables of an audit: those of a check, with `key`, and `log` and `tags` in `drives`."""
 TASKS_PER_RELEASE = 8
 """After so many tasks a worker gives back the memory that it does not need: of 8 tasks of short drives, less than 1 % of the time."""
-_KEPT = frozenset({"profile", "environment", "map_quality"})
+_LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
 class Judge:
@@ -101,7 +101,7 @@ class Judge:
                 if name not in ids:
                     ids.add(name)
                     part[key] = read.pop(key)
-            receipts += self._judged(part, results)
+            receipts += self._judge_part(part, results)
         return receipts
 
     def _read(self, drive: AuditDrive, run_id: str, results: ResultStore) -> tuple[str, Receipt | Drive | RefusedLog]:
@@ -118,7 +118,7 @@ class Judge:
             _require_unchanged(path, identity)
             return key, drive_with_map(trace, self._library(options))
         except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
-            return key, refused(path, error)
+            return key, refusal_of(path, error)
 
     def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
         """Return where the log lies on this machine, and the drive's options with a map that does; both copied if they are afar."""
@@ -137,10 +137,12 @@ class Judge:
         home.mkdir(parents=True)
         return bucket.download(found, home)
 
-    def _judged(self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore) -> list[Receipt]:
+    def _judge_part(
+        self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
+    ) -> list[Receipt]:
         """Judge drives with different ids together, and write what comes out."""
         for table in store.tables_of_lifetime("run"):
-            if table not in _KEPT:
+            if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
         self._session.forget_judged()
         drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]

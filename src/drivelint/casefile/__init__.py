@@ -67,11 +67,11 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     """One case as written."""
 
     name: str
-    given: dict[str, Any]
+    given_tables: dict[str, Any] = msgspec.field(name="given")
     expect: str | list[dict[str, Any]]
     shows: str | tuple[str, ...] = ()
     params: dict[str, Any] = {}
-    missing: tuple[str, ...] = ()
+    missing_signals: tuple[str, ...] = msgspec.field(default=(), name="missing")
     findings: int | None = None
     line: int = 0
     """Where it stands in its file: filled in, never written."""
@@ -128,9 +128,9 @@ def read_cases(rule: Rule) -> list[Case]:
             raise RuleError(
                 f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
             )
-        with _placed(rule, case):
+        with _with_location(rule, case):
             _refuse_wrong_words(rule, case)
-        if "capability" not in rule.reads and (idle := sorted(set(case.missing) - set(rule.requires))):
+        if "capability" not in rule.reads and (idle := sorted(set(case.missing_signals) - set(rule.requires))):
             raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
     return cases
 
@@ -144,7 +144,7 @@ def _refuse_wrong_words(rule: Rule, case: Case) -> None:
     for name, value in case.params.items():
         if problem := parameter_problem(rule.sections, name, value):
             raise RuleError(f"params.{name}: {problem}")
-    for signal in case.missing:
+    for signal in case.missing_signals:
         if problem := vocabularies()["signal"].problem(signal):
             raise RuleError(f"missing: {problem}")
 
@@ -215,10 +215,10 @@ def coverage_problem(cases: Sequence[Case]) -> str:
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
-    with _placed(rule, case):
+    with _with_location(rule, case):
         message = difference(case, judge(rule, case))
     of_pairs = rule.kind == "invariant" and rule.per_object and "applies" not in rule.sections
-    if message and of_pairs and "pair" not in case.given:
+    if message and of_pairs and "pair" not in case.given_tables:
         message += (
             "; without @applies, an invariant about objects is judged for the actors of pair, and this case has none"
         )
@@ -231,7 +231,7 @@ def case_location(rule: Rule, case: Case) -> str:
 
 
 @contextmanager
-def _placed(rule: Rule, case: Case) -> Iterator[None]:
+def _with_location(rule: Rule, case: Case) -> Iterator[None]:
     """Add the location of the case to errors raised inside."""
     try:
         yield
@@ -249,15 +249,17 @@ def difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
 
 def judge(rule: Rule, case: Case) -> merged_cases.CaseOutcome:
     """Judge one case alone. Errors: `RuleError` for tables, columns or values that cannot be understood."""
-    return merged_cases.judge([rule], complete_scene(rule, case.given, case.missing), case.params)[rule.id]
+    return merged_cases.judge([rule], complete_scene(rule, case.given_tables, case.missing_signals), case.params)[
+        rule.id
+    ]
 
 
 def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.NumberedCase]:
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
     found = []
     for no, case in enumerate(cases):
-        with _placed(rule, case):
-            scene = complete_scene(rule, case.given, case.missing)
+        with _with_location(rule, case):
+            scene = complete_scene(rule, case.given_tables, case.missing_signals)
             found.append(merged_cases.NumberedCase(no, scene, case.params))
     return found
 
@@ -309,14 +311,19 @@ def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) 
     return ""
 
 
-def _same(wanted: Any, got: Any, scale: int) -> bool:
-    if isinstance(wanted, bool) or wanted is None or got is None or isinstance(wanted, str):
-        return bool(wanted == got)
-    if scale != 1 or isinstance(got, int):
-        return bool(round(Decimal(str(wanted)) * scale) == got)
-    exponent = Decimal(str(wanted)).as_tuple().exponent
+def _same(expected_value: Any, actual_value: Any, scale: int) -> bool:
+    if (
+        isinstance(expected_value, bool)
+        or expected_value is None
+        or actual_value is None
+        or isinstance(expected_value, str)
+    ):
+        return bool(expected_value == actual_value)
+    if scale != 1 or isinstance(actual_value, int):
+        return bool(round(Decimal(str(expected_value)) * scale) == actual_value)
+    exponent = Decimal(str(expected_value)).as_tuple().exponent
     decimals = max(2, -exponent if isinstance(exponent, int) else 2)
-    return abs(float(wanted) - float(got)) <= 0.5 * 10.0**-decimals + 1e-9
+    return abs(float(expected_value) - float(actual_value)) <= 0.5 * 10.0**-decimals + 1e-9
 
 
 def _brief(row: Row) -> str:

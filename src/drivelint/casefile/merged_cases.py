@@ -22,7 +22,7 @@ MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive
 """The key column that keeps merged cases apart -> what each case is in the merged scene."""
 
 _MARKED = ("drive_id", "ego_id", "environment_id")
-_FOUND = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
+_FINDING_ORDER = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
 _ORDER = (
     "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
 )
@@ -59,7 +59,7 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
         outcomes = {rule.id: CaseOutcome([], []) for rule in rules}
         for row in con.execute(f"FROM verdict ORDER BY {_ORDER}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].verdicts.append(row)
-        for row in con.execute(f"FROM finding ORDER BY {_FOUND}").to_arrow_table().to_pylist():
+        for row in con.execute(f"FROM finding ORDER BY {_FINDING_ORDER}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].findings.append(row)
         return outcomes
     finally:

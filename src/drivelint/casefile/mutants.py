@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from drivelint.catalogue.allowed import macros
+from drivelint.catalogue.allowed_sql import macros
 from drivelint.sql.syntax import column_name, parser, syntax_tree
 
 if TYPE_CHECKING:

@@ -47,9 +47,9 @@ def _tables() -> dict[str, dict[str, Any]]:
     return tables
 
 
-def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str]) -> dict[str, list[Row]]:
+def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
     """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError`."""
-    scene = {table: _rows(table, blocks) for table, blocks in given.items()}
+    scene = {table: _rows(table, blocks) for table, blocks in given_tables.items()}
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
     scene["clock"] = _clocks(scene["step"], clock)
@@ -59,14 +59,14 @@ def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str])
     new = [{"drive_id": d, "sha256": f"hash of {d}"} for d in dict.fromkeys(d for d, _ in subjects) if d not in logged]
     scene["data_log"] = [*scene.get("data_log", ()), *new]
     answered = {row["signal"] for row in scene.get("capability", ())}
-    signals = [s for s in dict.fromkeys([*rule.requires, *missing]) if s not in answered]
+    signals = [s for s in dict.fromkeys([*rule.requires, *missing_signals]) if s not in answered]
     scene["capability"] = scene.get("capability", []) + [
         {
             "drive_id": d,
             "ego_id": e,
             "signal": s,
-            "available": s not in missing,
-            "reason": f"no {s} in this log" if s in missing else "in the log",
+            "available": s not in missing_signals,
+            "reason": f"no {s} in this log" if s in missing_signals else "in the log",
         }
         for d, e in subjects
         for s in signals
@@ -74,12 +74,12 @@ def complete_scene(rule: Rule, given: Mapping[str, Any], missing: Sequence[str])
     return scene
 
 
-def _rows(table: str, given: Any) -> list[Row]:
+def _rows(table: str, blocks: Any) -> list[Row]:
     """Spread the blocks of one table into rows."""
     if table not in _tables():
         raise RuleError(f"given: there is no table {table!r}; {hint(table, _tables())}")
     rows: list[Row] = []
-    for block in given if isinstance(given, list) else [given]:
+    for block in blocks if isinstance(blocks, list) else [blocks]:
         if not isinstance(block, dict):
             raise RuleError(f"given: {table}: a block is 'column: value' pairs, not {block!r}")
         rows += _block(table, block, f"given: {table}")
@@ -189,16 +189,16 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
     return rows
 
 
-def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
+def _steps(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
     """Return the step rows of every subject, from `step` or from the times that the scene uses."""
-    grids = {t: rows for t, rows in given.items() if rows and _is_grid(t)}
-    sources = {"step": given["step"]} if "step" in given else grids
+    grids = {t: rows for t, rows in scene.items() if rows and _is_grid(t)}
+    sources = {"step": scene["step"]} if "step" in scene else grids
     times: dict[tuple[str, str], set[int]] = {}
-    for row in (row for rows in (sources or given).values() for row in rows):
+    for row in (row for rows in (sources or scene).values() for row in rows):
         names = ["t_ns"] if sources else [name for name in row if name.endswith("_ns") and name not in _DURATIONS]
         used = {row[name] for name in names if row.get(name) is not None}
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
-    said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in given.get("step", ())}
+    said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in scene.get("step", ())}
     steps: list[Row] = []
     for (drive, ego), moments in times.items():
         ordered = sorted(moments)
@@ -212,10 +212,10 @@ def _steps(given: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
     return steps
 
 
-def _engaged(steps: Iterable[Row], given: Iterable[Row]) -> list[Row]:
+def _engaged(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
     """Return the conditions of every step: `engaged` is true by default, the others are unknown unless the case gives them."""
     keys = ("drive_id", "ego_id", "t_ns")
-    said = {tuple(row.get(key) for key in keys): row for row in given}
+    said = {tuple(row.get(key) for key in keys): row for row in condition_rows}
     at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *said])
     return [{**dict(zip(keys, key, strict=True)), "engaged": True, **said.get(key, {})} for key in at]
 
@@ -230,12 +230,12 @@ def _period(ordered: Sequence[int]) -> int:
     return int(median(b - a for a, b in pairwise(ordered))) if len(ordered) > 1 else 100_000_000
 
 
-def _clocks(steps: Iterable[Row], given: Sequence[Row]) -> list[Row]:
+def _clocks(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
     """Return one clock row per drive and ego, with what the case gives replacing the defaults."""
     times: dict[tuple[str, str], list[int]] = {}
     for row in steps:
         times.setdefault((row["drive_id"], row["ego_id"]), []).append(row["t_ns"])
-    said = {(row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)): row for row in given if row}
+    said = {(row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)): row for row in clock_rows if row}
     clocks = []
     for drive, ego in dict.fromkeys([*times, *said]):
         used = sorted(times.get((drive, ego), [0]))

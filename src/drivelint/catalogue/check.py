@@ -1,6 +1,6 @@
 """Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
 
-What stands in DuckDB's syntax tree is held against the lists in `allowed`: that DuckDB can parse or serialise a statement
+What stands in DuckDB's syntax tree is held against the lists in `allowed_sql`: that DuckDB can parse or serialise a statement
 says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import duckdb
 
-from drivelint.catalogue import allowed
-from drivelint.catalogue.allowed import ENGINE_TABLES
+from drivelint.catalogue import allowed_sql
+from drivelint.catalogue.allowed_sql import ENGINE_TABLES
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
@@ -110,7 +110,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
 
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
-    `allowed` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
+    `allowed_sql` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
     """
     text = _Text(sql, file, line)
     statement, node = _parsed(text)
@@ -188,7 +188,7 @@ class _Found:
             self._table(part, ctes)
         elif kind == "TABLE_FUNCTION":
             name = str(part["function"]["function_name"]).lower()
-            if name not in allowed.TABLE_FUNCTIONS | allowed.macros():
+            if name not in allowed_sql.TABLE_FUNCTIONS | allowed_sql.macros():
                 self._refuse(part["function"], f"table function {name}() is not allowed in a rule")
         elif _is_foreign(part):
             self._refuse(part, f"{_plain(kind)} is not allowed in a rule: write a plain SELECT")
@@ -197,16 +197,16 @@ class _Found:
 
     def _expression(self, part: Node) -> None:
         kind = part["class"]
-        if kind not in allowed.EXPRESSIONS:
+        if kind not in allowed_sql.EXPRESSIONS:
             self._refuse(part, f"{_plain(kind)} is not allowed in a rule")
         name = str(part.get("function_name", "")).lower()
-        if name and name not in allowed.functions():
+        if name and name not in allowed_sql.functions():
             self._refuse(
                 part,
                 f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
                 "nothing but the tables, and the library's macros",
             )
-        if name in allowed.ORDERED and not _is_ordered(part):
+        if name in allowed_sql.ORDERED and not _is_ordered(part):
             self._refuse(part, f"{name}() without ORDER BY takes another row every time: order them, or write max(...)")
         if name == "why":
             place = self._text.at(offset_of(part))
@@ -219,7 +219,7 @@ class _Found:
             self.column_names.add(part["column_names"][-1].lower())
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
-            if word in allowed.REFUSED_NAMES:
+            if word in allowed_sql.REFUSED_NAMES:
                 self._refuse(part, f"{word} does not give the same answer every time: a rule may not use it")
 
     def _table(self, part: Node, ctes: frozenset[str]) -> None:
@@ -229,8 +229,8 @@ class _Found:
             self._refuse(part, "AT (...) is not allowed in a rule")
         if whole in ctes:
             return
-        if whole not in allowed.tables():
-            near = hint(whole, allowed.tables())
+        if whole not in allowed_sql.tables():
+            near = hint(whole, allowed_sql.tables())
             known = near if near.startswith("did") else "they read the tables of schemas/*.sql only"
             self._refuse(part, f"there is no table {whole!r} for rules; {known}")
             return
@@ -238,7 +238,7 @@ class _Found:
 
     def _cte(self, entry: Node) -> None:
         name = str(entry["key"]).lower()
-        if name in allowed.tables() or name.startswith("_"):
+        if name in allowed_sql.tables() or name.startswith("_"):
             select = entry["value"]["query"]["node"]
             self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
 
@@ -272,8 +272,8 @@ def _is_foreign(part: Node) -> bool:
     """Whether a node is a source of rows or a query, and none of those that a rule may be made of."""
     kind = str(part.get("type"))
     if {"alias", "sample"} <= part.keys():
-        return kind not in allowed.SOURCES
-    return kind.endswith("_NODE") and kind not in allowed.NODES
+        return kind not in allowed_sql.SOURCES
+    return kind.endswith("_NODE") and kind not in allowed_sql.NODES
 
 
 def _plain(kind: object) -> str:

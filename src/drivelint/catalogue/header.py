@@ -69,7 +69,7 @@ STANDING: Final = "standing"
 """Tag of the rules that an ego which never moves is judged by, too."""
 EXCUSES: Final = "excuses"
 """Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
-OTHERS: Final = "road_users"
+ROAD_USERS: Final = "road_users"
 """The signal that every rule needs that looks at others than the ego: whoever was around the ego was recorded."""
 
 

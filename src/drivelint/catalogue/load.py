@@ -96,12 +96,12 @@ _RULES: Final = Memo[Rule]("rules", Rule)
 
 @lru_cache(maxsize=1024)  # a process that checks many times reads its rules each time, and they seldom change
 def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
-    def checked() -> Rule:
+    def parse_rule() -> Rule:
         from drivelint.catalogue.rule_file import checked_rule  # and with it what reads SQL
 
         return checked_rule(file, pack, pack_title, content, with_words=with_words)
 
-    return _RULES.of("\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), checked)
+    return _RULES.of("\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), parse_rule)
 
 
 @cache

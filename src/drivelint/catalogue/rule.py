@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 
-from drivelint.catalogue.header import OTHERS, Header
+from drivelint.catalogue.header import ROAD_USERS, Header
 
 
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -41,14 +41,18 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     def looks_at_others(self) -> bool:
         """Whether it reads of others than the ego, or names them; of a section with a star that is not known, and taken to be so."""
         whole = self.columns.keys() >= self.sections.keys()
-        return OTHERS in self.needed or not whole or any("object_id" in columns for columns in self.columns.values())
+        return (
+            ROAD_USERS in self.needed_signals
+            or not whole
+            or any("object_id" in columns for columns in self.columns.values())
+        )
 
     @property
-    def needed(self) -> tuple[str, ...]:
+    def needed_signals(self) -> tuple[str, ...]:
         """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
         from drivelint.sql.derivations import with_sources  # and with it the database
 
-        return (*self.requires, *((OTHERS,) if "pair" in with_sources(self.reads) else ()))
+        return (*self.requires, *((ROAD_USERS,) if "pair" in with_sources(self.reads) else ()))
 
     def has_column(self, column: str) -> bool:
         """Whether the condition returns this column."""

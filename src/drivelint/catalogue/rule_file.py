@@ -195,17 +195,17 @@ def _check_sections(
 
 
 def _check_columns(
-    columns: tuple[str, ...] | None, needed: tuple[str, ...], allowed: tuple[str, ...], where: str
+    columns: tuple[str, ...] | None, required_columns: tuple[str, ...], allowed_columns: tuple[str, ...], where: str
 ) -> Iterator[str]:
     if columns is None:
         yield (f"{where} must name every column it returns: no star, and AS for every expression")
         return
     if len(set(columns)) != len(columns):
         yield (f"{where} returns a column twice: {', '.join(columns)}")
-    if missing := [c for c in needed if c not in columns]:
-        yield (f"{where} must return {', '.join(needed)}; {', '.join(missing)} missing")
-    if stray := [c for c in columns if c not in allowed]:
-        yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed)}")
+    if missing := [c for c in required_columns if c not in columns]:
+        yield (f"{where} must return {', '.join(required_columns)}; {', '.join(missing)} missing")
+    if stray := [c for c in columns if c not in allowed_columns]:
+        yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed_columns)}")
 
 
 def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:

@@ -22,7 +22,7 @@ def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place:
     Errors: `RuleError` for the first wrong word, with the nearest good one.
     """
     try:
-        found = _checked(sections)
+        found = _check_sections(sections)
     except RecursionError as error:
         raise RuleError(f"{place('condition', 0)}: too deeply nested to be checked: split it into CTEs") from error
     for name, checked in found.items():
@@ -38,14 +38,14 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     if not isinstance(value, str):
         return None
     given = Words(literals={value: Literal(None)}, direct=True)
-    for checked in _checked(sections).values():
+    for checked in _check_sections(sections).values():
         for other in checked.parameters.get(name, ()):
             for wrong in wrong_words(given, other):
                 return wrong.message
     return None
 
 
-def _checked(sections: Mapping[str, str]) -> dict[str, word_check.Checked]:
+def _check_sections(sections: Mapping[str, str]) -> dict[str, word_check.Checked]:
     """Return each section with its words checked; the others see the columns of @reference in the engine's tables."""
     found: dict[str, word_check.Checked] = {}
     tables: dict[str, Relation] = {}

@@ -114,7 +114,7 @@ def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
     found = [rules[rule_id] for rule_id, mine in words.items() if word.casefold() in mine]
     if not found:
         known = sorted({name for mine in words.values() for name in mine})
-        shown = f"; known are {', '.join(known)}" if len(known) <= _FEW else ""
+        shown = f"; known are {', '.join(known)}" if len(known) <= _MAX_LISTED_WORDS else ""
         raise UsageError(f"no rule has the {method} {word!r}{_nearest(word, known) or shown}")
     return found
 
@@ -135,12 +135,12 @@ _METHODS: Final[dict[str, Callable[[Rule], set[str]]]] = {
     "clause": clause_names,
     "requires": lambda rule: set(rule.requires),
 }
-_FEW: Final = 12
+_MAX_LISTED_WORDS: Final = 12
 
 
-def _nearest(word: str, known: Iterable[str]) -> str:
+def _nearest(word: str, candidates: Iterable[str]) -> str:
     """Return '; did you mean ...?', or ''. A rule may also be meant by a part of its id."""
-    names = {name: name for name in known}
+    names = {name: name for name in candidates}
     names |= {name.split(".", 1)[1]: name for name in list(names) if "." in name}
     holding = sorted((len(name), name) for name in names.values() if word in name)  # r162: the rule, not one alike
     near = [holding[0][1]] if holding else [names[n] for n in get_close_matches(word, names, n=1, cutoff=0.4)]

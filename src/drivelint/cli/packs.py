@@ -155,7 +155,7 @@ def verify(
     for note in found.notes:
         typer.echo(f"drivelint: {inert_line(note)}", err=True)
     for problem in found.problems:
-        typer.echo(f"{problem.kind}: {inert_line(problem.what)}")
+        typer.echo(f"{problem.kind}: {inert_line(problem.subject)}")
     if not found.problems:
         typer.echo(inert(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))

@@ -94,7 +94,7 @@ class CheckReceipts:
         """
         if self._key is None:
             return None
-        with store.opened(self._key) as found:
+        with store.open_receipt(self._key) as found:
             if found is None or found.receipt.day not in {None, self._day}:
                 return None
             if not found.receipt.inputs.are_unchanged(self._is_output):

@@ -225,7 +225,7 @@ def _watch_and_check(
         opened.close()
         for text in opened.notes():
             emit(messages.note(text))
-        progress.note(watched.told())
+        progress.note(watched.timing_text())
         interruption.begin_check()
         result = check_recording(
             settings,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from drivelint.engine.barrier import RefusedLog, refused
+from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.interruption import InterruptedRunError
 from drivelint.errors import DriveLintError
 
@@ -30,7 +30,7 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list
         if isinstance(error, DriveLintError) and error.is_of_the_run:
             raise
         if len(drives) == 1:
-            refusals.append(refused(drives[0].trace.path, error))
+            refusals.append(refusal_of(drives[0].trace.path, error))
             return
         # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)

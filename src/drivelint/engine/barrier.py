@@ -22,7 +22,7 @@ class RefusedLog:
     error: DriveLintError
 
 
-def refused(path: Path, error: BaseException) -> RefusedLog:
+def refusal_of(path: Path, error: BaseException) -> RefusedLog:
     """Return the refusal of a log for an error in reading or judging it.
 
     Errors: the error itself, where it is no drive's: a wish to stop, or a fault of the run.
@@ -37,10 +37,10 @@ def refused(path: Path, error: BaseException) -> RefusedLog:
         return RefusedLog(path, TraceError(f"{path}: {str(error).splitlines()[0]}"))
     if isinstance(error, KeyboardInterrupt | SystemExit | GeneratorExit):
         raise error
-    return RefusedLog(path, InternalError(f"{path}: {_told(error)}"))
+    return RefusedLog(path, InternalError(f"{path}: {_error_text(error)}"))
 
 
-def _told(error: BaseException) -> str:
+def _error_text(error: BaseException) -> str:
     """Return what an unexpected error says, and where it was raised."""
     frames = traceback.extract_tb(error.__traceback__)
     where = f" ({frames[-1].filename.rpartition('drivelint/')[2]}:{frames[-1].lineno})" if frames else ""

@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
-from drivelint.engine.barrier import RefusedLog, refused
+from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.earth import place_on_earth
 from drivelint.errors import MapError
 from drivelint.formats import read_trace
@@ -122,7 +122,7 @@ def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive |
     try:
         return drive_with_map(future.result(), library)
     except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
-        return refused(path, error)
+        return refusal_of(path, error)
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:

@@ -39,8 +39,8 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     Whoever gives `--map-offset` or `--map-origin` has said how they lie to each other. Heights stay as they are.
     Errors: `MapError` where lengths or shapes would not be kept.
     """
-    own, theirs = frame_of_log(trace)[0], frame_of_map(environment)
-    if not own or not theirs or _is_said_by_the_user(environment):
+    log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)
+    if not log_frame or not map_frame or _is_said_by_the_user(environment):
         return trace
     states = trace.tables["actor_state"]
     columns = {c: floats(states[c]).copy() for c in states.column_names if pa.types.is_floating(states[c].type)}
@@ -49,10 +49,14 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     if not placed.any():
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
-    turn, stretch = _similarity(own, theirs, low, high)
+    turn, stretch = _similarity(log_frame, map_frame, low, high)
     # what lies a metre beside a place tells by how much a heading turns there
-    there, beside = np.split(_through(own, theirs, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2)
-    now = replace(trace, geo_reference=theirs.reference, geo_offset=(theirs.x_m, theirs.y_m, theirs.yaw_rad))
+    there, beside = np.split(
+        _through(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2
+    )
+    now = replace(
+        trace, geo_reference=map_frame.reference, geo_offset=(map_frame.x_m, map_frame.y_m, map_frame.yaw_rad)
+    )
     if np.abs(there - xy[placed]).max() < SAME_M:
         return now
     angle = np.full(len(xy), turn)
@@ -63,7 +67,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         if x in columns:
             columns[x], columns[y] = turned(columns[x], columns[y], angle)
     message = (
-        f"the log's coordinates are {own.reference!r}, the map's {theirs.reference!r}: the log is moved into the map's, turned by "
+        f"the log's coordinates are {log_frame.reference!r}, the map's {map_frame.reference!r}: the log is moved into the map's, turned by "
         f"{math.degrees(turn):.4f} degrees, lengths times {stretch:.5f}"
     )
     moved = replace(now, tables={**trace.tables, "actor_state": with_columns(states, columns)})
@@ -81,21 +85,22 @@ def _is_said_by_the_user(environment: MapTables) -> bool:
     return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_tangent_plane(row["geo_reference"]))
 
 
-def _similarity(own: GeoFrame, theirs: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
+def _similarity(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
     """Return turn (radians) and stretch in the middle of an area. Errors: `MapError` where lengths or shapes in it are not kept."""
     at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
     ends = np.concatenate([at, at + np.array([STEP_M, 0.0]), at + np.array([0.0, STEP_M])])
-    start, along, across = np.split(_through(own, theirs, ends), 3)
+    start, along, across = np.split(_through(log_frame, map_frame, ends), 3)
     along, across = along - start, across - start
     bent = np.hypot(*(across - along[:, ::-1] * (-1.0, 1.0)).T).max()
     lengths = np.hypot(*along.T)
     if not (bent <= SHAPE_TOLERANCE_M and np.abs(lengths - STEP_M).max() <= LENGTH_TOLERANCE_M):
         raise MapError(
-            f"the log's coordinates ({own.reference!r}) cannot be moved into the map's ({theirs.reference!r}): {STEP_M:.0f} m would be "
-            f"{lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; bring log and map into one projection"
+            f"the log's coordinates ({log_frame.reference!r}) cannot be moved into the map's ({map_frame.reference!r}): "
+            f"{STEP_M:.0f} m would be {lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; "
+            "bring log and map into one projection"
         )
     return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / STEP_M)
 
 
-def _through(own: GeoFrame, theirs: GeoFrame, xy: Floats) -> Floats:
-    return theirs.unproject(geo_reference.transform(own.project(xy), own.reference, theirs.reference))
+def _through(log_frame: GeoFrame, map_frame: GeoFrame, xy: Floats) -> Floats:
+    return map_frame.unproject(geo_reference.transform(log_frame.project(xy), log_frame.reference, map_frame.reference))

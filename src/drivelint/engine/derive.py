@@ -13,7 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
-from drivelint.sql.derivations import ALWAYS_NEEDED, needed
+from drivelint.sql.derivations import ALWAYS_NEEDED, needed_derivations
 from drivelint.sql.statements import statement, texts
 
 if TYPE_CHECKING:
@@ -34,17 +34,19 @@ def derive(
     *,
     of_the_map: bool,
     also: Iterable[str] = ALWAYS_NEEDED,
-    given: Collection[str] = (),
+    filled_tables: Collection[str] = (),
 ) -> None:
     """Fill the library tables behind `tables`: those of the map, whose own tables get their geometries, or those of the drives.
 
-    `also`: tables that are wanted whatever the rules read. `given`: tables that are filled already.
+    `also`: tables that are wanted whatever the rules read. `filled_tables`: tables that are filled already.
     Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
     transaction, whose rows the other connections do not see.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
     todo = {
-        step.table: step for step in needed(tables, also) if step.of_the_map is of_the_map and step.table not in given
+        step.table: step
+        for step in needed_derivations(tables, also)
+        if step.of_the_map is of_the_map and step.table not in filled_tables
     }
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()

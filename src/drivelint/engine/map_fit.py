@@ -59,15 +59,15 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
     )
 
 
-def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, most: int) -> LaneHeadings:
+def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, max_positions: int) -> LaneHeadings:
     """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
 
-    Of them `most` are looked at, evenly spread.
+    Of them `max_positions` are looked at, evenly spread.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
     if len(known) < LEAST_VOTES or not len(lanes.lines):
         return LaneHeadings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
-    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
+    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(max_positions, len(known))).astype(np.int64))]
     points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
     state, lane = lanes.areas.query(points, predicate="intersects")
     single = np.bincount(state, minlength=len(chosen))[state] == 1
@@ -75,11 +75,11 @@ def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floa
     return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading(lanes.lines[lane], points[state])) > 0, lane)
 
 
-def vote_handedness(handedness: str, seen: LaneHeadings) -> str | None:
+def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
     """Return lht or rht by the headings of moving vehicles; None: too few, or they disagree."""
-    if len(seen.agree) < LEAST_VOTES:
+    if len(headings.agree) < LEAST_VOTES:
         return None
-    agree = float(np.mean(seen.agree))
+    agree = float(np.mean(headings.agree))
     if agree >= AGREEMENT_SHARE:
         return handedness
     if agree <= 1 - AGREEMENT_SHARE:
@@ -87,14 +87,14 @@ def vote_handedness(handedness: str, seen: LaneHeadings) -> str | None:
     return None
 
 
-def reversed_road(lanes: OneWayLanes, seen: LaneHeadings) -> str | None:
+def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
     """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane.
 
     Two roads of one direction each, one beside the other, count as one.
     """
-    if len(seen.agree) < LEAST_VOTES or float(np.mean(seen.agree)) > 1 - AGREEMENT_SHARE:
+    if len(headings.agree) < LEAST_VOTES or float(np.mean(headings.agree)) > 1 - AGREEMENT_SHARE:
         return None
-    against = seen.lane[~seen.agree]
+    against = headings.lane[~headings.agree]
     for road in sorted({str(name) for name in lanes.road[against]}):
         here = against[lanes.road[against] == road]
         if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_REVERSED_EACH_WAY:
@@ -132,19 +132,19 @@ def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int,
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
     looked = found = 0
-    for most in (FIRST_POSITIONS, MOST_POSITIONS):
+    for max_positions in (FIRST_POSITIONS, MOST_POSITIONS):
         if found or looked == len(known):
             break
-        chosen = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).astype(np.int64))]
+        chosen = known[np.unique(np.linspace(0, len(known) - 1, min(max_positions, len(known))).astype(np.int64))]
         points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
         looked, found = len(chosen), len(np.unique(lanes.query(points, predicate="intersects")[0]))
     return looked, found
 
 
-def _shapes(environment: MapTables, wanted: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
+def _shapes(environment: MapTables, lanelet_ids: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
     """Return areas and centre lines of these lanelets."""
     points = environment.tables["lane_point"]
-    points = points.filter(pc.is_in(points["lanelet_id"], value_set=wanted.combine_chunks())).sort_by(
+    points = points.filter(pc.is_in(points["lanelet_id"], value_set=lanelet_ids.combine_chunks())).sort_by(
         [("lanelet_id", "ascending"), ("k", "ascending")]
     )
     ids = points["lanelet_id"].to_numpy(zero_copy_only=False)

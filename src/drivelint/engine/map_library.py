@@ -173,11 +173,11 @@ class MapLibrary:
             f"{correction_hint(side, source)}."
         )
 
-    def _headings(self, environment: MapTables, states: pa.Table, most: int) -> LaneHeadings:
+    def _headings(self, environment: MapTables, states: pa.Table, max_positions: int) -> LaneHeadings:
         speed = np.hypot(floats(states["vx_mps"]), floats(states["vy_mps"]))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
-        return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, most)
+        return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, max_positions)
 
     def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource | None:
         """Return the one map on which the drive lies, of those that can be read; None: there is none.

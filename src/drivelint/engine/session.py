@@ -22,7 +22,13 @@ from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
-from drivelint.sql.derivations import ALWAYS_NEEDED, NEEDED_OF_DRIVES, NEEDED_OF_RULES, derived_tables, needed
+from drivelint.sql.derivations import (
+    ALWAYS_NEEDED,
+    NEEDED_OF_DRIVES,
+    NEEDED_OF_RULES,
+    derived_tables,
+    needed_derivations,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -112,7 +118,7 @@ class JudgingSession:
         return None if self._margins is None else self._margins.path
 
     @property
-    def judged(self) -> frozenset[str]:
+    def judged_drive_ids(self) -> frozenset[str]:
         """The ids of the drives that were judged."""
         return frozenset(self._seen)
 
@@ -273,7 +279,7 @@ class JudgingSession:
 
     def _filled(self, *lifetimes: str) -> list[str]:
         """Return the tables of these lifetimes that are ever filled: those of a log, and those derived that the rules need."""
-        unneeded = derived_tables() - {each.table for each in needed(self._tables, self._also)}
+        unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
         return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
     def _attach(self, path: Path) -> None:

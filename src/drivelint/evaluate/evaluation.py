@@ -38,7 +38,7 @@ MOST_PENDING_ROWS: Final = 50_000
 class _StepsToJudge(NamedTuple):
     """Which steps of an invariant's grid are judged one by one, and how many they are; -1: that is not known."""
 
-    which: invariant.Steps
+    selection: invariant.Steps
     n: int
 
 
@@ -150,7 +150,7 @@ class Evaluation:
                 binding = todo.popleft()
             except IndexError:
                 return
-            if (lost := self.limits.lost(binding.rule.id)) is not None:
+            if (lost := self.limits.excess_of(binding.rule.id)) is not None:
                 self._record(binding, lost, again=True)
                 continue
             if self._has_no_occasion(binding):
@@ -215,7 +215,7 @@ class Evaluation:
         if steps is None:
             return
         n_judged = self._execute(
-            invariant.judged_steps_sql(rule, partial, self._check_engagement, steps.which), binding
+            invariant.judged_steps_sql(rule, partial, self._check_engagement, steps.selection), binding
         )
         self._n_pending += n_judged
         # as many rows as the grid has steps: none can be double
@@ -326,8 +326,8 @@ class Evaluation:
         else:
             self._record(binding, "rule_error", f"rule {binding.rule.id}: {str(error).splitlines()[0]}")
 
-    def _record(self, binding: Binding, code: str, told: str | None = None, *, again: bool = False) -> None:
-        values = {"no": binding.no, "code": code, "told": told, "again": again, "rule": binding.rule.id}
+    def _record(self, binding: Binding, code: str, detail: str | None = None, *, again: bool = False) -> None:
+        values = {"no": binding.no, "code": code, "told": detail, "again": again, "rule": binding.rule.id}
         self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_s})
 
 

@@ -60,7 +60,7 @@ class DeafRules(Protocol):
 class RuleLimits:
     """The limits of every rule of a run, and which rules have lost their turn.
 
-    `seconds`: of computing per rule and batch, None: no limit. `deaf`: for rules that did not heed the interrupt within the same time
+    `seconds`: of computing per rule and batch, None: no limit. `deaf_rules`: for rules that did not heed the interrupt within the same time
     again; None: the interrupt is repeated until the rule ends.
     """
 
@@ -69,7 +69,7 @@ class RuleLimits:
         seconds: float | None = DEFAULT_TIMEOUT_S,
         *,
         task: str = "drives",
-        deaf: DeafRules | None = None,
+        deaf_rules: DeafRules | None = None,
     ) -> None:
         self.seconds = seconds
         self.batches = 1.0
@@ -77,7 +77,7 @@ class RuleLimits:
         self.memory: Callable[[], int | None] = lambda: None
         """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
-        self._deaf = deaf
+        self._deaf = deaf_rules
         self._lost: dict[str, Excess] = {}
         self._excesses: Counter[str] = Counter()
         self.forget()
@@ -87,7 +87,7 @@ class RuleLimits:
         """Seconds that a rule may compute on what is judged at present."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
-    def lost(self, rule_id: str) -> Excess | None:
+    def excess_of(self, rule_id: str) -> Excess | None:
         """Return the limit because of which a rule is not tried any more; None: it is tried."""
         return self._lost.get(rule_id)
 
@@ -102,31 +102,31 @@ class RuleLimits:
 
         `alone`: no other rule runs meanwhile, so that the memory that the process takes is this rule's.
         """
-        held = Held()
+        rule_run = Held()
         if self.seconds is None:
-            yield held
+            yield rule_run
             return
-        args = (con, rule_id, held, alone, threading.get_native_id())
+        args = (con, rule_id, rule_run, alone, threading.get_native_id())
         watch = Thread(target=self._watch, args=args, daemon=True, name=f"limits of {rule_id}")
         watch.start()
         try:
-            yield held
+            yield rule_run
         finally:
-            with held.lock:
-                held.over.set()
-            if held.excess is not None:
+            with rule_run.lock:
+                rule_run.over.set()
+            if rule_run.excess is not None:
                 self._excesses[rule_id] += 1
                 if self._excesses[rule_id] >= MOST_EXCESSES:
-                    self._lost[rule_id] = held.excess
+                    self._lost[rule_id] = rule_run.excess
 
-    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, held: Held, alone: bool, thread: int) -> None:
+    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, rule_run: Held, alone: bool, thread: int) -> None:
         seconds = self.allowed_s or 0.0
         work, before = Work(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # what the process may have at most before the rule is not waited for
-        while not held.over.wait(min(_LOOK_S, seconds)):
+        while not rule_run.over.wait(min(_LOOK_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
-            excess = held.excess
+            excess = rule_run.excess
             if excess is None:
                 memory = self.memory() if alone else None
                 if memory is None:
@@ -140,10 +140,10 @@ class RuleLimits:
                     continue
             elif most is not None and resident > most:
                 patience = now  # also of a rule that is interrupted for its time, and goes on growing
-            with held.lock:
-                if held.over.is_set():
+            with rule_run.lock:
+                if rule_run.over.is_set():
                     return
-                held.excess = excess
+                rule_run.excess = excess
                 machine_bound(f"rule {rule_id} went beyond its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:

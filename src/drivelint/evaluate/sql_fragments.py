@@ -142,10 +142,10 @@ def deciding_step(rule: Rule) -> str:
     return step_by_rank(good, bad, unknown, "-" if eventually else "", "")
 
 
-def step_by_rank(good: int, bad: int, unknown: int, sign: str, whose: str) -> str:
-    """Return the aggregate that picks a step by these ranks, then by margin, time and `whose`: fields for the object, or ''."""
+def step_by_rank(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
+    """Return the aggregate that picks a step by these ranks, then by margin, time and `object_fields`: fields for the object, or ''."""
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
         f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, unknown_time_ns()), "
-        f"{whose}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
+        f"{object_fields}'observed': observed, 'required': required, 'holds': holds, 'code': code, 'reason': reason}})"
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.catalogue.header import CONTACT, OTHERS, STANDING
+from drivelint.catalogue.header import CONTACT, ROAD_USERS, STANDING
 from drivelint.drive import conditions
 from drivelint.evaluate import applicability
 from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
@@ -24,9 +24,11 @@ if TYPE_CHECKING:
 
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
 """Tables that hold what rules found; those of a second connection are appended to them."""
-_ALLOWED = pa.schema([("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))])
+_ALLOWED_WORD_SCHEMA = pa.schema(
+    [("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))]
+)
 _QUANTITIES = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
-_MADE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
+_CREATED_TABLE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
@@ -39,7 +41,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     # as Arrow tables: lists bound as parameters took a tenth of a second each
     store.insert(con, "_rule", _rules(bindings))
     store.insert(con, "_needs", _needs(bindings))
-    store.insert(con, "_allowed", _allowed(bindings))
+    store.insert(con, "_allowed", _allowed_words(bindings))
     con.execute(statement("judging/todo"))
     sql = "SELECT rule_no, count(*), count(o.rule_no) FROM _todo t LEFT JOIN _outside o USING (rule_no, drive_id, ego_id) GROUP BY rule_no"
     counts = con.execute(sql).fetchall()
@@ -59,7 +61,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         rule, sources = binding.rule, with_sources(binding.rule.reads)
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
-        row |= {"of_others": OTHERS in rule.needed, "of_hidden": "hidden" in sources}
+        row |= {"of_others": ROAD_USERS in rule.needed_signals, "of_hidden": "hidden" in sources}
         row |= {
             "of_lanes": bool({"registration", "way"} & set(rule.requires)),
             "of_contact": CONTACT in rule.tags,
@@ -75,11 +77,11 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
 def _needs(bindings: Sequence[Binding]) -> pa.Table:
     return pa.Table.from_pylist([
         {
-            "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == OTHERS,
+            "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == ROAD_USERS,
             "may_be_unrecorded": signal in SIGNALS_OF_FEW_LOGS and not b.rule.is_named,
         }
         for b in bindings
-        for pos, signal in enumerate(b.rule.needed)
+        for pos, signal in enumerate(b.rule.needed_signals)
     ])  # fmt: skip
 
 
@@ -88,7 +90,7 @@ def _quantities(bindings: Sequence[Binding]) -> pa.Table:
     return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITIES)
 
 
-def _allowed(bindings: Sequence[Binding]) -> pa.Table:
+def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
     """Return the words that each rule's law and conditions allow, and those that leave it open whether they do."""
     columns = ("rule_no", "code", "condition", "word")
     rows = []
@@ -99,10 +101,10 @@ def _allowed(bindings: Sequence[Binding]) -> pa.Table:
         for code, condition, words in asked:
             known = (*conditions.with_narrower_values(words), *conditions.broader_values(words))
             rows += [(b.no, code, condition, word) for word in known]
-    return pa.table({name: [row[at] for row in rows] for at, name in enumerate(columns)}, schema=_ALLOWED)
+    return pa.table({name: [row[at] for row in rows] for at, name in enumerate(columns)}, schema=_ALLOWED_WORD_SCHEMA)
 
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
     """Drop the run's temporary tables."""
-    made = [("TABLE", "_worded"), *_MADE.findall("\n".join(texts("judging").values()))]
+    made = [("TABLE", "_worded"), *_CREATED_TABLE.findall("\n".join(texts("judging").values()))]
     con.execute(";".join(f"DROP {kind} IF EXISTS temp.{name}" for kind, name in made))

@@ -18,7 +18,7 @@ from drivelint.evaluate import evaluate
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.result.counts import group_rows
 from drivelint.sql import store
-from drivelint.sql.derivations import derivations, needed
+from drivelint.sql.derivations import derivations, needed_derivations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -163,7 +163,7 @@ class Sandbox:
     def _derive_from_profiles(self) -> None:
         """Derive the tables again that read the profiles, directly or through other tables."""
         stale: set[str] = set()
-        for derivation in needed(self._rule.reads):
+        for derivation in needed_derivations(self._rule.reads):
             # the profiles are given, not derived: `reads` does not name them
             if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
                 stale.add(derivation.table)

@@ -77,25 +77,27 @@ def inspect(request: InspectRequest) -> model.Inspection:
     mapping = None if format_words(log["format"]) else request.mapping or log["format"]
     return model.Inspection(
         file=msgspec.convert({**log, "name": name, "bytes": size}, model.File),
-        content=content(path, mapping, list(trace.notes), read=True),
+        content=content(path, mapping, list(trace.notes), has_reader=True),
         drive=_drive(trace, library, rules, request, selection),
     )
 
 
-def to_json(found: model.Inspection) -> str:
+def to_json(inspection: model.Inspection) -> str:
     """Return an inspection as JSON: the structure of `schemas/inspect.schema.json`."""
-    return msgspec.json.format(msgspec.json.encode(found), indent=2).decode()
+    return msgspec.json.format(msgspec.json.encode(inspection), indent=2).decode()
 
 
-def exit_code(found: model.Inspection) -> ExitCode:
+def exit_code(inspection: model.Inspection) -> ExitCode:
     """Return 0 if the log can be read as a drive and its map fits, else 4."""
-    unfit = found.problem is not None or (found.drive is not None and found.drive.road_problem is not None)
+    unfit = inspection.problem is not None or (
+        inspection.drive is not None and inspection.drive.road_problem is not None
+    )
     return ExitCode.NOT_JUDGED if unfit else ExitCode.OK
 
 
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
-        return content(path, None, [], read=not may_be_mapped_table(path, options))
+        return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
     except (TraceError, OSError):  # the problem that the reader has told already
         return model.Content()
 
@@ -104,23 +106,23 @@ def _drive(
     trace: Trace, library: MapLibrary, rules: Sequence[Rule], request: InspectRequest, selection: Sequence[str]
 ) -> model.Drive:
     trace, environment, road_problem = _on_its_map(trace, library)
-    everybody = tracks.actors(trace)
-    egos, quality = _judgeable(trace, environment, everybody, rules, road_problem, memory=request.memory)
+    actors = tracks.actors(trace)
+    egos, quality = _judgeable(trace, environment, actors, rules, road_problem, memory=request.memory)
     supposed, candidates = None, []
     if not egos:
-        candidates = tracks.ego_candidates(everybody)
+        candidates = tracks.ego_candidates(actors)
         supposing = replace(request, ego=candidates[0].actor_id).ingest_options(need_ego=False)
         again = read_trace(trace.path, supposing)
-        ((supposed,), _) = _judgeable(again, environment, everybody, rules, road_problem, memory=request.memory)
+        ((supposed,), _) = _judgeable(again, environment, actors, rules, road_problem, memory=request.memory)
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
-        classes=tracks.count_classes(everybody),
+        classes=tracks.count_classes(actors),
         egos=egos,
         ego_source=_ego_source(trace, request.ego),
         candidates=candidates,
         supposed=supposed,
-        road=None if environment is None else _road(environment, given=request.map is not None),
+        road=None if environment is None else _road(environment, from_option=request.map is not None),
         road_problem=road_problem,
         quality=quality,
         rules=[rule.id for rule in rules],
@@ -142,7 +144,7 @@ def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | N
 def _judgeable(
     trace: Trace,
     environment: MapTables | None,
-    everybody: Sequence[model.Actor],
+    actors: Sequence[model.Actor],
     rules: Sequence[Rule],
     road_problem: str | None,
     *,
@@ -161,7 +163,7 @@ def _judgeable(
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
         quality = _quality(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()
-    by_id = {actor.actor_id: actor for actor in everybody}
+    by_id = {actor.actor_id: actor for actor in actors}
     egos = []
     for way in sorted(rows["exposure"], key=lambda row: str(row["ego_id"])):
         ego_id = way["ego_id"]
@@ -184,7 +186,7 @@ def _judgeable(
                 registration=registrations.get(ego_id),
                 can=[rule.id for rule in rules if rule.id not in undecided],
                 cannot=cannot,
-                missing=advice.missing_signals(cannot, {**never, **lacking}, log_format, asks),
+                missing_signals=advice.missing_signals(cannot, {**never, **lacking}, log_format, asks),
             )
         )
     return egos, quality
@@ -216,9 +218,9 @@ def _rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]]:
     return rows
 
 
-def _ego_source(trace: Trace, asked: str | None) -> str:
-    if asked is not None:
-        return "every motor vehicle in turn (--ego all)" if asked == "all" else "chosen with --ego"
+def _ego_source(trace: Trace, ego_option: str | None) -> str:
+    if ego_option is not None:
+        return "every motor vehicle in turn (--ego all)" if ego_option == "all" else "chosen with --ego"
     said = {row["check_id"]: row["message"] for row in trace.tables["quality"].to_pylist()}
     if "no_ego" in said:
         return str(said["no_ego"])
@@ -229,12 +231,12 @@ def _ego_source(trace: Trace, asked: str | None) -> str:
     return words[1] if words else f"named by the mapping {log_format}"
 
 
-def _road(environment: MapTables, *, given: bool) -> model.Road:
+def _road(environment: MapTables, *, from_option: bool) -> model.Road:
     row = environment.tables["environment"].to_pylist()[0]
     lanelets = environment.tables["lanelet"]
     drivable = lanelets.filter(lanelets["drivable"])
     more = {
-        "source": "option" if given else "log",
+        "source": "option" if from_option else "log",
         "offset_m": (row["offset_x_m"], row["offset_y_m"]),
         "lanelets": lanelets.num_rows,
         "drivable": drivable.num_rows,

@@ -43,12 +43,14 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
         conditions |= {"speed_limits"} if rule.applies.restricts_speed_limit else set()
-        needed = set(rule.needed) & lacking.keys() | conditions & never.keys()
+        needed = set(rule.needed_signals) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
             missing -= SIGNALS_NEEDING_MAP
         if missing:
-            found.append(Undecided(rule_id=rule.id, title=rule.title, missing=sorted(missing), breach_only=not needed))
+            found.append(
+                Undecided(rule_id=rule.id, title=rule.title, missing_signals=sorted(missing), breach_only=not needed)
+            )
     return found
 
 
@@ -58,7 +60,7 @@ def missing_signals(
     """Return the missing signals with the rules that need them, the most needed first. `advice`: signal -> advice of its reason."""
     by_signal: dict[str, list[Undecided]] = {}
     for rule in undecided:
-        for signal in rule.missing:
+        for signal in rule.missing_signals:
             by_signal.setdefault(signal, []).append(rule)
     found = [
         Missing(
@@ -66,7 +68,7 @@ def missing_signals(
             reason=lacking[signal],
             provide=how_to_provide(signal, log_format, advice.get(signal)),
             rules=[rule.rule_id for rule in waiting],
-            alone=[rule.rule_id for rule in waiting if rule.missing == [signal]],
+            alone=[rule.rule_id for rule in waiting if rule.missing_signals == [signal]],
         )
         for signal, waiting in by_signal.items()
     ]

@@ -57,7 +57,7 @@ def size_bytes(path: Path) -> int:
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
-def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) -> Content:
+def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
     """Return the channels, tables and columns of a file, and what is read from them."""
     if path.is_dir():
         if is_bag(path):
@@ -69,10 +69,10 @@ def content(path: Path, mapping: str | None, notes: list[str], *, read: bool) ->
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
         return Content(channels=_channels(path), notes=notes)
-    return _of_table(path, head, mapping, notes, read=read)
+    return _of_table(path, head, mapping, notes, has_reader=has_reader)
 
 
-def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, read: bool) -> Content:
+def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
     if mapping is not None and video_mapping.is_video_mapping(mapping):
         name, film = video_mapping.load(mapping)
         return Content(sheets=[_filmed(path, film)], mapping=name, notes=notes)
@@ -81,9 +81,9 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
         sheet = _plain(path)
-        guess = None if read else draft_mapping([column.name for column in sheet.columns])
+        guess = None if has_reader else draft_mapping([column.name for column in sheet.columns])
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
-    if read or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
+    if has_reader or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # no table, or a text that another reader has read
     names = CsvSheet(path, TextLayout()).names
     sheet = Sheet(name=path.name, rows=None, columns=_unread(names))

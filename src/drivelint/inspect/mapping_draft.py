@@ -81,10 +81,10 @@ def _split(column: str) -> set[str]:
     return {part for word in words for part in _FUSED.get(word, word).split()}
 
 
-def _unit(column: str, known: Mapping[str, float]) -> str | None:
+def _unit(column: str, unit_factors: Mapping[str, float]) -> str | None:
     in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
     named = [*in_brackets, *(_UNIT_WORDS.get(word) for word in sorted(_split(column)))]
-    return next((unit for unit in named if unit in known), None)
+    return next((unit for unit in named if unit in unit_factors), None)
 
 
 def _text(value: str) -> str:

@@ -125,9 +125,9 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
 
     rule_id: str
     title: str
-    missing: Annotated[
+    missing_signals: Annotated[
         list[str], described("signals and conditions; without a map only `map` for all that is of the map")
-    ]
+    ] = msgspec.field(name="missing")
     breach_only: Annotated[bool, described("it can be found broken all the same, but not kept")] = False
 
 
@@ -150,7 +150,7 @@ class Ego(msgspec.Struct, frozen=True, kw_only=True):
     registration: MapRegistration | None
     can: Annotated[list[str], described("rules that can be decided")]
     cannot: list[Undecided]
-    missing: list[Missing]
+    missing_signals: list[Missing] = msgspec.field(name="missing")
 
 
 class Road(msgspec.Struct, frozen=True, kw_only=True):

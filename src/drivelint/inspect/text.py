@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 MAX_ROWS: Final = 12
 """Lines shown of a list; the JSON has them all."""
-_NAMED: Final = 6
+_MAX_LISTED_NAMES: Final = 6
 """Egos that a line names before it says how many more there are."""
 _DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
-_TOLD: Final = "read through"
+_READER_NOTE_PREFIX: Final = "read through"
 """Reader notes that begin with this repeat what the content section says, and are left out."""
 _SOURCES: Final = {
     "option": "as --handedness says",
@@ -44,20 +44,20 @@ _SOURCES: Final = {
 Line = tuple[str, Text]
 
 
-def render(found: model.Inspection, trace: str) -> Group:
+def render(inspection: model.Inspection, trace: str) -> Group:
     """Return the whole inspection; `trace` is what the user called the log."""
-    draft = found.content.draft_mapping
-    found = msgspec.convert(flat(msgspec.to_builtins(found)), type(found))
-    lines = [*_content(found.content)]
-    if found.file.drive_id:
-        lines.append(("drive", Text(found.file.drive_id)))
-    if found.problem is not None:
-        lines.append(("problem", Text(f"cannot be read as a drive: {found.problem}", "bold red")))
-    if found.drive is not None:
-        lines += _drive(found.drive)
-    parts: list[RenderableType] = [_title(found), _labelled(lines)]
-    if found.drive is not None:
-        parts.append(_decidable_rules(found.drive, found.file.name))
+    draft = inspection.content.draft_mapping
+    inspection = msgspec.convert(flat(msgspec.to_builtins(inspection)), type(inspection))
+    lines = [*_content(inspection.content)]
+    if inspection.file.drive_id:
+        lines.append(("drive", Text(inspection.file.drive_id)))
+    if inspection.problem is not None:
+        lines.append(("problem", Text(f"cannot be read as a drive: {inspection.problem}", "bold red")))
+    if inspection.drive is not None:
+        lines += _drive(inspection.drive)
+    parts: list[RenderableType] = [_title(inspection), _labelled(lines)]
+    if inspection.drive is not None:
+        parts.append(_decidable_rules(inspection.drive, inspection.file.name))
     if draft is not None:
         save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
         parts += [
@@ -67,8 +67,8 @@ def render(found: model.Inspection, trace: str) -> Group:
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
-def _title(found: model.Inspection) -> Text:
-    file = found.file
+def _title(inspection: model.Inspection) -> Text:
+    file = inspection.file
     about = [_size(file.bytes)]
     if file.format is not None:
         words = format_words(file.format)
@@ -117,7 +117,7 @@ def _content(content: model.Content) -> Iterator[Line]:
     for sheet in content.sheets if len(content.sheets) == 1 else ():
         yield "table", _sheet(sheet)
     for note in content.notes:
-        if not note.startswith(_TOLD):
+        if not note.startswith(_READER_NOTE_PREFIX):
             yield "note", Text(note)
 
 
@@ -138,20 +138,20 @@ def _sheet(sheet: model.Sheet) -> Text:
     if not read:
         names = [c.name for c in sheet.columns]
         return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {listed(names, MAX_ROWS)}")
-    grouped = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
-    whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if grouped else ''}"
-    text = Text(f"{whole} read: {', '.join(_cell(column, grouped=grouped) for column in read)}")
+    per_actor = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
+    whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
+    text = Text(f"{whole} read: {', '.join(_cell(column, per_actor=per_actor) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
         names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
         text.append(f"; not read: {listed(names, MAX_ROWS)}", style="dim")
     return text
 
 
-def _cell(column: model.Column, *, grouped: bool) -> str:
+def _cell(column: model.Column, *, per_actor: bool) -> str:
     """Return what a column is read as; its own name too, unless it is the same or one of many groups."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
-    return f"{meant}{unit}" if grouped or meant == column.name else f"{column.name}{unit} as {meant}"
+    return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"
 
 
 def _drive(drive: model.Drive) -> Iterator[Line]:
@@ -237,23 +237,23 @@ def _fit(fit: model.MapRegistration) -> Text:
     return Text(f"{fit.reason}{off}", style="green")
 
 
-def _quality(found: Sequence[model.Quality]) -> Iterator[Line]:
-    if not any(q.severity != "info" for q in found):
+def _quality(findings: Sequence[model.Quality]) -> Iterator[Line]:
+    if not any(q.severity != "info" for q in findings):
         yield "data", Text("nothing that speaks against it", style="green")
-    yield from _first_of("data", [_finding(finding) for finding in found])
+    yield from _first_of("data", [_finding(finding) for finding in findings])
 
 
-def _finding(found: model.Quality) -> Text:
-    about, info = "map: " if found.about == "map" else "", found.severity == "info"
-    at = "" if found.first_at_s is None or info else f" (first at {found.first_at_s:.2f} s)"
-    text = Text(f"{found.severity}: ", style=_STYLE[found.severity])
-    return text.append(f"{about}{found.message}{at}", style="dim" if info else "default")
+def _finding(finding: model.Quality) -> Text:
+    about, info = "map: " if finding.about == "map" else "", finding.severity == "info"
+    at = "" if finding.first_at_s is None or info else f" (first at {finding.first_at_s:.2f} s)"
+    text = Text(f"{finding.severity}: ", style=_STYLE[finding.severity])
+    return text.append(f"{about}{finding.message}{at}", style="dim" if info else "default")
 
 
 def _decidable_rules(drive: model.Drive, log: str) -> Group:
     """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
     egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
-    alike = group_rows(egos_told, lambda ego: tuple(item.signal for item in ego.missing))
+    alike = group_rows(egos_told, lambda ego: tuple(item.signal for item in ego.missing_signals))
     parts: list[RenderableType] = []
     for egos in sorted(alike.values(), key=lambda group: -len(group[0].can)):
         parts += _about(drive, egos, log)
@@ -262,18 +262,20 @@ def _decidable_rules(drive: model.Drive, log: str) -> Group:
 
 def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
-    selection = listed(drive.selection, _NAMED)
+    selection = listed(drive.selection, _MAX_LISTED_NAMES)
     who = ""
     if not drive.egos:
         who = f" with --ego {ego.actor.actor_id}"
     elif len(drive.egos) > 1:
-        who = f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _NAMED)}"
+        who = (
+            f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
+        )
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
     parts: list[RenderableType] = [Text(f"{log} can decide {_how_many(ego, drive, selection)}{who}.", style=style)]
     if ego.can:
         told = (f"{_short(rule, drive)}{_DRAFT if rule in drive.drafts else ''}" for rule in ego.can)
         parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
-    if ego.missing:
+    if ego.missing_signals:
         parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
         parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego, drive.drafts)]
     return parts
@@ -297,7 +299,7 @@ def _short(rule_id: str, drive: model.Drive) -> str:
 
 def _by_signal(ego: model.Ego) -> Table:
     grid = _grid("yellow", overflow="fold")
-    for item in ego.missing:
+    for item in ego.missing_signals:
         waiting = f"{plural(len(item.rules), 'rule')} wait{'s' if len(item.rules) == 1 else ''} for it"
         alone = ""
         if len(item.alone) < len(item.rules):
@@ -311,7 +313,7 @@ def _by_signal(ego: model.Ego) -> Table:
 def _by_rule(ego: model.Ego, drafts: Sequence[str]) -> Table:
     """Return the undecidable rules, those that lack the same signals in one row."""
     grid = _grid("yellow", overflow="fold")
-    waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing))
+    waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing_signals))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
         ids = (
             f"{rule.rule_id}{_DRAFT if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"

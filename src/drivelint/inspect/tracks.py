@@ -72,7 +72,7 @@ def actors(trace: Trace) -> list[Actor]:
     ]
 
 
-def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
+def count_classes(trace_actors: Sequence[Actor]) -> list[ClassCount]:
     """Count actors by class, the most numerous first."""
     counts = [
         ClassCount(
@@ -81,12 +81,14 @@ def count_classes(found: Sequence[Actor]) -> list[ClassCount]:
             sized=sum(a.length_m is not None and a.width_m is not None for a in some),
             moving=sum(a.way_m > MIN_MOVED_M for a in some),
         )
-        for name, some in group_rows(found, lambda actor: actor.actor_class).items()
+        for name, some in group_rows(trace_actors, lambda actor: actor.actor_class).items()
     ]
     return sorted(counts, key=lambda c: (-c.n, c.actor_class or "~"))
 
 
-def ego_candidates(found: Sequence[Actor]) -> list[Actor]:
+def ego_candidates(trace_actors: Sequence[Actor]) -> list[Actor]:
     """Return the possible egos: motor vehicles and actors of unknown class, the longest track first."""
-    likely = [a for a in found if a.actor_class in MOTOR_VEHICLES] or [a for a in found if a.actor_class is None]
-    return sorted(likely or found, key=lambda a: (-round(a.way_m, 3), a.actor_id))
+    likely = [a for a in trace_actors if a.actor_class in MOTOR_VEHICLES] or [
+        a for a in trace_actors if a.actor_class is None
+    ]
+    return sorted(likely or trace_actors, key=lambda a: (-round(a.way_m, 3), a.actor_id))

@@ -40,9 +40,9 @@ Evidence = dict[str, dict[str, bytes] | str]
 """Finding -> the files that give its numbers again, or why there are none."""
 
 
-def rules_of(result: Result, asked: RunRequest) -> list[Rule]:
+def rules_of(result: Result, check_request: RunRequest) -> list[Rule]:
     """Return the rules of a result. Errors: `UsageError` for one that is gone or was changed since."""
-    return rules_of_table(result.rules, asked.rules_dirs)
+    return rules_of_table(result.rules, check_request.rules_dirs)
 
 
 def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
@@ -58,20 +58,22 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
     return found
 
 
-def check_again(result: Result, asked: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
+def check_again(result: Result, check_request: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
     """Return the result of the same check. `work`: where its margins go; None: they are not asked for. `evidence`: with its pictures.
 
     Errors: `UsageError` for a rule that is gone or was changed since, and those of a check.
     """
-    rules = rules_of(result, asked)
-    given = {name: getattr(asked, name) for name in CheckOptions.__dataclass_fields__ if hasattr(asked, name)}
+    rules = rules_of(result, check_request)
+    given = {
+        name: getattr(check_request, name) for name in CheckOptions.__dataclass_fields__ if hasattr(check_request, name)
+    }
     given |= {
-        "traces": tuple(asked.traces[name] for name in sorted(asked.traces)),
+        "traces": tuple(check_request.traces[name] for name in sorted(check_request.traces)),
         "rules": tuple(rule.id for rule in rules),
         "fail_on": result.fail_on,
         "strict": result.strict,
         "require": result.required,
-        "robustness": asked.robustness,
+        "robustness": check_request.robustness,
         "out": work,
         "margins": work is not None,
         "annotate": False,
@@ -81,11 +83,13 @@ def check_again(result: Result, asked: RunRequest, work: Path | None, *, evidenc
     return check(CheckOptions(**given), Silent())
 
 
-def params_of(rules: Iterable[Rule], asked: RunRequest) -> dict[str, dict[str, object]]:
+def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
     """Return rule -> the values of its parameters in a check, of these rules of it."""
     mine = list(rules)
     names = {rule.id for rule in mine}
-    given = catalogue.parse_params(mine, [p for p in asked.params if p.partition("=")[0].rpartition(".")[0] in names])
+    given = catalogue.parse_params(
+        mine, [p for p in check_request.params if p.partition("=")[0].rpartition(".")[0] in names]
+    )
     return {
         rule.id: {name: given.get(rule.id, {}).get(name, param.default) for name, param in rule.params.items()}
         for rule in mine
@@ -93,25 +97,25 @@ def params_of(rules: Iterable[Rule], asked: RunRequest) -> dict[str, dict[str, o
 
 
 def finding_evidence(
-    result: Result, asked: RunRequest, memory: int | None = DEFAULT_MEMORY, known: Sequence[Rule] = ()
+    result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
 ) -> Evidence:
-    """Return what gives the numbers of each finding again. `asked` says where the logs are; `known`: the rules, if they were read."""
-    rules = {rule.id: rule for rule in known or rules_of(result, asked)}
+    """Return what gives the numbers of each finding again. `check_request`: where the logs are; `loaded_rules`: the rules, if read."""
+    rules = {rule.id: rule for rule in loaded_rules or rules_of(result, check_request)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
     for (drive_id, ego_id), mine in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
-        trace = Path(asked.traces[drive_id])
-        drive, _ = open_drive(trace.parent, asked, drive_id, ego_id, trace=trace, map_=asked.map)
-        found |= _of_drive(drive, mine, rules, asked, memory)
+        trace = Path(check_request.traces[drive_id])
+        drive, _ = open_drive(trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map)
+        found |= _of_drive(drive, mine, rules, check_request, memory)
     return found
 
 
 def _of_drive(
-    drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], asked: RunRequest, memory: int | None
+    drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], check_request: RunRequest, memory: int | None
 ) -> Evidence:
     """Return the evidence of the findings of one ego in one drive."""
     mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
-    params = params_of(mine, asked)
+    params = params_of(mine, check_request)
     found: Evidence = {}
 
     def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
@@ -120,7 +124,7 @@ def _of_drive(
             found.update(_of_rule(con, rule, params[rule.id], rows))
 
     with store.workspace(memory) as con:
-        store.insert(con, "profile", profile_table(load_profiles(asked.rules_dirs), asked.profiles))
+        store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
         session = JudgingSession(con, mine, params, None, observers=[look], memory=Memory(con, memory))
         session.judge([drive])
         session.close()

@@ -63,7 +63,7 @@ class AgentKey:
         return signature
 
 
-def _ask(request: bytes, wanted: int) -> bytes:
+def _ask(request: bytes, answer_type: int) -> bytes:
     """Send a message and return what follows the type of the answer."""
     path = os.environ.get("SSH_AUTH_SOCK")
     if not path or not hasattr(socket, "AF_UNIX"):
@@ -79,7 +79,7 @@ def _ask(request: bytes, wanted: int) -> bytes:
             answer = _received(agent, length)
     except OSError as error:
         raise UsageError(f"--sign: ssh-agent at {path} cannot be asked: {error.strerror or error}") from error
-    if answer[0] != wanted:
+    if answer[0] != answer_type:
         raise UsageError("--sign: ssh-agent refused: it is locked, or nobody confirmed")
     return answer[1:]
 

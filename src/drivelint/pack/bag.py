@@ -19,7 +19,7 @@ MANIFEST: Final = "manifest-sha256.txt"
 TAG_MANIFEST: Final = "tagmanifest-sha256.txt"
 _DECLARED: Final = b"BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"
 _LINE: Final = re.compile(r"([0-9a-f]{64})  ([^\s].*)")
-_SAID: Final = re.compile(
+_BAG_INFO_PATTERN: Final = re.compile(
     r"(?:Bagging-Date: (\d{4}-\d\d-\d\d)\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
 )
 _UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
@@ -29,7 +29,7 @@ class Problem(NamedTuple):
     """What is wrong with a pack: of which kind, and what it is about."""
 
     kind: str
-    what: str
+    subject: str
 
 
 def sha256_of(path: Path) -> str:
@@ -100,20 +100,20 @@ def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
                 found.append(Problem("manifest changed" if name == MANIFEST else "file changed", name))
     found += [Problem("file removed", name) for name in (DECLARATION, INFO) if name not in files]
     found += _of_info(folder, payload) if INFO in files else []
-    return sorted(set(found), key=lambda each: (each.what, each.kind))
+    return sorted(set(found), key=lambda each: (each.subject, each.kind))
 
 
 def date_of(folder: Path) -> str | None:
     """Return the day that `bag-info.txt` says, as 2026-11-26; None: it says none, or cannot be read."""
     path = folder / INFO
-    match = _SAID.fullmatch(path.read_text("utf-8", "replace")) if path.is_file() else None
+    match = _BAG_INFO_PATTERN.fullmatch(path.read_text("utf-8", "replace")) if path.is_file() else None
     return match[1] if match else None
 
 
 def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
     """Return in what `bag-info.txt` is not what `begin` writes of such a payload."""
     text = (folder / INFO).read_text("utf-8", "replace")
-    match = _SAID.fullmatch(text)
+    match = _BAG_INFO_PATTERN.fullmatch(text)
     if match is None:
         return [Problem("bag-info.txt not readable", INFO)]
     sizes = [(folder / name).stat().st_size for name in payload]

@@ -128,16 +128,18 @@ def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
 
 def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
     """Return the files of the payload that nothing in `evidence.json` names: they are not evidence of anything."""
-    named = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
-    named |= set(sheets.said(evidence))
+    named_files = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
+    named_files |= set(sheets.sheet_files(evidence))
     inside = evidence["inputs"] or {"traces": {}}
     places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
     places += [inside.get("map"), inside.get("map_dir")]
     kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
-    return unnamed(folder, evidence, named, [place for place in places if place is not None and place.startswith(kept)])
+    return unnamed(
+        folder, evidence, named_files, [place for place in places if place is not None and place.startswith(kept)]
+    )
 
 
-def unnamed(folder: Path, evidence: dict[str, Any], named: set[str], roots: Iterable[str]) -> list[Problem]:
+def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots: Iterable[str]) -> list[Problem]:
     """Return the files of the payload but those named, those below `roots`, and those of findings."""
     known = {
         *roots,
@@ -145,7 +147,7 @@ def unnamed(folder: Path, evidence: dict[str, Any], named: set[str], roots: Iter
     }
     files = {path.relative_to(folder) for path in (folder / DATA).rglob("*") if path.is_file()}
     found = [path.as_posix() for path in files if known.isdisjoint(each.as_posix() for each in (path, *path.parents))]
-    return [Problem("file that nothing names", name) for name in sorted(set(found) - named)]
+    return [Problem("file that nothing names", name) for name in sorted(set(found) - named_files)]
 
 
 def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
@@ -164,38 +166,38 @@ def packed_by(evidence: dict[str, Any]) -> str:
     return str(evidence["packed_with"]["drivelint"])
 
 
-def of_findings(folder: Path, result: Result, asked: RunRequest) -> tuple[list[Problem], str]:
+def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tuple[list[Problem], str]:
     """Run the SQL of each finding on the rows in the pack; return those that give other numbers, and in words what was looked at.
 
     The SQL that runs is made here of the rule; the one in the pack must be the same text. Whether the rows follow from the log,
     only the log tells.
     """
     try:
-        rules = {rule.id: rule for rule in again.rules_of(result, asked)}
+        rules = {rule.id: rule for rule in again.rules_of(result, check_request)}
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
-    if why := unlike_rules(list(rules.values()), result.rules, asked):
+    if why := unlike_rules(list(rules.values()), result.rules, check_request):
         return [Problem("run.json does not fit the result", why)], ""
     rows = {f"{FINDINGS}/{row['finding_id']}": row for row in result.findings.to_pylist()}
-    wrong, n = of_sql(folder, rows, rules, asked)
+    wrong, n = of_sql(folder, rows, rules, check_request)
     return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
 
 
-def unlike_rules(rules: list[Rule], table: pa.Table, asked: RunRequest) -> str:
+def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) -> str:
     """Return in what the table `rule` does not say which rules were asked for, with which parameters; '' where it does."""
     try:
-        given = catalogue.parse_params(rules, asked.params)
-        due = collect.rule_table(rules, given, asked.profiles or DEFAULT_PROFILES)
+        given = catalogue.parse_params(rules, check_request.params)
+        due = collect.rule_table(rules, given, check_request.profiles or DEFAULT_PROFILES)
     except DriveLintError as error:
         return str(error)
     return "" if due.to_pylist() == table.to_pylist() else "rules.parquet has other parameters, profiles or rules"
 
 
 def of_sql(
-    folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], asked: RunRequest
+    folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> tuple[list[Problem], int]:
     """Return the findings whose SQL gives other numbers, and of how many it was run. `findings`: folder in the pack -> finding."""
-    params = again.params_of(rules.values(), asked)
+    params = again.params_of(rules.values(), check_request)
     wrong, n = [], 0
     for inner, row in findings.items():
         place = folder / inner

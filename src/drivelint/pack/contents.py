@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint import __version__
 from drivelint.drive.trace import DriveInput
 from drivelint.pack.bag import sha256_of
-from drivelint.pack.inputs import judged
+from drivelint.pack.inputs import judged_drives
 from drivelint.result import request as run_request
 from drivelint.result.names import MANIFEST, RESULT_FILES
 
@@ -46,14 +46,14 @@ def summary_of(folder: Path) -> dict[str, Any]:
     return told
 
 
-def facts(folder: Path, result: Result, asked: RunRequest) -> dict[str, Any]:
+def facts(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
     """Return what follows from the result and the rules that lie in the pack `folder`, and must be said as it is."""
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
         "tool": summary_of(folder)["tool"],
-        "drives": [{key: drive[key] for key in _SAID_OF_DRIVES} for drive in judged(drives)],
+        "drives": [{key: drive[key] for key in _SAID_OF_DRIVES} for drive in judged_drives(drives)],
         "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
-        "options": _options(asked, result),
+        "options": _options(check_request, result),
         **facts_of_rules(folder, rules),
         "outputs": hashes(folder, RESULT),
     }
@@ -81,9 +81,9 @@ def _rule(folder: Path, rule_id: str) -> dict[str, str]:
     return {"rule_id": rule_id, "rule_version": digest[:16], "sha256": digest, "file": file}
 
 
-def _options(asked: RunRequest, result: Result) -> dict[str, Any]:
+def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
     """Return the options of the check, but for where logs, maps, mapping and rules lay."""
-    plain = json.loads(run_request.render(asked, Path()))
+    plain = json.loads(run_request.render(check_request, Path()))
     kept = {each.name for each in fields(DriveInput)} - {"map", "map_dir", "mapping"}
     told = {key: value for key, value in plain.items() if key in {*kept, "profiles"}}
     return {**told, "fail_on": result.fail_on, "strict": result.strict, "required": list(result.required)}
@@ -106,11 +106,11 @@ def inside(folder: Path, path: str) -> Path:
     return found
 
 
-def findings(rows: Iterable[Row], found: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
+def findings(rows: Iterable[Row], evidence: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
     """Return findings with their numbers, and the SQL that gives these or why there is none. `place`: the folder of theirs."""
     told = []
     for row in rows:
-        files = found[row["finding_id"]]
+        files = evidence[row["finding_id"]]
         has_files = isinstance(files, dict)
         told.append({
             **{key: row[key] for key in SAID_OF_FINDINGS},

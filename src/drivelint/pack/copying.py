@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def copy(source: Path, place: Path, work: Path) -> str:
     """Copy a file or folder into the new folder `place` of the pack; return where it is in the pack."""
-    target = made(place, work) / source.name
+    target = make_folder(place, work) / source.name
     if source.is_dir():
         shutil.copytree(source, target)
     else:
@@ -40,12 +40,12 @@ def copy_rules_dirs(rules_dirs: Iterable[Path], work: Path) -> list[str]:
 
 def write_files(files: Mapping[str, bytes], place: Path, work: Path) -> None:
     """Write files into the new folder `place` of the pack."""
-    made(place, work)
+    make_folder(place, work)
     for name, content in files.items():
         (place / name).write_bytes(content)
 
 
-def made(place: Path, work: Path) -> Path:
+def make_folder(place: Path, work: Path) -> Path:
     """Make a folder in the pack. Its name may be an id of a result that somebody else made."""
     if not place.resolve().is_relative_to(work.resolve() / "data") or place.is_dir():
         raise UsageError(f"{place.name}: no id of a finding or a drive: check the drives again")

@@ -84,8 +84,8 @@ def _enough(
     """Return, of each table, the fewest of the tried rows with which the numbers stay the same; None: all rows give others."""
     choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
 
-    def enough(chosen: Mapping[str, pa.Table]) -> bool:
-        for table, rows in chosen.items():
+    def enough(rows_by_table: Mapping[str, pa.Table]) -> bool:
+        for table, rows in rows_by_table.items():
             con.register(table, rows)
         return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
@@ -105,8 +105,8 @@ def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa
     return next((rows for rows in choices[:-1] if gives(rows)), choices[-1])
 
 
-def _is_same(found: list[dict[str, Any]], finding: Row) -> bool:
-    return len(found) == 1 and found[0]["holds"] is False and all(found[0][name] == finding[name] for name in COMPARED)
+def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
+    return len(rows) == 1 and rows[0]["holds"] is False and all(rows[0][name] == finding[name] for name in COMPARED)
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:

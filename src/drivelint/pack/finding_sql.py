@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-_CALLED: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
+_CALL: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
 _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
 _SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
@@ -84,7 +84,7 @@ def macros(sql: str) -> list[str]:
     needed: set[str] = set()
     todo = [sql]
     while todo:
-        called = {name.lower() for name in _CALLED.findall(_COMMENT.sub("", todo.pop()))}
+        called = {name.lower() for name in _CALL.findall(_COMMENT.sub("", todo.pop()))}
         new = (called & known.keys()) - needed
         needed |= new
         todo += [known[name] for name in new]
@@ -107,7 +107,7 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     """Return the file `finding.sql`: run in its folder, it gives the finding's numbers."""
     called = macros(sql)
     spatial = any(_SPATIAL.search(text) for text in (sql, *called))
-    numbers = ", ".join(f"{name} {_shown(finding[name])}" for name in COMPARED)
+    numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED)
     lines = [
         f"-- Finding {finding['finding_id']} of the rule {rule.id}: {inert_line(rule.title)}",
         f"-- {inert_line(rule.clause)}",
@@ -122,5 +122,5 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     return "\n".join([*lines, f"{sql};", ""])
 
 
-def _shown(value: float | None) -> str:
+def _sql_literal(value: float | None) -> str:
     return "NULL" if value is None else repr(value)

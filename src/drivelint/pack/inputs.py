@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def judged(drives: Sequence[Row]) -> list[Row]:
+def judged_drives(drives: Sequence[Row]) -> list[Row]:
     """Return the drives of a result that were judged."""
     return [drive for drive in drives if drive["status"] == "judged"]
 
 
-def located(asked: RunRequest, drives: Sequence[Row], traces: Sequence[Path], map_: Path | None) -> RunRequest:
+def located(check_request: RunRequest, drives: Sequence[Row], traces: Sequence[Path], map_: Path | None) -> RunRequest:
     """Return a request with the paths at which its logs and map are now; each was hashed and is the one that was judged.
 
     `traces`, `map_`: files that were moved. Errors: `UsageError` for a log or map that is not there or is another one.
@@ -30,31 +30,33 @@ def located(asked: RunRequest, drives: Sequence[Row], traces: Sequence[Path], ma
     given = {identify(path).sha256: path for path in traces if path.exists()}
     if gone := [path for path in traces if not path.exists()]:
         raise UsageError(f"--trace {gone[0]}: is not there")
-    wanted = {drive["sha256"] for drive in judged(drives)}
+    wanted = {drive["sha256"] for drive in judged_drives(drives)}
     if other := sorted(str(path) for digest, path in given.items() if digest not in wanted):
         raise UsageError(f"{other[0]} is another log: no drive of this result has its hash")
     found = {}
-    for drive in judged(drives):
+    for drive in judged_drives(drives):
         name, digest = drive["drive_id"], drive["sha256"]
-        path = given.get(digest) or Path(asked.traces.get(name, ""))
-        if not path.exists() or (digest not in given and name not in asked.traces):
+        path = given.get(digest) or Path(check_request.traces.get(name, ""))
+        if not path.exists() or (digest not in given and name not in check_request.traces):
             raise UsageError(f"the log of {name} is not at {path} any more: say where it is with --trace FILE")
         if digest not in given and identify(path).sha256 != digest:
             raise UsageError(f"{path} is another log than the one that was judged ({name}): give that one with --trace")
         found[name] = str(path)
-    map_ = _map(asked, drives, map_)
-    return replace(asked, traces=found, map=map_, map_dir=asked.map_dir if map_ is None else None)
+    map_ = _map(check_request, drives, map_)
+    return replace(check_request, traces=found, map=map_, map_dir=check_request.map_dir if map_ is None else None)
 
 
-def _map(asked: RunRequest, drives: Sequence[Row], given: Path | None) -> Path | None:
-    path = given or asked.map
+def _map(check_request: RunRequest, drives: Sequence[Row], map_: Path | None) -> Path | None:
+    path = map_ or check_request.map
     if path is None:
-        if asked.map_dir is not None and not asked.map_dir.is_dir():
-            raise UsageError(f"the folder of maps {asked.map_dir} is not there any more: say where a map is with --map")
+        if check_request.map_dir is not None and not check_request.map_dir.is_dir():
+            raise UsageError(
+                f"the folder of maps {check_request.map_dir} is not there any more: say where a map is with --map"
+            )
         return None
     if not path.is_file():
         raise UsageError(f"the map {path} is not there any more: say where it is with --map FILE")
-    wanted = {drive["map_sha256"] for drive in judged(drives)}
+    wanted = {drive["map_sha256"] for drive in judged_drives(drives)}
     if sha256_of(path) not in wanted:
         raise UsageError(f"{path} is another map than the one that was judged on: give that one with --map")
     return path

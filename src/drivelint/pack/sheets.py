@@ -16,49 +16,49 @@ if TYPE_CHECKING:
 
 SHEETS: Final = "data/incidents"
 _PAGE: Final = ".html"
-_PRINTED: Final = ".pdf"
+_PDF: Final = ".pdf"
 
 
-def of_result(folder: Path, result: Result, asked: RunRequest) -> dict[str, bytes]:
+def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
     """Return path in the pack -> content of the sheets that lie in a result folder and are of its findings.
 
-    `asked` says where the logs are. A PDF is taken where the page beside it is as it is written anew: only then both tell the same.
+    `check_request` says where the logs are. A PDF is taken where the page beside it is as it is written anew: only then both tell the same.
     """
     ids = set(result.findings["finding_id"].to_pylist())
     found = {}
     for page in sorted((folder / incident.FOLDER).glob(f"*{_PAGE}")):
         if page.stem in ids:
-            written = _page(folder, page.stem, asked)
-            printed = page.with_suffix(_PRINTED)
+            written = _page(folder, page.stem, check_request)
+            printed = page.with_suffix(_PDF)
             found[f"{SHEETS}/{page.name}"] = written
             if printed.is_file() and page.read_bytes() == written:
                 found[f"{SHEETS}/{printed.name}"] = printed.read_bytes()
     return found
 
 
-def again(result_folder: Path, evidence: Mapping[str, Any], asked: RunRequest) -> dict[str, bytes]:
+def again(result_folder: Path, evidence: Mapping[str, Any], check_request: RunRequest) -> dict[str, bytes]:
     """Write the pages of a pack again from its logs; return path in the pack -> content. `result_folder`: the result in the pack."""
-    pages = [name for name in said(evidence) if name.endswith(_PAGE)]
-    return {name: _page(result_folder, PurePosixPath(name).stem, asked) for name in pages}
+    pages = [name for name in sheet_files(evidence) if name.endswith(_PAGE)]
+    return {name: _page(result_folder, PurePosixPath(name).stem, check_request) for name in pages}
 
 
-def said(evidence: Mapping[str, Any]) -> list[str]:
+def sheet_files(evidence: Mapping[str, Any]) -> list[str]:
     """Return the files of sheets that `evidence.json` names. A pack without sheets does not speak of them."""
     return list(evidence.get("incidents", ()))
 
 
 def has_printed(evidence: Mapping[str, Any]) -> bool:
     """Whether a pack has a PDF, which nobody can write again."""
-    return any(name.endswith(_PRINTED) for name in said(evidence))
+    return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 
 def misnamed(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
     """Return the sheets that `evidence.json` names and that are of no finding, are not there, or are a PDF without its page."""
     pages = {f"{SHEETS}/{finding_id}{_PAGE}" for finding_id in finding_ids}
-    named = said(evidence)
-    due = pages | {name.removesuffix(_PAGE) + _PRINTED for name in pages & set(named)}
+    named = sheet_files(evidence)
+    due = pages | {name.removesuffix(_PAGE) + _PDF for name in pages & set(named)}
     return [name for name in named if name not in due or not (folder / name).is_file()]
 
 
-def _page(folder: Path, finding_id: str, asked: RunRequest) -> bytes:
-    return incident.render(incident.open_case(incident.IncidentRequest(finding_id, folder), asked))
+def _page(folder: Path, finding_id: str, check_request: RunRequest) -> bytes:
+    return incident.render(incident.open_case(incident.IncidentRequest(finding_id, folder), check_request))

@@ -105,12 +105,12 @@ def _rendered(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
 
 def payload_of(content: bytes) -> bytes:
     """Return the payload of an envelope, whoever signed it. Errors: `EnvelopeError`."""
-    return _opened(content)[1]
+    return _parse_envelope(content)[1]
 
 
 def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
     """Tell whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
-    kind, payload, signatures = _opened(content)
+    kind, payload, signatures = _parse_envelope(content)
     for signature in signatures:
         try:
             key.verify(signature, _signed_bytes(kind, payload))
@@ -122,16 +122,16 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
 
 def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
     """Tell whether an envelope that a key signed is the one that `envelope` writes: what stands beside the payload is not signed."""
-    _, payload, signatures = _opened(content)
+    _, payload, signatures = _parse_envelope(content)
     return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
 
 
-def _opened(content: bytes) -> tuple[str, bytes, list[bytes]]:
+def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
     try:
-        told = json.loads(content)
-        payload = base64.b64decode(told["payload"], validate=True)
-        signatures = [base64.b64decode(each["sig"], validate=True) for each in told["signatures"]]
-        return str(told["payloadType"]), payload, signatures
+        envelope = json.loads(content)
+        payload = base64.b64decode(envelope["payload"], validate=True)
+        signatures = [base64.b64decode(each["sig"], validate=True) for each in envelope["signatures"]]
+        return str(envelope["payloadType"]), payload, signatures
     except (ValueError, KeyError, TypeError, RecursionError, binascii.Error) as error:
         raise EnvelopeError(str(error)) from error
 

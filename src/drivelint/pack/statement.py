@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import ExitCode
 from drivelint.pack import bag
-from drivelint.pack.inputs import judged
+from drivelint.pack.inputs import judged_drives
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -30,18 +30,18 @@ SEALED: Final = (bag.DECLARATION, bag.INFO, bag.MANIFEST)
 
 def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about a result that stands, with its manifest, in the pack `folder`."""
-    drives = judged(result.drives.to_pylist())
+    drives = judged_drives(result.drives.to_pylist())
     tests = _tests(result.verdicts.to_pylist())
     maps = sorted({(drive["map_name"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
     content = {
         "_type": TYPE,
-        "subject": [named(drive["file_name"], drive["sha256"]) for drive in drives],
+        "subject": [resource_descriptor(drive["file_name"], drive["sha256"]) for drive in drives],
         "predicateType": PREDICATE,
         "predicate": {
             "result": result_word(tests, is_clean=summary["exit"]["code"] == ExitCode.OK),
             "configuration": [
-                *(named(f"map {name}", digest) for name, digest in maps),
-                *(named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
+                *(resource_descriptor(f"map {name}", digest) for name, digest in maps),
+                *(resource_descriptor(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
                 {
                     "name": "check",
                     "annotations": {
@@ -56,16 +56,16 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
             "failedTests": tests["fail"],
             "drivelint_undecidedTests": tests["unknown"],
             "drivelint_exit": summary["exit"],
-            "drivelint_pack": [named(name, bag.sha256_of(folder / name)) for name in SEALED],
+            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED],
         },
     }
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
 
 
-def differences(said: bytes, due: bytes) -> list[bag.Problem]:
+def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
     """Return in what a statement is not what follows from the pack."""
     try:
-        a, b = json.loads(said), json.loads(due)
+        a, b = json.loads(statement), json.loads(due)
         parts = ((a, b, ("_type", "predicateType")), (a["predicate"], b["predicate"], ()))
         found = [key for left, right, keys in parts for key in keys or right if left.get(key) != right[key]]
         logs = a["subject"] != b["subject"]
@@ -78,12 +78,12 @@ def differences(said: bytes, due: bytes) -> list[bag.Problem]:
             "drivelint_pack": "statement about another pack",
         }.get(key, "statement says another result")
         problems.append(bag.Problem(kind, key))
-    if not problems and said != due:
+    if not problems and statement != due:
         problems.append(bag.Problem("statement says another result", "fields in excess"))
     return problems
 
 
-def named(name: str, digest: str) -> dict[str, Any]:
+def resource_descriptor(name: str, digest: str) -> dict[str, Any]:
     """Return a file or a log as in-toto names it."""
     return {"name": name, "digest": {"sha256": digest}}
 

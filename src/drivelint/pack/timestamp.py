@@ -31,7 +31,7 @@ class Looked(NamedTuple):
     """The result of checking a time stamp: its problems, its time and authority in words, and notes on what was not checked."""
 
     problems: list[Problem]
-    said: str = ""
+    description: str = ""
     notes: list[str] = []  # noqa: RUF012 - nobody changes it
 
 
@@ -43,7 +43,7 @@ def read(path: Path, envelope: bytes) -> bytes:
     except OSError as error:
         raise UsageError(f"--timestamp {path}: cannot be read: {error.strerror or error}") from error
     except ModuleNotFoundError as error:
-        raise UsageError(_missing("--timestamp")) from error
+        raise UsageError(_missing_package_text("--timestamp")) from error
     if found.problems:
         raise UsageError(
             f"--timestamp {path}: {found.problems[0].kind}: pack without it, and let it be made of {ENVELOPE} in that pack"
@@ -62,8 +62,8 @@ def of_pack(folder: Path, roots: Path | None) -> Looked:
         return look((folder / FILE).read_bytes(), (folder / ENVELOPE).read_bytes(), roots)
     except ModuleNotFoundError as error:
         if roots is not None:
-            raise UsageError(_missing("--timestamp-root")) from error
-        return Looked([], "with a time stamp that was not looked at", [_missing("its time stamp")])
+            raise UsageError(_missing_package_text("--timestamp-root")) from error
+        return Looked([], "with a time stamp that was not looked at", [_missing_package_text("its time stamp")])
 
 
 def look(content: bytes, envelope: bytes, roots: Path | None) -> Looked:
@@ -123,5 +123,5 @@ def _certificates(path: Path) -> list[x509.Certificate]:
         raise UsageError(f"--timestamp-root {path}: no certificates in PEM: {error}") from error
 
 
-def _missing(what: str) -> str:
-    return f"{what}: time stamps need the package rfc3161-client: pip install 'drivelint[timestamp]'"
+def _missing_package_text(subject: str) -> str:
+    return f"{subject}: time stamps need the package rfc3161-client: pip install 'drivelint[timestamp]'"

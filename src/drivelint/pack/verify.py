@@ -14,7 +14,7 @@ from drivelint.errors import DriveLintError, UsageError
 from drivelint.pack import again, audits, bag, consistency, sheets, signature, timestamp
 from drivelint.pack.bag import Problem
 from drivelint.pack.contents import RESULT, inside, library_versions
-from drivelint.pack.inputs import judged, located
+from drivelint.pack.inputs import judged_drives, located
 from drivelint.pack.request import Verification
 from drivelint.pack.statement import ENVELOPE, FILE
 from drivelint.pack.write import PUBLIC_KEY
@@ -65,7 +65,7 @@ def verify(request: VerifyRequest) -> Verification:
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
     date = bag.date_of(request.folder)
-    signed = ", ".join(filter(None, (signed, stamp.said, "without a date" if date is None else f"dated {date}")))
+    signed = ", ".join(filter(None, (signed, stamp.description, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"
     states = f"; it states that {_OUTCOMES[outcome]} ({outcome})" if outcome else ""
     sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{states}"
@@ -104,27 +104,27 @@ def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Prob
     if not (folder / PUBLIC_KEY).is_file():
         return [Problem("file removed", PUBLIC_KEY)], ""
     try:
-        own = signature.public_key(folder / PUBLIC_KEY)
-        return _of_envelope(folder, own, key)
+        pack_key = signature.public_key(folder / PUBLIC_KEY)
+        return _of_envelope(folder, pack_key, key)
     except UsageError:
         return [Problem("key not readable", PUBLIC_KEY)], ""
     except signature.EnvelopeError:
         return [Problem("signature not readable", ENVELOPE)], ""
 
 
-def _of_envelope(folder: Path, own: Ed25519PublicKey, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """`own`: the key in the pack; `key`: the one that was given."""
-    content, signer = (folder / ENVELOPE).read_bytes(), own if key is None else key
-    by_own, by_signer = (signature.is_signed_by(content, each) for each in (own, signer))
+def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
+    """`pack_key`: the key in the pack; `key`: the one that was given."""
+    content, signer = (folder / ENVELOPE).read_bytes(), pack_key if key is None else key
+    by_own, by_signer = (signature.is_signed_by(content, each) for each in (pack_key, signer))
     if not (by_own or by_signer):
         return [Problem("signature wrong", ENVELOPE)], ""
-    has, wanted = (signature.key_id(each)[:16] for each in (own, signer))
+    has, wanted = (signature.key_id(each)[:16] for each in (pack_key, signer))
     if not by_signer:
         return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
     wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY} is not the key that signed")]
     if not signature.is_as_written(content, signer):
         wrong.append(Problem("text beside what is signed", ENVELOPE))
-    if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(own):
+    if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(pack_key):
         wrong.append(Problem("text beside the key", PUBLIC_KEY))
     if (folder / FILE).is_file():
         wrong.append(Problem("file added", FILE))
@@ -138,24 +138,24 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
     result, evidence = stated.result, stated.evidence
     notes = _notes(evidence, result)
     try:
-        asked = _asked(request.folder, evidence)
+        check_request = _request_with_pack_paths(request.folder, evidence)
         if evidence["inputs"] is None and not request.traces:
-            wrong, told = consistency.of_findings(request.folder, result, asked)
+            wrong, told = consistency.of_findings(request.folder, result, check_request)
             notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
-            if sheets.said(evidence):
+            if sheets.sheet_files(evidence):
                 notes.append("its incident sheets are as the pack says: they are written again only with the logs")
             return "not judged again", wrong, notes
     except consistency.UNREADABLE as error:
         return "", [Problem("evidence.json not readable", str(error))], notes
     try:
-        asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
+        check_request = located(check_request, result.drives.to_pylist(), request.traces, request.map)
     except UsageError as error:
         if request.traces or request.map is not None:
             raise
         return "", [Problem("inputs do not fit the result", str(error))], notes
-    if sheets.said(evidence) and evidence["packed_with"] != library_versions():
+    if sheets.sheet_files(evidence) and evidence["packed_with"] != library_versions():
         notes.append("packed with other versions of libraries: its incident sheets are not written again")
-    judging, wrong = _of_result(request.folder, stated, asked)
+    judging, wrong = _of_result(request.folder, stated, check_request)
     return judging, wrong, notes
 
 
@@ -177,39 +177,41 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
     return notes
 
 
-def _asked(folder: Path, evidence: dict[str, Any]) -> RunRequest:
+def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunRequest:
     """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
 
     inputs = evidence["inputs"]
-    asked = run_request.load(folder / RESULT)
-    mapping = asked.mapping if evidence["mapping"] is None else str(inside(folder, evidence["mapping"]))
-    asked = replace(asked, mapping=mapping, rules_dirs=tuple(inside(folder, path) for path in evidence["rules_dirs"]))
+    check_request = run_request.load(folder / RESULT)
+    mapping = check_request.mapping if evidence["mapping"] is None else str(inside(folder, evidence["mapping"]))
+    check_request = replace(
+        check_request, mapping=mapping, rules_dirs=tuple(inside(folder, path) for path in evidence["rules_dirs"])
+    )
     if inputs is not None:
         map_, map_dir = (inside(folder, inputs[what]) if what in inputs else None for what in ("map", "map_dir"))
         traces = {name: str(inside(folder, path)) for name, path in inputs["traces"].items()}
-        asked = replace(asked, traces=traces, map=map_, map_dir=map_dir)
-    return asked
+        check_request = replace(check_request, traces=traces, map=map_, map_dir=map_dir)
+    return check_request
 
 
-def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, list[Problem]]:
+def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple[str, list[Problem]]:
     """Judge the drives again; return in words what came out, and the files that came out otherwise."""
     result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
     other_libraries = stated.evidence["packed_with"] != library_versions()
     try:
         with TemporaryDirectory(prefix="drivelint-") as work:
-            fresh = again.check_again(result, asked, Path(work) if margins else None)
+            fresh = again.check_again(result, check_request, Path(work) if margins else None)
             files = {
                 f"{RESULT}/{name}.parquet": parquet_bytes(_judged_rows(fresh, name), table)
                 for name, table in TABLE_OF_FILE.items()
             }
             if fresh.margins_file is not None:
                 files[f"{RESULT}/margins.parquet"] = fresh.margins_file.read_bytes()
-        for name, contents in again.finding_evidence(result, asked).items():
+        for name, contents in again.finding_evidence(result, check_request).items():
             if isinstance(contents, dict):
                 files |= {f"data/findings/{name}/{file}": content for file, content in contents.items()}
         if not other_libraries:
-            files |= sheets.again(folder / RESULT, stated.evidence, asked)
+            files |= sheets.again(folder / RESULT, stated.evidence, check_request)
     except DriveLintError as error:
         return "", [Problem("result not reproduced", str(error))]
     whole = result.drives.num_rows == fresh.drives.num_rows
@@ -222,7 +224,7 @@ def _of_result(folder: Path, stated: Stated, asked: RunRequest) -> tuple[str, li
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()
     }
     wrong += [Problem("result not reproduced", f"{path}: no finding gives it") for path in sorted(extra - files.keys())]
-    n = plural(len(judged(result.drives.to_pylist())), "drive")
+    n = plural(len(judged_drives(result.drives.to_pylist())), "drive")
     same = "the same rows, written by another version of a library" if other_bytes else "the same bytes"
     return f"{n} judged again: {same}", wrong
 

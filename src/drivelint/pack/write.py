@@ -36,9 +36,9 @@ class _Checked(NamedTuple):
     """A result with its check, rules, evidence and incident sheets (path in the pack -> content)."""
 
     result: Result
-    asked: RunRequest
+    check_request: RunRequest
     rules: list[Rule]
-    found: again.Evidence
+    evidence: again.Evidence
     incidents: dict[str, bytes]
 
 
@@ -107,22 +107,24 @@ def _free(out: Path, *, overwrite: bool) -> None:
 def _content(request: PackRequest) -> Content:
     """Return what makes a pack of a check's result. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
-    asked = run_request.load(request.folder)
-    if asked.manifest_options:
+    check_request = run_request.load(request.folder)
+    if check_request.manifest_options:
         raise UsageError(
             f"{request.folder}: its logs have options of their own, by a manifest: audit that, and pack the audit"
         )
-    asked = located(asked, result.drives.to_pylist(), request.traces, request.map)
-    rules, found = again.rules_of(result, asked), again.finding_evidence(result, asked)
-    checked = _Checked(result, asked, rules, found, sheets.of_result(request.folder, result, asked))
+    check_request = located(check_request, result.drives.to_pylist(), request.traces, request.map)
+    rules, evidence = again.rules_of(result, check_request), again.finding_evidence(result, check_request)
+    checked_result = _Checked(
+        result, check_request, rules, evidence, sheets.of_result(request.folder, result, check_request)
+    )
     return Content(
-        lambda work: _payload(work, request, checked),
+        lambda work: _payload(work, request, checked_result),
         lambda work, told: statement(work, result, summary_of(work), told),
     )
 
 
-def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, Any]:
-    result, asked, rules, found, incidents = checked
+def _payload(work: Path, request: PackRequest, checked_result: _Checked) -> dict[str, Any]:
+    result, check_request, rules, evidence, incidents = checked_result
     copied = [request.folder / name for name in sorted(contents.OUTPUTS) if (request.folder / name).is_file()]
     (work / RESULT).mkdir(parents=True)
     for path in copied:
@@ -131,41 +133,43 @@ def _payload(work: Path, request: PackRequest, checked: _Checked) -> dict[str, A
     # A report of the folder may differ from the tables, or link files that the pack leaves out.
     for name, render in reports:
         (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
-    for name, files in found.items():
+    for name, files in evidence.items():
         if isinstance(files, dict):
             write_files(files, work / "data" / "findings" / name, work)
     for sheet, content in incidents.items():
         (work / sheet).parent.mkdir(exist_ok=True)
         (work / sheet).write_bytes(content)
     copy_rules(rules, work)
-    named = asked.mapping is not None and Path(asked.mapping).is_file()  # else it is a shipped one, or none
-    mapping = copy(Path(str(asked.mapping)), work / "data" / "mapping", work) if named else None
-    inputs = _copied_inputs(work, asked) if request.with_inputs else None
+    named = (
+        check_request.mapping is not None and Path(check_request.mapping).is_file()
+    )  # else it is a shipped one, or none
+    mapping = copy(Path(str(check_request.mapping)), work / "data" / "mapping", work) if named else None
+    inputs = _copied_inputs(work, check_request) if request.with_inputs else None
     taken = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
     left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in taken]
     told = {
         "evidence": contents.FORM,
-        **contents.facts(work, result, asked),
+        **contents.facts(work, result, check_request),
         "packed_with": contents.library_versions(),
         "mapping": mapping,
-        "rules_dirs": copy_rules_dirs(asked.rules_dirs, work),
+        "rules_dirs": copy_rules_dirs(check_request.rules_dirs, work),
         "inputs": inputs,
         **({"incidents": list(incidents)} if incidents else {}),
-        "findings": contents.findings(result.findings.to_pylist(), found),
+        "findings": contents.findings(result.findings.to_pylist(), evidence),
         "left_out": [path.relative_to(request.folder).as_posix() for path in left],
     }
     (work / EVIDENCE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
     return told
 
 
-def _copied_inputs(work: Path, asked: RunRequest) -> dict[str, Any]:
+def _copied_inputs(work: Path, check_request: RunRequest) -> dict[str, Any]:
     """Copy logs and map into the pack; return where each is."""
     inputs = work / "data" / "inputs"
     told: dict[str, Any] = {"traces": {}}
-    for name, text in sorted(asked.traces.items()):
+    for name, text in sorted(check_request.traces.items()):
         told["traces"][name] = copy(Path(text), inputs / "traces" / name, work)
     for what in ("map", "map_dir"):
-        given = getattr(asked, what)
+        given = getattr(check_request, what)
         if given is not None:
             told[what] = copy(given, inputs / what, work)
     return told

@@ -126,10 +126,10 @@ _has_hook: Final[list[bool]] = []
 
 
 @contextmanager
-def recording(is_output: IsOutput, named: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
-    """Record what this process reads inside the block. `named`: paths that were named to it, which are looked at first."""
+def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
+    """Record what this process reads inside the block. `named_paths`: paths that were named to it, which are looked at first."""
     recorder = Recorder(is_output)
-    for path in named:
+    for path in named_paths:
         recorder.look(path)
     if not _has_hook:
         sys.addaudithook(_hook)  # it stays as long as the process

@@ -36,7 +36,7 @@ _PIECE: Final = 1 << 20
 class Receipt:
     """A run: what it read, what it printed, what it noted, how it ended, and the names and sizes of the files that it wrote.
 
-    `day`: on which it was, where that counts; `moved`: those of the files that grew during the run.
+    `day`: on which it was, where that counts; `grown_files`: those of the files that grew during the run.
     """
 
     inputs: Inputs
@@ -45,7 +45,7 @@ class Receipt:
     exit_code: int
     day: str | None = None
     files: dict[str, int] = field(default_factory=dict)
-    moved: tuple[str, ...] = ()
+    grown_files: tuple[str, ...] = ()
 
 
 class OpenedReceipt:
@@ -60,20 +60,20 @@ class OpenedReceipt:
         """Return name -> content, and name -> path of those of the files that grew during the run, which are put into `work`."""
         self._file.seek(self._start)
         contents: dict[str, bytes] = {}
-        moved: dict[str, Path] = {}
+        grown_files: dict[str, Path] = {}
         for name, size in self.receipt.files.items():
             content = self._file.read(size)
-            if name in self.receipt.moved:
-                moved[name] = work / name
-                moved[name].parent.mkdir(parents=True, exist_ok=True)
-                moved[name].write_bytes(content)
+            if name in self.receipt.grown_files:
+                grown_files[name] = work / name
+                grown_files[name].parent.mkdir(parents=True, exist_ok=True)
+                grown_files[name].write_bytes(content)
             else:
                 contents[name] = content
-        return contents, moved
+        return contents, grown_files
 
 
 @contextmanager
-def opened(key: str) -> Iterator[OpenedReceipt | None]:
+def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
     """Open the receipt of a key; None: there is none, or it is damaged."""
     home = _folder()
     try:
@@ -135,17 +135,17 @@ def _read(file: IO[bytes], key: str) -> OpenedReceipt | None:
         return None
     file.seek(0)
     try:
-        told: dict[str, Any] = json.loads(file.readline())
-        if told.pop("format") != _FORMAT or told.pop("key") != key:
+        stored_fields: dict[str, Any] = json.loads(file.readline())
+        if stored_fields.pop("format") != _FORMAT or stored_fields.pop("key") != key:
             return None
-        return OpenedReceipt(_receipt(told), file, file.tell())
+        return OpenedReceipt(_receipt(stored_fields), file, file.tell())
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
-def _receipt(told: Mapping[str, Any]) -> Receipt:
-    lists = {name: tuple(told[name]) for name in ("notes", "moved")}
-    return Receipt(**{**told, **lists, "inputs": Inputs(**told["inputs"])})
+def _receipt(stored_fields: Mapping[str, Any]) -> Receipt:
+    lists = {name: tuple(stored_fields[name]) for name in ("notes", "grown_files")}
+    return Receipt(**{**stored_fields, **lists, "inputs": Inputs(**stored_fields["inputs"])})
 
 
 def _hash_of(file: IO[bytes], size: int) -> bytes:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _OCCASION: Final = re.compile(r"^-- occasion: (\w+(?:, \w+)*)$", re.MULTILINE)
-_GIVEN = {"profile"}  # filled from queries/profiles.toml
+_TABLES_FROM_TOML = {"profile"}  # filled from queries/profiles.toml
 NEEDED_OF_DRIVES: Final = (
     "clock",
     "step",
@@ -59,7 +59,7 @@ class Derivation:
 @cache
 def derivations() -> dict[str, Derivation]:
     """Return every derivation, in an order in which each can be run after those before it."""
-    if missing := sorted(column_comments("derived").keys() - _files().keys() - _GIVEN):
+    if missing := sorted(column_comments("derived").keys() - _files().keys() - _TABLES_FROM_TOML):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
         )
@@ -132,6 +132,6 @@ def _with_its_sources(table: str) -> frozenset[str]:
     return frozenset({table}).union(*map(_with_its_sources, reads))
 
 
-def needed(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
+def needed_derivations(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
     """Return the derivations behind these tables, in order."""
     return _with_sources([*tables, *also])

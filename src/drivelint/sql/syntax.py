@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     Node = dict[str, Any]
     Names = frozenset[str]
 
-_NONE: Final[frozenset[str]] = frozenset()
-_CALLED: Final = re.compile(r"(\w+)\"?\(")
+_NO_NAMES: Final[frozenset[str]] = frozenset()
+_CALL: Final = re.compile(r"(\w+)\"?\(")
 _MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
 _NO_ROWS: Final = "ctes without rows"
@@ -92,7 +92,7 @@ def has_no_rows_without(tree: Node, ctes: Names) -> bool:
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:
     """Yield every node of a tree with the names of the CTEs in sight of it, without recursion: an expression may be deep."""
-    todo: list[tuple[Any, Names]] = [(root, _NONE)]
+    todo: list[tuple[Any, Names]] = [(root, _NO_NAMES)]
     while todo:
         part, ctes = todo.pop()
         if isinstance(part, list):
@@ -121,7 +121,7 @@ def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
         case "RECURSIVE_CTE_NODE":
             first = _query(node["left"], own, beside=beside)
             return first & _query(node["right"], own | {_folded(node["cte_name"]): first}, beside=beside)
-    return _NONE
+    return _NO_NAMES
 
 
 def _source(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
@@ -135,7 +135,7 @@ def _source(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
             return _source(node["left"], ctes, beside=beside) | _source(node["right"], ctes, beside=True)
         case "JOIN", "LEFT" | "ANTI", "REGULAR" | "ASOF":
             return _source(node["left"], ctes, beside=beside)
-    return _NONE
+    return _NO_NAMES
 
 
 def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
@@ -204,7 +204,7 @@ def _aggregates() -> Names:
     own = [statement.query for statement in parser().extract_statements(macro_definitions())]
     texts = [(match[1], text) for text in own if (match := _MACRO.search(text))]
     texts += [(name, text) for name, kind, text in rows if kind == "macro" and text]
-    calls = [(name, set(_CALLED.findall(text.lower()))) for name, text in texts]
+    calls = [(name, set(_CALL.findall(text.lower()))) for name, text in texts]
     while more := {name for name, called in calls if called & found} - found:
         found |= more
     return frozenset(found)

@@ -361,8 +361,8 @@ class _Walker:
                 self.parameters.setdefault(one.name, []).append(other)
         self._keep(word_types.wrong_words(left, right))
 
-    def _keep(self, found: Iterable[WrongWord]) -> None:
-        for wrong in found:
+    def _keep(self, wrong_words: Iterable[WrongWord]) -> None:
+        for wrong in wrong_words:
             self._wrong.setdefault((wrong.word, wrong.offset), wrong)
 
 

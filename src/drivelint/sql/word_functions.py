@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.sql.word_types import ListOf, Type, item_of, joined, member_of, union
+from drivelint.sql.word_types import ListOf, Type, concatenation, item_of, member_of, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -44,7 +44,7 @@ _HAS_ITEMS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list
 
 
 def _together(kinds: Kinds) -> Type:
-    return union(kinds) if any(isinstance(kind, ListOf) for kind in kinds) else joined(kinds)
+    return union(kinds) if any(isinstance(kind, ListOf) for kind in kinds) else concatenation(kinds)
 
 
 _VALUES: Final[Mapping[str, Callable[[Kinds], Type]]] = {

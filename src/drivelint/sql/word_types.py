@@ -49,7 +49,7 @@ class Words:
         return not self.vocabularies and not self.literals
 
     @property
-    def known(self) -> tuple[str, ...]:
+    def possible_words(self) -> tuple[str, ...]:
         """All words that it may be."""
         ordered = sorted(self.vocabularies)
         return tuple(dict.fromkeys([*(word for known in ordered for word in known.words), *self.literals]))
@@ -92,7 +92,7 @@ class WrongWord(NamedTuple):
         """What is wrong, with the nearest good word."""
         names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
         what = f"is no {names}" if names else "is never what it is compared with"
-        return f"{self.word!r} {what}; {nearest(self.word.strip('%'), self.against.known)}"
+        return f"{self.word!r} {what}; {nearest(self.word.strip('%'), self.against.possible_words)}"
 
 
 def of_column(column: WordColumn) -> Type:
@@ -127,13 +127,13 @@ def union(kinds: Iterable[Type]) -> Type:
     return None
 
 
-def joined(parts: Iterable[Type]) -> Type:
+def concatenation(parts: Iterable[Type]) -> Type:
     """Return the texts that are put together from these, where there are few."""
     texts: list[list[tuple[str, Literal]]] = []
     for part in parts:
         if not isinstance(part, Words) or not all(known.is_listed for known in part.vocabularies):
             return None
-        texts.append([(word, part.literals.get(word, Literal(None))) for word in part.known])
+        texts.append([(word, part.literals.get(word, Literal(None))) for word in part.possible_words])
     combinations = list(product(*texts)) if len(texts) < 4 else []
     if not 0 < len(combinations) <= _MOST_PRODUCTS:
         return None
@@ -199,5 +199,5 @@ def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWo
     if text.direct or text.is_null or not all(known.is_listed for known in text.vocabularies):
         return
     for wanted, place in pattern.literals.items():
-        if not place.in_macro and not any(_TESTS[function](word, wanted) for word in text.known):
+        if not place.in_macro and not any(_TESTS[function](word, wanted) for word in text.possible_words):
             yield WrongWord(wanted, place.offset, text)

@@ -77,9 +77,9 @@ class WordColumn(NamedTuple):
     is_list: bool = False
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: str, known_words: Iterable[str]) -> str:
     """Return "did you mean 'x'?" for the nearest known word, else "known are ..."."""
-    return hint(word, known, cutoff=_NEAR)
+    return hint(word, known_words, cutoff=_NEAR)
 
 
 @cache

@@ -112,7 +112,7 @@ class AlarmLog:
         known_from_ns = window.t_start_ns if from_ns is None else max(window.t_start_ns, from_ns) + WARM_UP_NS
         is_first = judged_until_ns is None and from_ns is None
         new: list[Alarm] = []
-        seen: set[int] = set()
+        shown_numbers: set[int] = set()
         for row in _with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
@@ -127,8 +127,8 @@ class AlarmLog:
                 same = [alarm]
             for each in same:
                 each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
-                seen.add(each.number)
-        withdrawn = self._withdrawn(window, seen, known_from_ns)
+                shown_numbers.add(each.number)
+        withdrawn = self._withdrawn(window, shown_numbers, known_from_ns)
         self._standing = [each for each in self._standing if each not in withdrawn]
         over = self._over(window.t_end_ns)
         self._standing = [
@@ -138,7 +138,7 @@ class AlarmLog:
         ]
         return Change(new, over, withdrawn)
 
-    def _withdrawn(self, window: JudgedWindow, seen: Collection[int], known_from_ns: int) -> list[Alarm]:
+    def _withdrawn(self, window: JudgedWindow, shown_numbers: Collection[int], known_from_ns: int) -> list[Alarm]:
         """Return the alarms that a window knows and does not show. A rule that says nothing in it withdraws none."""
         silent = {
             (row["rule_id"], row["ego_id"], row["profile"])
@@ -148,7 +148,7 @@ class AlarmLog:
         found = [
             each
             for each in self._standing
-            if each.number not in seen
+            if each.number not in shown_numbers
             and each.from_ns >= known_from_ns
             and each.row["t_start_ns"] <= window.t_end_ns
             and not {(*key_of(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent

@@ -37,20 +37,20 @@ _NOT_KNOWN: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing
 class ContactLook:
     """Finds contacts in the newest frames of a log. Memory: the actors that are near an ego.
 
-    `con`: a database with the macros; it is used by this thread alone. `known`: the catalogue's rules by id. `asked`: those of `RULES` that
+    `con`: a database with the macros; used by this thread alone. `rules_by_id`: the catalogue's rules. `rule_ids`: those of `RULES` that
     are looked for. `params`: parameters that were given, by rule.
     """
 
     def __init__(
         self,
         con: duckdb.DuckDBPyConnection,
-        known: Mapping[str, Rule],
-        asked: tuple[str, ...] = RULES,
+        rules_by_id: Mapping[str, Rule],
+        rule_ids: tuple[str, ...] = RULES,
         params: Mapping[str, Mapping[str, object]] | None = None,
     ) -> None:
         self._con = con
-        self._rules = {rule_id: known[rule_id] for rule_id in asked}
-        bound = Binding(known[JOLT], 0, (params or {}).get(JOLT, {}))
+        self._rules = {rule_id: rules_by_id[rule_id] for rule_id in rule_ids}
+        bound = Binding(rules_by_id[JOLT], 0, (params or {}).get(JOLT, {}))
         self._values = {"near_m": NEAR_M, **bound.values(_JOLT_PARAMS)}
         self._statement = statement("watch/contact")
         self._apart: set[tuple[str, str, str]] = set()
@@ -60,7 +60,7 @@ class ContactLook:
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """
-        tables = {f"_{name}": trace.tables[table] for name, table in _READ.items()}
+        tables = {f"_{name}": trace.tables[table] for name, table in _TRACE_TABLES.items()}
         with store.registered(self._con, tables):
             pairs = self._con.execute(self._statement, self._values).to_arrow_table().to_pylist()
         self._apart &= {_key(pair) for pair in pairs}
@@ -74,7 +74,7 @@ class ContactLook:
         ]
 
 
-_READ: Final = {"state": "actor_state", "actor": "actor", "quality": "quality"}
+_TRACE_TABLES: Final = {"state": "actor_state", "actor": "actor", "quality": "quality"}
 
 
 def _key(pair: Row) -> tuple[str, str, str]:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 PASSES_PER_RELEASE = 64
 """After so many windows the database gives back the memory that it does not need."""
-_KEPT = frozenset({"profile", "environment", "map_quality"})
+_LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class WindowJudge:
 
         `start_ns`: the log's first step, from which reasons and seconds count; None: the window's.
         """
-        store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _KEPT])
+        store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _LASTING_TABLES])
         self._session.forget_judged()
         found: dict[str, JudgedWindow | DriveLintError] = {}
         drives: dict[str, Drive] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.watch.settled import KEY, SAID
+from drivelint.watch.settled import KEY, VALUE_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,54 +26,54 @@ def _plain(value: object) -> object:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def alarm(each: Alarm, rule: Rule, start_ns: int) -> Message:
+def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
     """Return the message of a new alarm."""
-    row = each.row
+    row = alarm.row
     return {
         "type": "alarm",
-        "alarm": each.number,
+        "alarm": alarm.number,
         "rule_id": rule.id,
         "title": rule.title,
         "t_s": _seconds(row["t_start_ns"], start_ns),
-        "said_s": _seconds(each.said_ns, start_ns),
-        "latency_s": round(each.latency_s, 6),
-        "is_early": each.is_early,
+        "said_s": _seconds(alarm.said_ns, start_ns),
+        "latency_s": round(alarm.latency_s, 6),
+        "is_early": alarm.is_early,
         "status": rule.status,
         **{name: _plain(row[name]) for name in _OF_ROW},
     }
 
 
-def over(each: Alarm, start_ns: int) -> Message:
+def over(alarm: Alarm, start_ns: int) -> Message:
     """Return the message of an alarm whose rule is kept again, or is not judged any more."""
     return {
         "type": "over",
-        "alarm": each.number,
-        "rule_id": each.row["rule_id"],
-        "t_end_s": _seconds(each.t_end_ns, start_ns),
-        "t_end_ns": each.t_end_ns,
+        "alarm": alarm.number,
+        "rule_id": alarm.row["rule_id"],
+        "t_end_s": _seconds(alarm.t_end_ns, start_ns),
+        "t_end_ns": alarm.t_end_ns,
     }
 
 
-def withdrawn(each: Alarm, now_ns: int, start_ns: int) -> Message:
+def withdrawn(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
     """Return the message that what is known now does not show an alarm any more."""
     return {
         "type": "withdrawn",
-        "alarm": each.number,
-        "rule_id": each.row["rule_id"],
+        "alarm": alarm.number,
+        "rule_id": alarm.row["rule_id"],
         "t_s": _seconds(now_ns, start_ns),
         "t_ns": now_ns,
     }
 
 
-def halt(each: Alarm, now_ns: int, start_ns: int) -> Message:
+def halt(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
     """Return the message that an alarm halts the drive."""
     return {
         "type": "halt",
-        "alarm": each.number,
-        "rule_id": each.row["rule_id"],
+        "alarm": alarm.number,
+        "rule_id": alarm.row["rule_id"],
         "t_s": _seconds(now_ns, start_ns),
         "t_ns": now_ns,
-        "after_s": round((now_ns - each.row["t_start_ns"]) / 1e9, 6),
+        "after_s": round((now_ns - alarm.row["t_start_ns"]) / 1e9, 6),
     }
 
 
@@ -82,20 +82,20 @@ def note(text: str) -> Message:
     return {"type": "note", "text": text}
 
 
-def confirmed(each: Alarm) -> Message:
+def confirmed(alarm: Alarm) -> Message:
     """Return what the check of the whole log made of an alarm."""
     return {
         "type": "checked",
-        "alarm": each.number,
-        "rule_id": each.row["rule_id"],
-        "is_finding": bool(each.finding_ids),
-        "finding_ids": each.finding_ids,
+        "alarm": alarm.number,
+        "rule_id": alarm.row["rule_id"],
+        "is_finding": bool(alarm.finding_ids),
+        "finding_ids": alarm.finding_ids,
     }
 
 
 def settled(row: Row, start_ns: int) -> Message:
     """Return the message of a verdict that is said before the log's end."""
-    said = {name: _plain(row[name]) for name in (*KEY, *SAID)}
+    said = {name: _plain(row[name]) for name in (*KEY, *VALUE_COLUMNS)}
     return {"type": "verdict", "t_s": _seconds(row["t_start_ns"], start_ns), **said}
 
 

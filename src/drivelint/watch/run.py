@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 from drivelint import catalogue
-from drivelint.engine.barrier import refused
+from drivelint.engine.barrier import refusal_of
 from drivelint.errors import DriveLintError, TraceError, UsageError
 from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
@@ -66,7 +66,7 @@ class Watched:
     busy_s: list[float] = field(default_factory=list)
     """The seconds that each window took that was judged: for a line on stderr, not for results."""
 
-    def told(self) -> str:
+    def timing_text(self) -> str:
         """Say how many windows were judged, and how long that took."""
         took = sorted(self.busy_s)
         if not took:
@@ -78,7 +78,7 @@ class _Pass(NamedTuple):
     """What became of a window, and the seconds that it took."""
 
     trace: Trace | None
-    judged: JudgedWindow | DriveLintError
+    outcome: JudgedWindow | DriveLintError
     took_s: float
 
 
@@ -268,32 +268,32 @@ class Watch:
             trace = None
             try:
                 trace = read()
-                judged = self._judge.judge([trace], start_ns)[0]
+                outcome = self._judge.judge([trace], start_ns)[0]
             except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
-                judged = refused(Path(self._options.source), error).error
-            return _Pass(trace, judged, time.perf_counter() - begun_s)
+                outcome = refusal_of(Path(self._options.source), error).error
+            return _Pass(trace, outcome, time.perf_counter() - begun_s)
 
         try:
             read = self._source.window(frames, self._folder, self._ingest)
         except Exception as error:  # noqa: BLE001 - as above
-            judged = refused(Path(self._options.source), error).error
+            judged = refusal_of(Path(self._options.source), error).error
             return lambda: _Pass(None, judged, 0.0)
         return judge
 
-    def _conclude(self, each: _Pass) -> None:
+    def _conclude(self, window_pass: _Pass) -> None:
         """Say what is new. A window that cannot be read or judged is told, and the watch goes on."""
-        if isinstance(each.judged, DriveLintError):
-            self._doubt_of(each.judged)
+        if isinstance(window_pass.outcome, DriveLintError):
+            self._doubt_of(window_pass.outcome)
             return
         self._doubt = None
         since_ns = self._judged_until_ns
-        self._take(each.judged)
-        self.watched.busy_s.append(each.took_s)
-        if each.trace is not None:
-            self._egos = egos_of(each.trace)
-        if self._server is not None and each.trace is not None:
-            self._server.publish_scene(each.trace)
-            self._server.publish_margins(each.judged.margins_since(since_ns))
+        self._take(window_pass.outcome)
+        self.watched.busy_s.append(window_pass.took_s)
+        if window_pass.trace is not None:
+            self._egos = egos_of(window_pass.trace)
+        if self._server is not None and window_pass.trace is not None:
+            self._server.publish_scene(window_pass.trace)
+            self._server.publish_margins(window_pass.outcome.margins_since(since_ns))
 
     def _doubt_of(self, error: DriveLintError) -> None:
         """Say why the log cannot be judged as far as it is known; once, whatever numbers are in it."""
@@ -303,21 +303,23 @@ class Watch:
             self._doubt = what
             self._emit(messages.note(f"not judged yet: {text}"))
 
-    def _take(self, judged: JudgedWindow) -> None:
+    def _take(self, judged_window: JudgedWindow) -> None:
         """Say what is new in a window."""
         if self._start_ns is None:
-            self._start_ns = judged.t_start_ns
-        for rule_id, reason in judged.errors():
+            self._start_ns = judged_window.t_start_ns
+        for rule_id, reason in judged_window.errors():
             if rule_id not in self._erred:
                 self._erred.add(rule_id)
                 self._emit(messages.note(f"{rule_id} cannot be run on a window: {reason}"))
-        from_ns = None if self._window.is_whole else judged.t_end_ns - self._window_ns
-        for row in self.settled.take(judged, judged.t_start_ns if from_ns is None else from_ns + WARM_UP_NS):
+        from_ns = None if self._window.is_whole else judged_window.t_end_ns - self._window_ns
+        for row in self.settled.take(
+            judged_window, judged_window.t_start_ns if from_ns is None else from_ns + WARM_UP_NS
+        ):
             self._emit(messages.settled(row, self._start_ns))
-        change = self.alarms.take(judged, self._judged_until_ns, from_ns)
-        self._judged_until_ns = judged.t_end_ns
+        change = self.alarms.take(judged_window, self._judged_until_ns, from_ns)
+        self._judged_until_ns = judged_window.t_end_ns
         # what came while the window was judged is known, too
-        now_ns = judged.t_end_ns + self._window.behind_ns
+        now_ns = judged_window.t_end_ns + self._window.behind_ns
         for alarm in change.withdrawn:
             self._emit(messages.withdrawn(alarm, now_ns, self._start_ns))
         for alarm in change.new:
@@ -326,10 +328,10 @@ class Watch:
         for alarm in change.over:
             self._emit(messages.over(alarm, self._start_ns))
         if self._warnings is not None:
-            for message in self._warnings.take(judged, self._judge.rules, self._start_ns):
+            for message in self._warnings.take(judged_window, self._judge.rules, self._start_ns):
                 self._emit(message)
         if self._advice is not None:
-            for message in self._advice.take(judged, self._start_ns):
+            for message in self._advice.take(judged_window, self._start_ns):
                 self._emit(message)
 
     def _say(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:

@@ -16,12 +16,12 @@ SETTLE_NS: Final = 15 * S
 """So long after the end of what is judged a verdict is said: an overtake is judged by how it ended, too, and that takes seconds."""
 KEY: Final = ("rule_id", "ego_id", "profile", "object_id", "t_ref_ns", "t_start_ns")
 """What two verdicts of a log must have in common to be one; numbers of occurrences and reference points count from the log's beginning."""
-SAID: Final = (
+VALUE_COLUMNS: Final = (
     "verdict", "severity", "t_end_ns", "t_worst_ns", "reason_code", "reason", "observed", "required", "margin", "unit", "near_miss",
     "n_expected", "n_judged", "x_m", "y_m", "lanelet_id",
 )  # fmt: skip
 """The columns that a message has beside the key."""
-_COMPARED: Final = tuple(name for name in SAID if name != "reason")
+_COMPARED: Final = tuple(name for name in VALUE_COLUMNS if name != "reason")
 Key = tuple[Any, ...]
 
 
@@ -44,7 +44,7 @@ class SettledVerdicts:
             begin = row["t_start_ns"] if row["t_ref_ns"] is None else min(row["t_start_ns"], row["t_ref_ns"])
             begins_here = begin > known_from_ns or known_from_ns == window.t_start_ns
             if begins_here and row["t_end_ns"] + SETTLE_NS < window.t_end_ns:
-                self._said[key] = {name: row[name] for name in (*KEY, *SAID)}
+                self._said[key] = {name: row[name] for name in (*KEY, *VALUE_COLUMNS)}
                 found.append(row)
         return found
 
@@ -77,5 +77,5 @@ def _key(row: Row) -> Key:
     return tuple(row[name] for name in KEY)
 
 
-def _same(one: Row, other: Row) -> bool:
-    return all(one[name] == other[name] for name in _COMPARED)
+def _same(earlier: Row, later: Row) -> bool:
+    return all(earlier[name] == later[name] for name in _COMPARED)

@@ -80,7 +80,7 @@ class Trigger:
                 process.wait(LEAST_S)
 
 
-def parse(texts: Sequence[str], known: Mapping[str, Rule], selected: Mapping[str, Rule]) -> list[Trigger]:
+def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected: Mapping[str, Rule]) -> list[Trigger]:
     """Read `SEL=COMMAND`, the command as a list of words. Errors: `UsageError`, also where no selected rule is meant."""
     found = []
     for text in texts:
@@ -93,7 +93,9 @@ def parse(texts: Sequence[str], known: Mapping[str, Rule], selected: Mapping[str
             raise UsageError(f"--on {text!r}: {error}") from error
         if not command:
             raise UsageError(f"--on {text!r}: no command behind the sign =")
-        rules = frozenset(rule.id for rule in catalogue.select_rules(known, [names.strip()], ())) & selected.keys()
+        rules = (
+            frozenset(rule.id for rule in catalogue.select_rules(rules_by_id, [names.strip()], ())) & selected.keys()
+        )
         if not rules:
             raise UsageError(f"--on {text!r}: none of the selected rules is meant: add it with --rules")
         found.append(Trigger(rules, command))

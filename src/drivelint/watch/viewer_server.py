@@ -73,11 +73,11 @@ class _Viewer:
 class ViewerServer:
     """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any that is free.
 
-    `allowed`: origins of pages that may connect. Errors: `OSError` where nothing can be served there.
+    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where nothing can be served there.
     """
 
-    def __init__(self, host: str, port: int, allowed: Sequence[str] = ()) -> None:
-        self._allowed = frozenset(each.rstrip("/").casefold() for each in allowed)
+    def __init__(self, host: str, port: int, allowed_origins: Sequence[str] = ()) -> None:
+        self._allowed = frozenset(each.rstrip("/").casefold() for each in allowed_origins)
         self._channels: list[dict[str, Any]] = []
         self._n_channels = 0
         self._viewers: set[_Viewer] = set()
@@ -198,16 +198,16 @@ class ViewerServer:
             with suppress(asyncio.CancelledError, WebSocketException):
                 await sending
 
-    def _understand(self, viewer: _Viewer, said: str | bytes) -> None:
+    def _understand(self, viewer: _Viewer, message: str | bytes) -> None:
         """Do what a viewer asks for; what is none of its words is passed over."""
         with suppress(ValueError, KeyError, TypeError):
-            told = json.loads(said)
-            if told["op"] == "subscribe":
-                for each in told["subscriptions"]:
+            request = json.loads(message)
+            if request["op"] == "subscribe":
+                for each in request["subscriptions"]:
                     if len(viewer.subscriptions) < BACKLOG and 0 <= each["id"] < 1 << 32:
                         viewer.subscriptions[each["id"]] = each["channelId"]
-            elif told["op"] == "unsubscribe":
-                for number in told["subscriptionIds"]:
+            elif request["op"] == "unsubscribe":
+                for number in request["subscriptionIds"]:
                     viewer.subscriptions.pop(number, None)
 
     def _announce(self, channel: dict[str, Any]) -> None:

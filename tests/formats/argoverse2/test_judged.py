@@ -71,7 +71,7 @@ def test_inspect_says_what_is_there_and_what_is_not(tmp_path: Path) -> None:
     assert found.drive.road is not None
     (ego,) = found.drive.egos
     assert "ukhc.no-collision" in ego.can
-    missing = {item.signal: item.reason for item in ego.missing}
+    missing = {item.signal: item.reason for item in ego.missing_signals}
     assert {"indicator", "speed_limits", "road_types"} <= missing.keys()
 
 

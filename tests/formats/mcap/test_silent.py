@@ -51,7 +51,7 @@ def test_the_topic_is_named(schema: str, other: bool, chunks: bool, tmp_path: Pa
         read(path)
     assert f"{KINDS[schema][2]}topic '/truth' has no message" in str(error.value)
     assert "no channel" not in str(error.value)
-    channels = {channel.topic: channel.messages for channel in content(path, None, [], read=False).channels}
+    channels = {channel.topic: channel.messages for channel in content(path, None, [], has_reader=False).channels}
     assert channels == {"/truth": 0} | ({"/note": 2} if other else {})
 
 

@@ -56,7 +56,7 @@ def without(messages: list[ros.Message], *kinds: str) -> list[ros.Message]:
 def lacking(found: Drive) -> dict[str, set[str]]:
     """Return the rules that `check` runs by itself and that cannot be decided, each with what it waits for."""
     (ego,) = found.egos
-    return {rule.rule_id: set(rule.missing) for rule in ego.cannot if rule.rule_id not in found.drafts}
+    return {rule.rule_id: set(rule.missing_signals) for rule in ego.cannot if rule.rule_id not in found.drafts}
 
 
 def test_what_can_be_decided(tmp_path: Path, scene: drive.Scene, whole: list[ros.Message]) -> None:

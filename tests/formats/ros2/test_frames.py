@@ -208,7 +208,7 @@ def test_types_are_numbered_anew_in_each_part(tmp_path: Path) -> None:
 def test_what_a_bag_holds(tmp_path: Path) -> None:
     folder, messages = parts(tmp_path)
     assert size_bytes(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
-    found = {channel.topic: channel for channel in content(folder, None, [], read=True).channels}
+    found = {channel.topic: channel for channel in content(folder, None, [], has_reader=True).channels}
     assert {topic: channel.read_as for topic, channel in found.items()} == {
         "/carla/hero/odometry": "odometry", "/carla/objects": "road users", "/tf": "frames", "/tf_static": "frames",
     }  # fmt: skip

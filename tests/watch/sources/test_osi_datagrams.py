@@ -139,7 +139,7 @@ def test_what_the_system_drops_of_a_sender_on_this_machine() -> None:
     behind = [Datagram(each.data, each.sender, 0, PARTS, local=True) for each in datagrams[11 * PARTS + 1 :]]
     found, assembler = assembled(datagrams[: 10 * PARTS + 1] + behind)
     assert found == MESSAGES[:10] + MESSAGES[13:]
-    assert f"{PARTS} datagrams that found no room" in assembler.losses.told()
+    assert f"{PARTS} datagrams that found no room" in assembler.losses.summary_text()
 
 
 def test_another_sender_is_another_drive() -> None:
@@ -147,7 +147,7 @@ def test_another_sender_is_another_drive() -> None:
     both = [each for pair in zip(sent(MESSAGES, 1), other, strict=False) for each in pair]
     found, assembler = assembled(both)
     assert found == MESSAGES[:20]
-    assert "20 datagrams of another sender" in assembler.losses.told()
+    assert "20 datagrams of another sender" in assembler.losses.summary_text()
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ class Outcome(NamedTuple):
     task: Task
     receipts: Sequence[Receipt] = ()
     error: Exception | None = None
-    lost: str | None = None
+    loss_reason: str | None = None
 
 
 class Executor(Protocol):

@@ -66,11 +66,13 @@ class DaskCluster:
                 ended = set()
             except CancelledError as error:  # our words replace its text, which lists all tasks
                 lost = self._client.status != "running"
-                raise self._gone("the connection was lost" if lost else "its tasks were cancelled") from error
+                raise self._scheduler_error(
+                    "the connection was lost" if lost else "its tasks were cancelled"
+                ) from error
             except Exception as error:
-                raise self._gone(str(error)) from error
+                raise self._scheduler_error(str(error)) from error
             if self._client.status != "running":
-                raise self._gone("the connection was lost")
+                raise self._scheduler_error("the connection was lost")
             # a result that was lost with its worker is among them: another worker makes it again
             ended = {future for future in ended if future.status in _ENDED}
             if ended:
@@ -90,10 +92,10 @@ class DaskCluster:
             return Outcome(task, future.result())
         except distributed.KilledWorker as error:
             where = error.last_worker.address if error.last_worker else "unknown"
-            return Outcome(task, lost=f"the worker died ({where})")
+            return Outcome(task, loss_reason=f"the worker died ({where})")
         except Exception as error:
             if future.status != "error":  # the task has not failed: its result cannot be fetched
-                raise self._gone("a result could not be fetched") from error
+                raise self._scheduler_error("a result could not be fetched") from error
             return Outcome(task, error=error)  # the driver tells them apart
 
     def _require_workers(self) -> None:
@@ -111,7 +113,7 @@ class DaskCluster:
                 f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and give the same command"
             )
 
-    def _gone(self, why: str) -> ClusterError:
+    def _scheduler_error(self, why: str) -> ClusterError:
         return ClusterError(
             f"--cluster {self._address}: the scheduler is gone ({why}): start it and give the same command"
         )

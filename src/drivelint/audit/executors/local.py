@@ -122,7 +122,7 @@ class _Worker:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
             self._process.join()
-            return self._lost(f"the worker died (exit code {self._process.exitcode})")
+            return self._lost_outcome(f"the worker died (exit code {self._process.exitcode})")
         if isinstance(told, str):
             self._begun_s = self._last_s = self._computed_s()
             self._moved_at = monotonic()
@@ -133,23 +133,23 @@ class _Worker:
     def look(self) -> Outcome | None:
         """Return that the worker was lost if it takes too much; then it is ended."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
-            return self._lost(
+            return self._lost_outcome(
                 f"the worker took {taken / 1e6:.0f} MB of memory, and may take {self._memory / 1e6:.0f} MB"
             )
         if self._timeout_s is None or self._begun_s is None or self.task is None:
             return None
         limit_s, now_s = self._timeout_s * len(self.task.drives), self._computed_s()
         if now_s - self._begun_s > limit_s:
-            return self._lost(f"the worker took too long: it computed for more than {limit_s:g} s")
+            return self._lost_outcome(f"the worker took too long: it computed for more than {limit_s:g} s")
         if now_s > self._last_s:
             self._last_s, self._moved_at = now_s, monotonic()
         elif monotonic() - self._moved_at > limit_s:
-            return self._lost(f"the worker took too long: it did nothing for {limit_s:g} s")
+            return self._lost_outcome(f"the worker took too long: it did nothing for {limit_s:g} s")
         return None
 
-    def _lost(self, why: str) -> Outcome:
+    def _lost_outcome(self, why: str) -> Outcome:
         self.end()
-        return Outcome(self._task_without_outcome(), lost=why)
+        return Outcome(self._task_without_outcome(), loss_reason=why)
 
     def _task_without_outcome(self) -> Task:
         task, self.task = self.task, None

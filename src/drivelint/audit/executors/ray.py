@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 ray: Any = import_module("ray")  # typed in part, and not installed where the types are checked
 exceptions: Any = import_module("ray.exceptions")
-_LOST: Final = (
+_WORKER_LOSSES: Final = (
     exceptions.WorkerCrashedError,
     exceptions.NodeDiedError,
     exceptions.OutOfMemoryError,
@@ -66,7 +66,7 @@ class RayCluster:
 def _outcome(future: Any, task: Task) -> Outcome:
     try:
         return Outcome(task, ray.get(future))
-    except _LOST as error:
-        return Outcome(task, lost=f"the worker died ({type(error).__name__})")
+    except _WORKER_LOSSES as error:
+        return Outcome(task, loss_reason=f"the worker died ({type(error).__name__})")
     except exceptions.RayTaskError as error:
         return Outcome(task, error=error.cause if isinstance(error.cause, Exception) else error)

@@ -55,7 +55,9 @@ def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> t
     ids = [f"{drive.trace.drive_id}~{number:05}" for number in numbers]
     states = drive.trace.tables["actor_state"]
     tables = {name: _repeated(rows, ids) for name, rows in drive.trace.tables.items()}
-    tables["actor_state"] = with_columns(tables["actor_state"], _moved(states, _draws(drive, errors, numbers)))
+    tables["actor_state"] = with_columns(
+        tables["actor_state"], _positions_of_copies(states, _draws(drive, errors, numbers))
+    )
     return ids, replace(drive, trace=replace(drive.trace, drive_id=ids[0], tables=tables))
 
 
@@ -90,12 +92,12 @@ def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     return drawn[list(numbers)]
 
 
-def _moved(states: pa.Table, drawn: Floats) -> dict[str, Floats]:
+def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
     """Return the positions of all copies, one after the other; an unknown velocity is taken to be none."""
     found = {}
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
-        along = np.nan_to_num(floats(states[speed])) * drawn[:, :, 2]
-        found[place] = (floats(states[place]) + drawn[:, :, axis] + along).ravel()
+        along = np.nan_to_num(floats(states[speed])) * draws[:, :, 2]
+        found[place] = (floats(states[place]) + draws[:, :, axis] + along).ravel()
     return found
 
 

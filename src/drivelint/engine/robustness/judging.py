@@ -170,11 +170,11 @@ class Robustness:
         with store.one_thread(self._con), ExitStack() as undo:
             undo.callback(self._forget, [name for ids, _ in made for name in ids])
             self._load([many for _, many in made])
-            for name, rows in _asked(chunk, [ids for ids, _ in made]).items():
+            for name, rows in _input_rows(chunk, [ids for ids, _ in made]).items():
                 self._con.register(name, pa.Table.from_pylist(rows, schema=_schema(rows[0])))
                 undo.callback(self._con.unregister, name)
             self._con.execute(statement("robustness/capability"))
-            derive(self._con, reads, of_the_map=False, also=_DERIVED, given=_HANDED_OVER)
+            derive(self._con, reads, of_the_map=False, also=_DERIVED, filled_tables=_HANDED_OVER)
             judged = [rules[name] for name in sorted(rules)]
             params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
             evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
@@ -221,14 +221,14 @@ def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list
     return windows(drives, questions, N_COPIES)
 
 
-def _asked(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, list[dict[str, object]]]:
+def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, list[dict[str, object]]]:
     """Return the rows of the copies, and of the findings that are looked for in them, in the order of the windows."""
     copies_ = [
         {"window_id": no, "copy_id": name, "copy_no": number, "drive_id": window.drive_id, "ego_id": window.ego_id}
         for no, window in enumerate(chunk)
         for name, number in zip(ids[no], window.numbers, strict=True)
     ]
-    asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
+    numbered_questions = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
     same = ("ego_id", "rule_id", "profile", "object_id", "t_ref_ns")
     findings = [
         {
@@ -240,16 +240,16 @@ def _asked(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, l
             "t_to_ns": question.finding["t_end_ns"],
             "t_worst_ns": question.finding["t_worst_ns"],
         }
-        for finding_no, (no, question) in enumerate(asked)
+        for finding_no, (no, question) in enumerate(numbered_questions)
     ]
     return {"_copy": copies_, "_question": findings}
 
 
-def _chunks(all_: Sequence[Window], most_states: int) -> Iterator[list[Window]]:
+def _chunks(windows: Sequence[Window], most_states: int) -> Iterator[list[Window]]:
     """Cut windows into those whose copies have at most so many states, a larger one being parts of fewer copies."""
     chunk: list[Window] = []
     n_states = 0
-    for window in (part for whole in all_ for part in whole.parts(most_states)):
+    for window in (part for whole in windows for part in whole.parts(most_states)):
         if chunk and n_states + window.n_states > most_states:
             yield chunk
             chunk, n_states = [], 0

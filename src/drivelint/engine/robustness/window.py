@@ -146,15 +146,15 @@ class Window:
         return found | extent.objects | {self.ego_id}
 
 
-def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence[int]) -> list[Window]:
+def windows(drives: Mapping[str, Drive], questions: Sequence[Asked], goals: Sequence[int]) -> list[Window]:
     """Return the windows in which findings are copied next, those with the first copies first.
 
     Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on,
     each with the copy without errors.
     """
-    cut([question for question in asked if question.extent is None])
+    cut([question for question in questions if question.extent is None])
     found: dict[tuple[Any, ...], Window] = {}
-    for question in asked:
+    for question in questions:
         drive_id, ego_id, extent = question.finding["drive_id"], question.finding["ego_id"], question.extent
         if extent is None:
             continue
@@ -165,10 +165,10 @@ def windows(drives: Mapping[str, Drive], asked: Sequence[Asked], goals: Sequence
     return [found[key] for key in sorted(found, key=lambda key: key[:-2])]
 
 
-def cut(asked: Sequence[Asked]) -> None:
+def cut(questions: Sequence[Asked]) -> None:
     """Give each finding the extent of its window, which it shares with those of the same ego that it overlaps."""
     last: dict[tuple[object, ...], Extent] = {}
-    for question in sorted(asked, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
+    for question in sorted(questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
         key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.of_overtake)
         start, end = span(question)
         if key not in last or start > last[key].to_ns:

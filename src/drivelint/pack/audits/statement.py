@@ -12,7 +12,7 @@ from drivelint.errors import ExitCode
 from drivelint.fleet_report.audit_views import opened_packed
 from drivelint.pack import bag
 from drivelint.pack.audits.tables import AUDIT
-from drivelint.pack.statement import PREDICATE, SEALED, TYPE, named, result_word
+from drivelint.pack.statement import PREDICATE, SEALED, TYPE, resource_descriptor, result_word
 from drivelint.result.model import MISFITS
 from drivelint.sql.statements import statement as query
 
@@ -30,13 +30,15 @@ def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     audit = evidence["audit"]
     content = {
         "_type": TYPE,
-        "subject": [named(drive["log"], drive["log_sha256"]) for drive in drives if drive["status"] == "judged"],
+        "subject": [
+            resource_descriptor(drive["log"], drive["log_sha256"]) for drive in drives if drive["status"] == "judged"
+        ],
         "predicateType": PREDICATE,
         "predicate": {
             "result": result_word(outcomes, is_clean=evidence["exit"]["code"] == ExitCode.OK),
             "configuration": [
-                *(named(f"map {name}", digest) for name, digest in maps),
-                *(named(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
+                *(resource_descriptor(f"map {name}", digest) for name, digest in maps),
+                *(resource_descriptor(f"rule {rule['rule_id']}", rule["sha256"]) for rule in evidence["rules"]),
                 {"name": "audit", "annotations": {**audit, "parameters": evidence["parameters"]}},
             ],
             "passedTests": outcomes["pass"],
@@ -45,7 +47,7 @@ def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
             "drivelint_undecidedTests": outcomes["unknown"],
             "drivelint_drives": drives,
             "drivelint_exit": evidence["exit"],
-            "drivelint_pack": [named(name, bag.sha256_of(folder / name)) for name in SEALED],
+            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED],
         },
     }
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()

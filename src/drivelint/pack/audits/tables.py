@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 AUDIT: Final = f"{DATA}/audit"
 FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
-SAID: Final = ("key", *SAID_OF_FINDINGS)
+FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
 """What `evidence.json` says of a finding of an audit: its drive is known by its key."""
 _OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
 """What `summary.json` says of the run that wrote it; no table tells it."""
@@ -58,7 +58,7 @@ class PackedDrive(NamedTuple):
     key: str
     receipt: Row
     result: Result
-    asked: RunRequest
+    check_request: RunRequest
 
 
 def is_audit(folder: Path) -> bool:
@@ -95,10 +95,12 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
     }
 
 
-def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, said: dict[str, Any]) -> list[str]:
+def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]) -> list[str]:
     """Return the keys of `summary.json` that do not say what the tables say."""
-    counted = vars(summed(con, 0)) | {"robust": bool(audit.settings["robustness"])}
-    return sorted(key for key in (counted.keys() | said.keys()) - _OF_RUN if said.get(key) != counted.get(key))
+    counted = summed(con, 0).plain() | {"robust": bool(audit.settings["robustness"])}
+    return sorted(
+        key for key in (counted.keys() | packed_summary.keys()) - _OF_RUN if packed_summary.get(key) != counted.get(key)
+    )
 
 
 def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
@@ -148,10 +150,10 @@ def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
     return {each["values"]: rows.slice(a, b - a) for each, (a, b) in zip(counted, pairwise(ends), strict=True)}
 
 
-def worst_findings(con: duckdb.DuckDBPyConnection, most: int | None) -> list[Row]:
+def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
     """Return the worst findings in the order of reports, or all of them. Each has the key of its drive."""
     sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE))
-    found: list[Row] = con.execute(sql, {"most": most}).to_arrow_table().to_pylist()
+    found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
     return found
 
 
@@ -199,22 +201,22 @@ def settings_of(audit: Audit) -> JudgeSettings:
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
-def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], given: Sequence[Path]) -> dict[str, Path]:
+def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]) -> dict[str, Path]:
     """Return hash -> path of the given logs whose drives have one of these findings; folders are searched.
 
     Files of other sizes are not read. Errors: `UsageError` where no log is of any; `TraceError` for what is not there.
     """
-    if not given:
+    if not log_paths:
         return {}
     keys = sorted({row["key"] for row in findings})
     sql = "SELECT log_sha256, size FROM receipts WHERE list_contains($keys, key)"
     receipts = con.execute(sql, {"keys": keys}).fetchall()
     wanted, sizes = ({row[i] for row in receipts} for i in (0, 1))
-    there = [path for path in expand_traces(list(map(str, given))) if why_not_here(path) is None]
+    there = [path for path in expand_traces(list(map(str, log_paths))) if why_not_here(path) is None]
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
     found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
     if not found:
-        raise UsageError(f"--trace {given[0]}: no log there is of a drive with a finding in the pack")
+        raise UsageError(f"--trace {log_paths[0]}: no log there is of a drive with a finding in the pack")
     return found
 
 
@@ -225,4 +227,4 @@ def located_drive(drive: PackedDrive, log: Path | None, map_: Path | None) -> Ru
     """
     if map_ is not None and (not map_.is_file() or sha256_of(map_) != drive.receipt["map_sha256"]):
         map_ = None
-    return located(drive.asked, drive.result.drives.to_pylist(), () if log is None else (log,), map_)
+    return located(drive.check_request, drive.result.drives.to_pylist(), () if log is None else (log,), map_)

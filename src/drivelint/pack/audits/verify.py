@@ -51,7 +51,7 @@ _NOT_FACTS: Final = frozenset({
 class _Pack:
     """The pack of an audit that was opened, and what was done with its findings so far.
 
-    `known`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
+    `rules_by_id`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
     `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
     """
 
@@ -61,7 +61,7 @@ class _Pack:
     evidence: dict[str, Any]
     rules: pa.Table
     rules_dirs: tuple[Path, ...]
-    known: dict[str, Rule] | None
+    rules_by_id: dict[str, Rule] | None
     packed_by: str
     n_judged: int = 0
     n_alone: int = 0
@@ -81,7 +81,7 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
             rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
             dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])
             packed_by = consistency.packed_by(evidence)
-            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _known(rules, dirs), packed_by)
+            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _rules_by_id(rules, dirs), packed_by)
             findings = tables.worst_findings(con, len(evidence["findings"]))
             wrong = [*_of_tables(pack), *_of_evidence(pack, findings)]
             due = statement(pack.folder, evidence)
@@ -108,9 +108,9 @@ def _of_tables(pack: _Pack) -> Iterator[Problem]:
     for key in tables.unlike_summary(pack.con, pack.audit, said):
         yield Problem("summary.json does not fit the tables", key)
     yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
-    if pack.known is not None:
-        asked = tables.asked_of(pack.audit, None, pack.rules_dirs)
-        if why := consistency.unlike_rules(list(pack.known.values()), pack.rules, asked):
+    if pack.rules_by_id is not None:
+        check_request = tables.asked_of(pack.audit, None, pack.rules_dirs)
+        if why := consistency.unlike_rules(list(pack.rules_by_id.values()), pack.rules, check_request):
             yield Problem("audit.json does not fit the result", why)
     settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
     if told["versions"] == versions() and told["run_id"] != run_id(settings):
@@ -122,7 +122,7 @@ def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
     folder, evidence = pack.folder, pack.evidence
     due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = due["n_findings"] - len(findings)
-    said = [{key: row[key] for key in tables.SAID} for row in findings]
+    said = [{key: row[key] for key in tables.FINDING_KEYS} for row in findings]
     keys = consistency.differing(evidence, due, said, pack.rules.to_pylist())
     inputs = evidence["inputs"] or {"traces": {}, "maps": {}}
     of_findings = {row["key"] for row in findings}
@@ -158,21 +158,23 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     """
     inputs = pack.evidence["inputs"]
     try:
-        drive = drive._replace(asked=_asked(pack, drive))
+        drive = drive._replace(check_request=_request_with_pack_paths(pack, drive))
     except UNREADABLE as error:
         return [Problem("evidence.json not readable", str(error))]
     if log is None and inputs is None:
         return _of_rows(pack, drive)
     try:
-        asked = tables.located_drive(drive, log, map_)
+        check_request = tables.located_drive(drive, log, map_)
     except UsageError as error:
         if log is not None:
             raise
         return [Problem("inputs do not fit the result", str(error))]
     pack.n_judged += 1
     try:
-        fresh = again.check_again(drive.result, asked, None, evidence=False)
-        evidence = again.finding_evidence(drive.result, asked, known=[*(pack.known or {}).values()])
+        fresh = again.check_again(drive.result, check_request, None, evidence=False)
+        evidence = again.finding_evidence(
+            drive.result, check_request, loaded_rules=[*(pack.rules_by_id or {}).values()]
+        )
     except DriveLintError as error:
         return [Problem("result not reproduced", str(error))]
     wrong = [] if _same_rows(pack, drive, fresh) else [Problem("result not reproduced", f"the rows of {_name(drive)}")]
@@ -191,31 +193,33 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     return [*wrong, *differing, *(Problem("result not reproduced", f"{path}: no finding gives it") for path in extra)]
 
 
-def _asked(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
+def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
     """Return the check of a drive with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
-    asked = drive.asked
+    check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
-        asked = replace(asked, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
+        check_request = replace(check_request, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
     if (inputs := pack.evidence["inputs"]) is not None:
         road = inside(pack.folder, inputs["maps"][drive.key]) if drive.key in inputs["maps"] else None
         is_folder = road is not None and road.is_dir()
         traces = {drive.receipt["drive_id"]: str(inside(pack.folder, inputs["traces"][drive.key]))}
-        asked = replace(asked, traces=traces, map=None if is_folder else road, map_dir=road if is_folder else None)
-    return asked
+        check_request = replace(
+            check_request, traces=traces, map=None if is_folder else road, map_dir=road if is_folder else None
+        )
+    return check_request
 
 
 def _of_rows(pack: _Pack, drive: tables.PackedDrive) -> list[Problem]:
     """Run the SQL of a drive's findings on the rows in the pack."""
     pack.n_alone += 1
-    if pack.known is None:
+    if pack.rules_by_id is None:
         return []
     rows = {f"{FINDINGS}/{drive.key}/{row['finding_id']}": row for row in drive.result.findings.to_pylist()}
-    wrong, n = consistency.of_sql(pack.folder, rows, pack.known, drive.asked)
+    wrong, n = consistency.of_sql(pack.folder, rows, pack.rules_by_id, drive.check_request)
     pack.n_run += n
     return wrong
 
 
-def _known(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rule] | None:
+def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rule] | None:
     try:
         return {rule.id: rule for rule in again.rules_of_table(rules, rules_dirs)}
     except UsageError:
@@ -259,7 +263,7 @@ def _notes(pack: _Pack) -> list[str]:
     if pack.n_alone:
         ran = (
             f"{plural(pack.n_run, 'finding')} of theirs gave the numbers from the rows in the pack"
-            if pack.known is not None
+            if pack.rules_by_id is not None
             else "the SQL of their findings was not run: this drivelint has other rules"
         )
         notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")

@@ -50,15 +50,15 @@ def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
         rules = pq.read_table(work / tables.AUDIT / RULES_FILE)
         findings = tables.worst_findings(con, request.findings)
         dirs = tables.settings_of(audit).rules_dirs
-        known = again.rules_of_table(rules, dirs)
-        copy_rules(known, work)
-        inputs = _Inputs(work, kept=request.with_inputs)
+        loaded_rules = again.rules_of_table(rules, dirs)
+        copy_rules(loaded_rules, work)
+        inputs = _Inputs(work, with_inputs=request.with_inputs)
         given = tables.logs_of(con, findings, request.traces)
         found = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            asked = tables.located_drive(drive, given.get(drive.receipt["log_sha256"]), request.map)
-            inputs.add(drive.key, asked)
-            found += _findings(work, drive, asked, known)
+            check_request = tables.located_drive(drive, given.get(drive.receipt["log_sha256"]), request.map)
+            inputs.add(drive.key, check_request)
+            found += _findings(work, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
             "evidence": contents.FORM,
@@ -76,10 +76,12 @@ def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
     return told
 
 
-def _findings(work: Path, drive: tables.PackedDrive, asked: RunRequest, known: Sequence[Rule]) -> list[dict[str, Any]]:
+def _findings(
+    work: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
+) -> list[dict[str, Any]]:
     """Write what gives the findings of a drive again; return what `evidence.json` says of them."""
     place = f"{contents.FINDINGS}/{drive.key}"
-    evidence = again.finding_evidence(drive.result, asked, known=known)
+    evidence = again.finding_evidence(drive.result, check_request, loaded_rules=loaded_rules)
     for name, files in evidence.items():
         if isinstance(files, dict):
             write_files(files, work / place / name, work)
@@ -88,24 +90,26 @@ def _findings(work: Path, drive: tables.PackedDrive, asked: RunRequest, known: S
 
 
 class _Inputs:
-    """Copies mappings, and with `kept` logs and maps, into a pack; what many drives have, once. Each dict: key of a drive -> place."""
+    """Copies mappings, with `with_inputs` also logs and maps, into a pack; a shared file once. Each dict: key of a drive -> place."""
 
-    def __init__(self, work: Path, *, kept: bool) -> None:
-        self._work, self._kept = work, kept
+    def __init__(self, work: Path, *, with_inputs: bool) -> None:
+        self._work, self._with_inputs = work, with_inputs
         self._places: dict[Path, str] = {}
         self.mappings: dict[str, str] = {}
         self.traces: dict[str, str] = {}
         self.maps: dict[str, str] = {}
 
-    def add(self, key: str, asked: RunRequest) -> None:
-        """Copy what a drive was judged from and on; `asked` says where it is now."""
-        if asked.mapping is not None and Path(asked.mapping).is_file():  # else the name of a shipped one
-            self.mappings[key] = self._place(Path(asked.mapping), "mapping")
-        if not self._kept:
+    def add(self, key: str, check_request: RunRequest) -> None:
+        """Copy what a drive was judged from and on; `check_request` says where it is now."""
+        if (
+            check_request.mapping is not None and Path(check_request.mapping).is_file()
+        ):  # else the name of a shipped one
+            self.mappings[key] = self._place(Path(check_request.mapping), "mapping")
+        if not self._with_inputs:
             return
-        (log,) = asked.traces.values()
+        (log,) = check_request.traces.values()
         self.traces[key] = self._place(Path(log), "inputs/traces")
-        if (road := asked.map or asked.map_dir) is not None:
+        if (road := check_request.map or check_request.map_dir) is not None:
             self.maps[key] = self._place(road, "inputs/maps")
 
     def _place(self, source: Path, folder: str) -> str:

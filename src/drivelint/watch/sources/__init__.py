@@ -31,7 +31,7 @@ class Opener(NamedTuple):
     """A kind of source: the pattern of its names, in small letters, how they are told to a user, and what opens one."""
 
     pattern: str
-    told: str
+    label: str
     open: Callable[[str, SourceOptions], Source]
 
     def accepts(self, name: str) -> bool:
@@ -49,7 +49,7 @@ def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float
     for opener in OPENERS:
         if opener.accepts(name):
             return opener.open(name, SourceOptions(folder, idle_s, every_s))
-    known = ", ".join(opener.told for opener in OPENERS)
+    known = ", ".join(opener.label for opener in OPENERS)
     raise UsageError(f"{name}: no source of this kind is known: give {known}")
 
 

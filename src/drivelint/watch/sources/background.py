@@ -47,7 +47,7 @@ class BackgroundReader(Generic[T]):
         """Return what came since; nothing after so many seconds; None: it has ended. Errors: those of the generator."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
-            if found := self._taken():
+            if found := self._take_waiting():
                 return found
             if self._ended and self._error is not None:
                 raise self._error
@@ -56,7 +56,7 @@ class BackgroundReader(Generic[T]):
     def rest(self) -> list[T]:
         """Return what waits, whatever ended the thread."""
         with self._changed:
-            return self._taken()
+            return self._take_waiting()
 
     def stop(self) -> None:
         """End the thread. What waits is still there to be taken. May be called twice."""
@@ -65,7 +65,7 @@ class BackgroundReader(Generic[T]):
             self._changed.notify_all()
         self._thread.join(timeout=10 * TICK_S)
 
-    def _taken(self) -> list[T]:
+    def _take_waiting(self) -> list[T]:
         found = list(self._waiting)
         self._waiting.clear()
         self._bytes = 0

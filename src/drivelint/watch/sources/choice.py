@@ -32,7 +32,7 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
     with nullcontext(options.out / RECORDED) if options.out is not None else temporary_folder() as home:
         source, is_done = None, False
         try:
-            source = _opened(options, home)
+            source = _open_source(options, home)
             yield source
             is_done = True
         finally:
@@ -43,7 +43,7 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
                 keep(home)
 
 
-def _opened(options: WatchOptions, folder: Path) -> Source:
+def _open_source(options: WatchOptions, folder: Path) -> Source:
     if options.replay is None:
         _refuse_with_command(options)
         return sources.open_source(options.source, folder, idle_s=options.idle_s, every_s=options.every_s)

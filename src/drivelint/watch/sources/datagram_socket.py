@@ -44,14 +44,14 @@ def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]
         except TimeoutError:
             yield None
             continue
-        at_ns, dropped = _said(told)
+        at_ns, dropped = _time_and_drops(told)
         # only where the system counts what it drops, it is known that nothing else was lost on this machine
         yield Datagram(data, sender, at_ns, dropped, local=_LINUX and _is_local(sender))
 
 
-def _said(told: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
+def _time_and_drops(ancillary_data: Sequence[tuple[int, int, bytes]]) -> tuple[int, int]:
     at_ns, dropped = time.monotonic_ns(), 0
-    for level, kind, content in told:
+    for level, kind, content in ancillary_data:
         if level == socket.SOL_SOCKET and kind == _TIME and len(content) >= _TIMESPEC.size:
             seconds, nanos = _TIMESPEC.unpack_from(content)
             at_ns = seconds * 1_000_000_000 + nanos

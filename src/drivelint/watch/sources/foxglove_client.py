@@ -136,15 +136,15 @@ class FoxgloveClient:
             channel = self._by_subscription.get(subscription)
             return [] if channel is None else [LiveMessage(channel, log_ns, data[_MESSAGE.size :])]
         try:
-            said = json.loads(data)
-            kind = said["op"]
+            message = json.loads(data)
+            kind = message["op"]
             if kind == "advertise":
-                self._advertised(ws, said["channels"])
+                self._advertised(ws, message["channels"])
             elif kind == "unadvertise":
-                for channel in said["channelIds"]:
+                for channel in message["channelIds"]:
                     self._by_channel.pop(channel, None)
-            elif kind == "status" and said["level"] >= _WARNING:
-                self._notes.append(f"{self._uri} says: {one_line(str(said['message']))}")
+            elif kind == "status" and message["level"] >= _WARNING:
+                self._notes.append(f"{self._uri} says: {one_line(str(message['message']))}")
         except (ValueError, KeyError, TypeError, binascii.Error) as error:
             self._notes.append(
                 f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is passed over"
@@ -174,12 +174,14 @@ def _size(messages: Sequence[LiveMessage]) -> int:
     return sum(len(each.content) for each in messages)
 
 
-def _advertised(said: dict[str, Any]) -> LiveChannel:
-    encoding = str(said["encoding"])
-    of_schema = str(said.get("schemaEncoding") or _SCHEMA_ENCODINGS.get(encoding, ""))
-    text = str(said["schema"])
+def _advertised(advertisement: dict[str, Any]) -> LiveChannel:
+    encoding = str(advertisement["encoding"])
+    of_schema = str(advertisement.get("schemaEncoding") or _SCHEMA_ENCODINGS.get(encoding, ""))
+    text = str(advertisement["schema"])
     data = base64.b64decode(text, validate=True) if of_schema in _IN_BASE64 else text.encode()
-    return LiveChannel(said["topic"], encoding, Schema(id=0, name=said["schemaName"], encoding=of_schema, data=data))
+    return LiveChannel(
+        advertisement["topic"], encoding, Schema(id=0, name=advertisement["schemaName"], encoding=of_schema, data=data)
+    )
 
 
 def _refuse_what_is_no_address(uri: str) -> None:

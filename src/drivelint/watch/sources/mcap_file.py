@@ -113,7 +113,7 @@ class McapFile(WrittenWindows):
             writer.begin(self._stream)
             # entities that were replaced since the last window began must not come back
             kept = [each for each in self._memories.values() if not (latest and isinstance(each, SceneMemory))]
-            held = [each for memory in kept for each in memory.held()]
+            held = [each for memory in kept for each in memory.current_messages()]
             for numbered in sorted(held, key=lambda each: each.number):
                 if numbered.number < begin:
                     writer.add(numbered.message)

@@ -37,7 +37,7 @@ MOST_EVENTS: Final = 20_000
 """So many of the first messages of a channel are kept; of declared events and parameters more, each of which may hold to the end."""
 _MOST_FIRST: Final = {EVENT_MESSAGE: MOST_EVENTS, PARAMETERS: MOST_EVENTS, LIGHT_GROUPS: 0, OLD_LIGHT_GROUPS: 0}
 MOST_FIRST_BYTES: Final = 64 << 20
-_READ: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
+_READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
 
 
 class Memory(Protocol):
@@ -47,14 +47,14 @@ class Memory(Protocol):
         """Take the next message."""
         ...
 
-    def held(self) -> list[Numbered]:
+    def current_messages(self) -> list[Numbered]:
         """Return messages that say what still holds."""
         ...
 
 
 def is_watched(schema: str) -> bool:
     """Say whether messages with a schema of this name are read by any of our readers."""
-    return message_kind(schema) in _READ
+    return message_kind(schema) in _READABLE_KINDS
 
 
 def memory_for(channel: Channel, schema: str) -> Memory:
@@ -73,7 +73,7 @@ class NoMemory:
     def take(self, numbered: Numbered) -> None:
         """See `Memory`."""
 
-    def held(self) -> list[Numbered]:
+    def current_messages(self) -> list[Numbered]:
         """See `Memory`."""
         return []
 
@@ -100,6 +100,6 @@ class LatchedMemory:
         while len(self._recent) > 1 and self._recent[0].message.log_ns < data.log_ns - RECENT_NS:
             self._recent.popleft()
 
-    def held(self) -> list[Numbered]:
+    def current_messages(self) -> list[Numbered]:
         """See `Memory`."""
         return [*self._first, *self._recent]

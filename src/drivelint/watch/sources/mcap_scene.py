@@ -45,7 +45,7 @@ class _Deletion(NamedTuple):
 @dataclass
 class _Track:
     updates: deque[_Entity] = field(default_factory=lambda: deque(maxlen=2))
-    gone: bool = False
+    is_gone: bool = False
 
 
 class SceneMemory:
@@ -61,7 +61,7 @@ class SceneMemory:
         """Take the next message."""
         try:
             entities, deletions = self._codec.parts(numbered.message.content)
-            updates = [(self._codec.said(content), content) for content in entities]
+            updates = [(self._codec.id_time_lifetime(content), content) for content in entities]
             gone = [(self._codec.deleted(content), content) for content in deletions]
         except (ValueError, TypeError, KeyError, AttributeError):
             return
@@ -70,35 +70,41 @@ class SceneMemory:
             t_ns = stamp or log_ns
             track = self._tracks[name]
             track.updates.append(_Entity(numbered, content, t_ns, t_ns + lifetime if lifetime > 0 else None))
-            track.gone = False
+            track.is_gone = False
             self._latest_ns = max(self._latest_ns, t_ns)
-        for (whom, stamp), content in gone:
-            self._delete(whom, stamp or self._latest_ns, _Deletion(numbered, content))
+        for (entity_id, stamp), content in gone:
+            self._delete(entity_id, stamp or self._latest_ns, _Deletion(numbered, content))
 
-    def _delete(self, whom: Any, t_ns: int, deletion: _Deletion) -> None:
-        tracks = self._tracks.values() if whom is None else [self._tracks[whom]] if whom in self._tracks else []
+    def _delete(self, entity_id: Any, t_ns: int, deletion: _Deletion) -> None:
+        tracks = (
+            self._tracks.values()
+            if entity_id is None
+            else [self._tracks[entity_id]]
+            if entity_id in self._tracks
+            else []
+        )
         for track in tracks:
-            if not track.gone and track.updates[-1].t_ns < t_ns:
-                track.gone = True
-            elif not track.gone and (not self._doubtful or self._doubtful[-1] is not deletion):
+            if not track.is_gone and track.updates[-1].t_ns < t_ns:
+                track.is_gone = True
+            elif not track.is_gone and (not self._doubtful or self._doubtful[-1] is not deletion):
                 self._doubtful.append(deletion)
 
-    def held(self) -> list[Numbered]:
+    def current_messages(self) -> list[Numbered]:
         """Return messages with the updates of the entities that are still there, each at the log time of its own."""
         for track in self._tracks.values():
             expires = track.updates[-1].expires_ns
-            track.gone |= expires is not None and expires < self._latest_ns
+            track.is_gone |= expires is not None and expires < self._latest_ns
         forgotten = self._latest_ns - GONE_KEPT_NS
-        for name in [n for n, track in self._tracks.items() if track.gone and track.updates[-1].t_ns < forgotten]:
+        for name in [n for n, track in self._tracks.items() if track.is_gone and track.updates[-1].t_ns < forgotten]:
             del self._tracks[name]
-        updates = [update for track in self._tracks.values() if not track.gone for update in track.updates]
+        updates = [update for track in self._tracks.values() if not track.is_gone for update in track.updates]
         by_source: dict[int, tuple[Numbered, list[Any], list[Any]]] = {}
         for update in updates:
             by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
         for deletion in self._doubtful:
             by_source.setdefault(deletion.source.number, (deletion.source, [], []))[2].append(deletion.content)
         return [
-            source._replace(message=source.message.with_content(self._codec.joined(entities, deletions)))
+            source._replace(message=source.message.with_content(self._codec.encode(entities, deletions)))
             for _, (source, entities, deletions) in sorted(by_source.items(), key=lambda item: item[0])
         ]
 
@@ -114,7 +120,7 @@ class _Protobuf:
                 found[each.number].append(data[each.start : each.end])
         return found[_ENTITIES], found[_DELETIONS]
 
-    def said(self, entity: bytes) -> tuple[bytes, int, int]:
+    def id_time_lifetime(self, entity: bytes) -> tuple[bytes, int, int]:
         """Return id, time and lifetime of an entity; 0: none is said."""
         spans = {each.number: entity[each.start : each.end] for each in fields(entity)}
         return spans.get(_ID, b""), _time(spans.get(_TIMESTAMP, b"")), _time(spans.get(_LIFETIME, b""))
@@ -126,7 +132,7 @@ class _Protobuf:
         every = 2 in found and found[2].value == _DELETE_ALL
         return None if every else spans.get(_ID, b""), _time(spans.get(_TIMESTAMP, b""))
 
-    def joined(self, entities: list[bytes], deletions: list[bytes]) -> bytes:
+    def encode(self, entities: list[bytes], deletions: list[bytes]) -> bytes:
         """Return a message of these."""
         return b"".join(
             [*(nested(_DELETIONS, each) for each in deletions), *(nested(_ENTITIES, each) for each in entities)]
@@ -146,7 +152,7 @@ class _Json:
         message = json.loads(data)
         return message.get("entities") or [], message.get("deletions") or []
 
-    def said(self, entity: Any) -> tuple[str, int, int]:
+    def id_time_lifetime(self, entity: Any) -> tuple[str, int, int]:
         """Return id, time and lifetime of an entity; 0: none is said."""
         return entity.get("id") or "", _json_time(entity.get("timestamp")), _json_time(entity.get("lifetime"))
 
@@ -155,7 +161,7 @@ class _Json:
         every = deletion.get("type") in {_DELETE_ALL, "ALL"}
         return None if every else deletion.get("id") or "", _json_time(deletion.get("timestamp"))
 
-    def joined(self, entities: list[Any], deletions: list[Any]) -> bytes:
+    def encode(self, entities: list[Any], deletions: list[Any]) -> bytes:
         """Return a message of these."""
         return json.dumps({"deletions": deletions, "entities": entities}).encode()
 

@@ -23,10 +23,10 @@ RECORD: Final = struct.Struct("<BQ")
 MESSAGE: Final = struct.Struct("<HIQQ")
 MOST_RECORD_BYTES: Final = MAX_CHUNK_BYTES + (1 << 20)
 """A record that is read and says it is longer is none. Others, such as attachments, may be."""
-_READ: Final = frozenset(
+_READABLE_OPCODES: Final = frozenset(
     {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.METADATA, Opcode.DATA_END}
 )
-_KNOWN: Final = frozenset(Opcode)
+_STANDARD_OPCODES: Final = frozenset(Opcode)
 _PRIVATE: Final = 0x80
 """Opcodes from here on belong to applications."""
 _FOOTER_BYTES: Final = 20
@@ -95,7 +95,7 @@ class McapStream:
             while (record := self._next_record()) is not None:
                 at = self._at + self._place - len(record)
                 try:
-                    found += self._taken(record, at)
+                    found += self._read_record(record, at)
                 except (struct.error, McapError, ValueError) as error:
                     self._stop(at, f"a record that cannot be read ({error})")
         del self._buffer[: self._place]
@@ -111,9 +111,9 @@ class McapStream:
             self._begun, self._place = True, len(MAGIC)
         return self._begun
 
-    def _stop(self, at: int, what: str) -> None:
+    def _stop(self, at: int, reason: str) -> None:
         self.ended = True
-        self.notes.append(f"{self._where}: {what} at byte {at}: nothing behind it is watched")
+        self.notes.append(f"{self._where}: {reason} at byte {at}: nothing behind it is watched")
 
     def _next_record(self) -> bytes | None:
         """Return the next record that is read, once it is whole; None: nothing yet, or never again."""
@@ -125,8 +125,8 @@ class McapStream:
                 return None
             opcode, length = RECORD.unpack_from(self._buffer, self._place)
             end = self._place + RECORD.size + length
-            is_read = self._in_data and opcode in _READ
-            unknown = opcode not in _KNOWN and opcode < _PRIVATE
+            is_read = self._in_data and opcode in _READABLE_OPCODES
+            unknown = opcode not in _STANDARD_OPCODES and opcode < _PRIVATE
             if unknown or length > (MOST_RECORD_BYTES if is_read else reader.MOST_RECORD_BYTES):
                 self._stop(self._at + self._place, f"no record, but one of kind {opcode} and {length} bytes,")
             elif opcode == Opcode.FOOTER:
@@ -144,7 +144,7 @@ class McapStream:
                 return record
         return None
 
-    def _taken(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
+    def _read_record(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
         body = record[RECORD.size :]
         opcode = record[0]
         if opcode == Opcode.CHUNK:

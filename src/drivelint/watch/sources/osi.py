@@ -227,7 +227,7 @@ class DatagramReceiver:
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):
             self._told = losses.total
-            found.append(f"{self._where}: lost so far: {losses.told()}")
+            found.append(f"{self._where}: lost so far: {losses.summary_text()}")
         return found
 
     def close(self) -> None:
@@ -275,9 +275,9 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
 
 
 @contextmanager
-def _closed_on_error(opened: socket.socket) -> Generator[None, None, None]:
+def _closed_on_error(bound_socket: socket.socket) -> Generator[None, None, None]:
     with ExitStack() as undo:
-        undo.callback(opened.close)
+        undo.callback(bound_socket.close)
         yield
         undo.pop_all()
 

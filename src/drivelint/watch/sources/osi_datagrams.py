@@ -60,7 +60,7 @@ class Losses:
         """All of them."""
         return sum(vars(self).values())
 
-    def told(self) -> str:
+    def summary_text(self) -> str:
         """Return the counts that are not 0, in words."""
         counts = {
             f"datagrams missing or out of order in {plural(self.gaps, 'place')}": self.gaps,

@@ -52,8 +52,8 @@ class MessageCutter:
         self._at += place
         return found
 
-    def _stop(self, place: int, what: str) -> None:
-        self.trouble = f"{what} at byte {self._at + place}"
+    def _stop(self, place: int, reason: str) -> None:
+        self.trouble = f"{reason} at byte {self._at + place}"
 
 
 def _begins(buffer: bytearray, at: int) -> bool:

@@ -13,7 +13,7 @@ _SAID_ONCE: Final = (
     "proj_string", "proj_frame_offset",
 )  # fmt: skip
 """Fields that the reader takes from the first message only, see `formats.osi.decode.read_first_message`."""
-_SHOWN: Final = ("color", "mode")
+_LIGHT_STATE_FIELDS: Final = ("color", "mode")
 """What a traffic light shows at a time; all else about it is of the first message, too."""
 
 
@@ -32,7 +32,7 @@ class StaticContent:
             _copy(truth, kept, field)
         kept.traffic_light.extend(truth.traffic_light)
         for bulb in kept.traffic_light:
-            for field in _SHOWN:
+            for field in _LIGHT_STATE_FIELDS:
                 bulb.classification.ClearField(field)
         self._first = kept
 
@@ -84,6 +84,6 @@ def _complete(bulb: Any, first: Any) -> None:
     """Give a bulb that only says what it shows the place and the lanes that the first message gave it."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
-    for field in _SHOWN:
+    for field in _LIGHT_STATE_FIELDS:
         if shown.classification.HasField(field):
             setattr(bulb.classification, field, getattr(shown.classification, field))

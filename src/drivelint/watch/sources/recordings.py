@@ -81,10 +81,10 @@ class McapRecording:
             self._sink.finish()
             self._file.close()
 
-    def _channel(self, wanted: LiveChannel) -> int:
+    def _channel(self, live_channel: LiveChannel) -> int:
         """Return the id of a channel, which is announced unless it is already."""
         for number, known in self._sink.channels.items():
             schema = replace(self._sink.schemas[known.schema_id], id=0)
-            if (known.topic, known.message_encoding, schema) == wanted:
+            if (known.topic, known.message_encoding, schema) == live_channel:
                 return number
-        return self._sink.add_channel(*wanted)
+        return self._sink.add_channel(*live_channel)

@@ -158,8 +158,8 @@ class SumoSimulation(WrittenWindows):
         return "".join(["<routes>\n", *known, "</routes>\n"]).encode()
 
 
-def _beside(log: Path, what: str) -> Path:
-    return log.with_name(f"{log.name.partition('.')[0]}.{what}.xml")
+def _beside(log: Path, kind: str) -> Path:
+    return log.with_name(f"{log.name.partition('.')[0]}.{kind}.xml")
 
 
 def _lights(step: Step) -> bytes:

@@ -100,7 +100,7 @@ class SumoProcess:
         with ExitStack() as undo:
             undo.callback(self.end)
             self._begin(precision)
-            with self._asked() as con:
+            with self._guarded_connection() as con:
                 self.step_s = float(con.simulation.getDeltaT())
                 end_s = float(con.simulation.getEndTime())  # less than 0: until everybody has arrived
                 for light in con.trafficlight.getIDList():
@@ -116,7 +116,7 @@ class SumoProcess:
 
     def step(self) -> Step:
         """Simulate one step."""
-        with self._asked() as con:
+        with self._guarded_connection() as con:
             con.simulationStep()
             lights = con.trafficlight.getAllSubscriptionResults()
         if (found := self._steps.take(_STEP_S)) is None:
@@ -127,7 +127,7 @@ class SumoProcess:
 
     def is_over(self) -> bool:
         """Say whether it is at its end."""
-        with self._asked() as con:
+        with self._guarded_connection() as con:
             if self._ends_empty and con.simulation.getMinExpectedNumber() == 0:
                 return True
             return float(con.simulation.getTime()) >= self._end_s - self.step_s / 2
@@ -136,7 +136,7 @@ class SumoProcess:
         """Return what is known of a vType; None: SUMO does not know it any more."""
         # one that was changed for a single vehicle is called BASE@ID, after the one that it was
         parts = name.split("@")
-        with self._asked() as con:
+        with self._guarded_connection() as con:
             known = con.vehicletype
             for n in range(len(parts), 0, -1):
                 base = "@".join(parts[:n])
@@ -181,7 +181,7 @@ class SumoProcess:
             )  # fmt: skip
             if self._connect(port, self._process):
                 return
-            if _IN_USE not in self._said() or start == _STARTS - 1:
+            if _IN_USE not in self._output_text() or start == _STARTS - 1:
                 raise self._failed()
 
     def _connect(self, port: int, process: subprocess.Popen[bytes]) -> bool:
@@ -200,7 +200,7 @@ class SumoProcess:
         return False
 
     @contextmanager
-    def _asked(self) -> Iterator[Any]:
+    def _guarded_connection(self) -> Iterator[Any]:
         """Give the connection. Errors: `TraceError` where it breaks."""
         self._is_asked = True
         try:
@@ -215,11 +215,11 @@ class SumoProcess:
         if self._process is not None:
             with suppress(subprocess.TimeoutExpired):
                 code = self._process.wait(GRACE_S)
-        lines = [line for line in self._said().splitlines() if not line.startswith(("Warning:", "Quitting"))]
+        lines = [line for line in self._output_text().splitlines() if not line.startswith(("Warning:", "Quitting"))]
         first = next((n for n, line in enumerate(lines) if line.startswith("Error:")), 0)
         told = one_line("\n".join(line.removeprefix("Error:").strip() for line in lines[first:]))
         return TraceError(f"{self._config}: SUMO: {told or f'it ended with exit code {code}'}")
 
-    def _said(self) -> str:
+    def _output_text(self) -> str:
         self._messages.seek(0)
         return self._messages.read().decode("utf-8", "replace")
