@@ -219,9 +219,9 @@ def judge_logs(
             _judge_copies(session, progress)
         finally:
             session.close()
-        done = {path for path, name in ids.items() if name in session.judged_drive_ids} | {
-            each.path for each in refused_logs
-        }
+        # of two logs of one content the first gives its path and its options
+        judged = [(name, path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids]
+        done = {path for _, path in judged} | {log.path for log in refused_logs}
         missed = sorted(set(paths) - done) if interruption.requested else []
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused_logs]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
@@ -240,12 +240,8 @@ def judge_logs(
             interrupted=bool(missed),
             run_options=RunRequest.from_options(
                 settings,
-                {name: str(path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids},
-                {
-                    name: settings.manifest_options[path]
-                    for path, name in reversed(ids.items())
-                    if path in settings.manifest_options
-                },
+                {name: str(path) for name, path in judged},
+                {name: settings.manifest_options[path] for name, path in judged if path in settings.manifest_options},
             ),
         )
         if cameras is not None and cameras.topics:
