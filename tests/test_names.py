@@ -1,4 +1,4 @@
-"""Names of functions, parameters, fields, modules and constants are nouns and verbs: none is a bare participle or pronoun."""
+"""Names of functions, parameters, classes, fields, modules and constants are nouns and verbs: none is a bare participle or pronoun."""
 
 from __future__ import annotations
 
@@ -40,6 +40,8 @@ def names(path: Path) -> Iterator[tuple[int, str, bool]]:
             given = [*of.posonlyargs, *of.args, *of.kwonlyargs, *filter(None, (of.vararg, of.kwarg))]
             yield from ((argument.lineno, argument.arg, False) for argument in given)
         elif isinstance(node, ast.Module | ast.ClassDef):
+            if isinstance(node, ast.ClassDef):
+                yield node.lineno, node.name, False
             for line in node.body:
                 targets = (
                     line.targets

@@ -70,7 +70,7 @@ class _Ended(NamedTuple):
     inputs: Inputs | None
 
 
-class _Deaf(NamedTuple):
+class _DeafRule(NamedTuple):
     """A rule that does not end."""
 
     task: str
@@ -78,7 +78,7 @@ class _Deaf(NamedTuple):
     excess: Excess
 
 
-class _Told(NamedTuple):
+class _ProgressCall(NamedTuple):
     """A call of a method of `Progress` in a process, and its arguments."""
 
     method: str
@@ -192,7 +192,7 @@ class _Listener:
         self.progress = progress
         self._notes = run.LogNotes(progress, n_logs)
 
-    def hear(self, call: _Told) -> None:
+    def hear(self, call: _ProgressCall) -> None:
         """Show one call of a worker."""
         if call.method == "add":
             self._notes.add(*call.arguments)
@@ -237,13 +237,13 @@ class _Worker:
             self.ended = message
         elif isinstance(message, BaseException):
             raise message
-        elif isinstance(message, _Deaf):
+        elif isinstance(message, _DeafRule):
             self._begin_again(message)
         else:
             self._n_done += message.arguments[0] if message.method == "advance" else 0
             self._listener.hear(message)
 
-    def _begin_again(self, endless_rule: _Deaf) -> None:
+    def _begin_again(self, endless_rule: _DeafRule) -> None:
         """Start the process again without a rule that does not end."""
         self.stop()
         self._listener.progress.note(
@@ -288,15 +288,15 @@ class _Teller(Progress):
     def advance(self, n: int = 1) -> None:
         """See `Progress`."""
         if self._counts:
-            self.send(_Told("advance", (n,)))
+            self.send(_ProgressCall("advance", (n,)))
 
     def doing(self, activity: str, part: float = 0.0) -> None:  # noqa: ARG002 - those of several workers are not one
         """See `Progress`."""
-        self.send(_Told("doing", (activity,)))
+        self.send(_ProgressCall("doing", (activity,)))
 
     def note(self, text: str) -> None:
         """See `Progress`."""
-        self.send(_Told("note", (text,)))
+        self.send(_ProgressCall("note", (text,)))
 
 
 class _SentNotes(run.LogNotes):
@@ -309,7 +309,7 @@ class _SentNotes(run.LogNotes):
     def add(self, note: LogNote) -> None:
         """See `LogNotes`."""
         self.notes.append(note)
-        self._teller.send(_Told("add", (note,)))
+        self._teller.send(_ProgressCall("add", (note,)))
 
 
 class _DeafInWorker:
@@ -326,7 +326,7 @@ class _DeafInWorker:
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
         temporary.remove_all()
-        self._teller.send(_Deaf(task, rule_id, excess))
+        self._teller.send(_DeafRule(task, rule_id, excess))
         os._exit(0)
 
 

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.fleet.coverage import STANDINGS, coverage
-from drivelint.fleet.missing_signals import Missing, missing_signals
+from drivelint.fleet.missing_signals import SignalGaps, missing_signals
 from drivelint.fleet.rates import rates
 from tests.fleet import audits
 from tests.fleet.conftest import Checked
@@ -100,7 +100,7 @@ def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Check
     assert {rule_: n for rule_, n in of_first.items() if n} == {rule_: n for rule_, n in occasions.items() if n}
 
 
-def of_check(folder: Any) -> Missing:
+def of_check(folder: Any) -> SignalGaps:
     with duckdb.connect() as con:
         audits.add_results(con, folder)
         return missing_signals(con)

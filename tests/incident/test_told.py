@@ -15,7 +15,7 @@ from drivelint.drive.trace import TURNED_FRAME
 from drivelint.incident import render
 from drivelint.incident.conduct import name_party
 from drivelint.incident.fitting import Reason, fit
-from drivelint.incident.judge import Judged
+from drivelint.incident.judge import EgoRows
 from drivelint.incident.place import coordinates, inferred_side
 from drivelint.incident.sheet import content
 
@@ -106,7 +106,7 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     parts = [*collision["conduct"], collision["of_both"]]
     assert [part["reasons"].more for part in parts] == [0, 0, 0]
     for party, judged in zip(collision["conduct"], (case.again, case.other_party), strict=True):
-        assert isinstance(judged, Judged)
+        assert isinstance(judged, EgoRows)
         undecided = {row["rule_id"] for row in judged.verdicts if row["verdict"] in {"unknown", "error"}}
         told = " ".join([*party["reasons"].texts, *collision["of_both"]["reasons"].texts])
         titles = [rule["title"] for rule in case.result.rules.to_pylist() if rule["rule_id"] in undecided]

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from drivelint.resources import folder
 from drivelint.sql import macro_trees, store, syntax, word_check
 from drivelint.sql.derivations import derivations
-from drivelint.sql.word_check import Checked, check
+from drivelint.sql.word_check import CheckedQuery, check
 from drivelint.sql.word_scope import Relation
 from drivelint.sql.words import Vocabulary, WordColumn
 
 
-def checked(sql: str, tables: dict[str, Relation] | None = None) -> Checked:
+def checked(sql: str, tables: dict[str, Relation] | None = None) -> CheckedQuery:
     return check(syntax.parse_select(sql, "a test"), tables)
 
 

@@ -47,7 +47,7 @@ _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
 """The texts of deltalake's errors are coloured."""
 
 
-class Written(NamedTuple):
+class DeltaChange(NamedTuple):
     """How many files a writing has added and taken out, in all tables."""
 
     n_added: int
@@ -81,7 +81,7 @@ def ready(dest: str, out: str, run: str) -> None:
 
 def write(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
-) -> Written:
+) -> DeltaChange:
     """Make the Delta tables in `dest` have what the packed tables have, each by one commit, where they differ.
 
     `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
@@ -97,12 +97,12 @@ def write(
         job = partial(_write_table, where, table, files, schema, run=run, digest=digest)
         done = _persistent(where, job)
         n_added, n_removed = n_added + done.n_added, n_removed + done.n_removed
-    return Written(n_added, n_removed)
+    return DeltaChange(n_added, n_removed)
 
 
 def _write_table(
     where: str, table: str, files: dict[str, Path], schema: pa.Schema, *, run: str, digest: str | None
-) -> Written:
+) -> DeltaChange:
     from deltalake import CommitProperties, Schema
     from deltalake.transaction import AddAction, RemoveAction, create_table_with_add_actions
 
@@ -129,7 +129,7 @@ def _write_table(
         )
     elif added or removed or _last_digest(store, there.version()) != digest:
         there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
-    return Written(len(added), len(removed))
+    return DeltaChange(len(added), len(removed))
 
 
 def _open_table(where: str, table: str, run: str) -> DeltaTable | None:

@@ -150,19 +150,19 @@ def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
 
-class Named(NamedTuple):
+class LogList(NamedTuple):
     """The number of some logs, and the first of them."""
 
     n: int
     logs: list[str]
 
 
-def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> Named:
+def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
     """Return the logs that are `lossy` or `off_map`, of one content one; those of an older audit may not say the latter."""
     if flag not in con.table("receipts").columns:
-        return Named(0, [])
+        return LogList(0, [])
     rows = con.execute(statement("audit/logs_that_are", what=flag)).fetchall()
-    return Named(len(rows), [log for (log,) in rows[:MOST_LOGS]])
+    return LogList(len(rows), [log for (log,) in rows[:MOST_LOGS]])
 
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:

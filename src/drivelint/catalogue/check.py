@@ -114,7 +114,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     """
     text = _Text(sql, file, line)
     statement, node = _parsed(text)
-    found = _Found(text)
+    found = _SyntaxFindings(text)
     for part, ctes in walk(node):
         found.meet(part, ctes)
     refuse(found.refusals)
@@ -161,7 +161,7 @@ def _parameter(sql: str, name: str) -> int | None:
     return len(sql[: found.start()].encode()) if found else None
 
 
-class _Found:
+class _SyntaxFindings:
     """Keeps what is not allowed in a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
 
     def __init__(self, text: _Text) -> None:

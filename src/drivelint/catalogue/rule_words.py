@@ -45,9 +45,9 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     return None
 
 
-def _check_sections(sections: Mapping[str, str]) -> dict[str, word_check.Checked]:
+def _check_sections(sections: Mapping[str, str]) -> dict[str, word_check.CheckedQuery]:
     """Return each section with its words checked; the others see the columns of @reference in the engine's tables."""
-    found: dict[str, word_check.Checked] = {}
+    found: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}
     for name in sorted(sections, key=lambda each: each != "reference"):
         found[name] = word_check.check(syntax.parse_select(sections[name], name), tables)

@@ -35,7 +35,7 @@ Excess = Literal["rule_timeout", "out_of_memory"]
 """The limit that a rule went beyond, as the reason code of its verdicts."""
 
 
-class Held:
+class RunningRule:
     """A rule that runs, and the limit that it went beyond, if any."""
 
     def __init__(self) -> None:
@@ -97,12 +97,12 @@ class RuleLimits:
         self._excesses.clear()
 
     @contextmanager
-    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[Held]:
+    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
         """Hold the statements on `con` inside the block to the limits.
 
         `alone`: no other rule runs meanwhile, so that the memory that the process takes is this rule's.
         """
-        rule_run = Held()
+        rule_run = RunningRule()
         if self.seconds is None:
             yield rule_run
             return
@@ -119,7 +119,9 @@ class RuleLimits:
                 if self._excesses[rule_id] >= MOST_EXCESSES:
                     self._lost[rule_id] = rule_run.excess
 
-    def _watch(self, con: duckdb.DuckDBPyConnection, rule_id: str, rule_run: Held, alone: bool, thread: int) -> None:
+    def _watch(
+        self, con: duckdb.DuckDBPyConnection, rule_id: str, rule_run: RunningRule, alone: bool, thread: int
+    ) -> None:
         seconds = self.allowed_s or 0.0
         work, before = Work(thread), resident_bytes()
         patience = 0.0

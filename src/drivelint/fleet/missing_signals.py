@@ -52,25 +52,25 @@ class Undecided:
 
 
 @dataclass(frozen=True)
-class Missing:
+class SignalGaps:
     """The undecided verdicts: those that lack a signal, and those with another reason. The most frequent come first."""
 
     signals: tuple[MissingSignal, ...]
     other_reasons: tuple[Undecided, ...]
 
 
-def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Missing:
+def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGaps:
     """Return what the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
     egos = subject(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
     other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
-    return Missing(
+    return SignalGaps(
         tuple(MissingSignal(*row) for row in signals),
         tuple(Undecided(*row) for row in other_reasons),
     )
 
 
-def __getattr__(name: str) -> Callable[..., Missing]:
+def __getattr__(name: str) -> Callable[..., SignalGaps]:
     """Return `missing_signals` under its earlier name `missing`, with a note that the name is deprecated."""
     if name != "missing":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -6,11 +6,11 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit.summary import Named, logs_that_are
+from drivelint.audit.summary import LogList, logs_that_are
 from drivelint.catalogue.header import CONTACT
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject
-from drivelint.fleet.missing_signals import Missing, missing_signals
+from drivelint.fleet.missing_signals import SignalGaps, missing_signals
 from drivelint.fleet.rates import Rate, rates
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
 from drivelint.fleet_report.difference import AuditDifference, difference, verdict_counts
@@ -62,12 +62,12 @@ class FleetContent:
     n_without_rate: int
     contacts: tuple[int, int]
     not_judged: list[Row]
-    lossy: Named
-    off_map: Named
+    lossy: LogList
+    off_map: LogList
     worst_value: WorstValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
-    undecided: Missing
+    undecided: SignalGaps
     places: FindingMap | None
     baseline: AuditDifference | None
 

@@ -21,7 +21,7 @@ from drivelint.explain.source import open_drive
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
 from drivelint.incident.finding import contacts, named_finding
-from drivelint.incident.judge import Judge, Judged
+from drivelint.incident.judge import EgoRows, Judge
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import PICTURE_STYLE, visible
@@ -117,7 +117,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
 
 def _other_party(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
-) -> Judged | str | None:
+) -> EgoRows | str | None:
     """Return what is judged of the other party as ego, or why it is not."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
     if other is None:
@@ -127,7 +127,7 @@ def _other_party(
             [row for row in table.to_pylist() if row["drive_id"] == drive_id and row["ego_id"] == other]
             for table in (result.verdicts, result.findings)
         ]
-        return Judged(rows[0], rows[1], result.verdicts.slice(0, 0))
+        return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
     # what the options say of the ego is not said of another vehicle
     run_options = replace(run_options, ego_size=None)
     drive, _ = open_drive(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
     from drivelint.incident.finding import NamedFinding
-    from drivelint.incident.judge import Judged
+    from drivelint.incident.judge import EgoRows
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
@@ -27,6 +27,6 @@ class Case:
     run_options: RunRequest
     finding: NamedFinding
     drive: Drive
-    again: Judged
-    other_party: Judged | str | None
+    again: EgoRows
+    other_party: EgoRows | str | None
     source: str

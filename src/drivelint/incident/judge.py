@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Judged:
+class EgoRows:
     """The rows of `verdict` and `finding` of one ego, and the rows of `queries/incident/step.sql`."""
 
     verdicts: Sequence[Row]
@@ -60,7 +60,7 @@ class Judge:
 
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
-    ) -> Judged:
+    ) -> EgoRows:
         """Judge a drive of one ego. `errors`: of the copies that tell how sure findings are; None: no copies are judged."""
         steps: list[pa.Table] = []
 
@@ -76,7 +76,7 @@ class Judge:
             session.judge_copies()
             session.close()
             verdicts, findings = (memory.run_job(job).to_pylist() for job in (collect.verdicts, collect.findings))
-        return Judged(verdicts, findings, steps[-1])
+        return EgoRows(verdicts, findings, steps[-1])
 
 
 def same_finding(findings: Sequence[Row], finding: Row, *, tolerance: float = 1e-6) -> Row | None:

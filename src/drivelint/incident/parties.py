@@ -10,7 +10,7 @@ import shapely
 
 from drivelint.incident.case import LETTERS
 from drivelint.incident.delta_v import told_delta_v
-from drivelint.incident.judge import Judged
+from drivelint.incident.judge import EgoRows
 from drivelint.incident.motion import BEFORE_S, slowing_known
 from drivelint.incident.sizes import size_source
 from drivelint.incident.words import collision_title, nearly_same, speed
@@ -107,7 +107,7 @@ def _brake_lights(case: Case, actor_id: str) -> str:
 def _lane(case: Case, number: int, at: int | None) -> str:
     """Return in words in which lane a party is at a step of the first one."""
     judged = (case.again, case.other_party)[number]
-    if at is None or not isinstance(judged, Judged) or not judged.steps.num_rows:
+    if at is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
         return "not examined"
     t_ns = case.again.steps["t_ns"][at].as_py()
     i = int(np.searchsorted(judged.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1

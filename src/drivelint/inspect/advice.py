@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.inspect.model import Missing, Undecided
+from drivelint.inspect.model import MissingSignal, Undecided
 from drivelint.reasons.signals import SIGNAL_OF_CONDITION, how_to_provide
 
 if TYPE_CHECKING:
@@ -56,14 +56,14 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
 
 def missing_signals(
     undecided: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, advice: Mapping[str, str]
-) -> list[Missing]:
+) -> list[MissingSignal]:
     """Return the missing signals with the rules that need them, the most needed first. `advice`: signal -> advice of its reason."""
     by_signal: dict[str, list[Undecided]] = {}
     for rule in undecided:
         for signal in rule.missing_signals:
             by_signal.setdefault(signal, []).append(rule)
     found = [
-        Missing(
+        MissingSignal(
             signal=signal,
             reason=lacking[signal],
             provide=how_to_provide(signal, log_format, advice.get(signal)),

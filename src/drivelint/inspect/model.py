@@ -131,7 +131,7 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
     breach_only: Annotated[bool, described("it can be found broken all the same, but not kept")] = False
 
 
-class Missing(msgspec.Struct, frozen=True, kw_only=True):
+class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
     """A signal that some rule requires and this log and map do not give."""
 
     signal: str
@@ -150,7 +150,7 @@ class Ego(msgspec.Struct, frozen=True, kw_only=True):
     registration: MapRegistration | None
     can: Annotated[list[str], described("rules that can be decided")]
     cannot: list[Undecided]
-    missing_signals: list[Missing] = msgspec.field(name="missing")
+    missing_signals: list[MissingSignal] = msgspec.field(name="missing")
 
 
 class Road(msgspec.Struct, frozen=True, kw_only=True):

@@ -27,7 +27,7 @@ _HASHES: Final = {
 """By their ids; of older ones another statement of the same hash could be made."""
 
 
-class Looked(NamedTuple):
+class StampCheck(NamedTuple):
     """The result of checking a time stamp: its problems, its time and authority in words, and notes on what was not checked."""
 
     problems: list[Problem]
@@ -51,22 +51,22 @@ def read(path: Path, envelope: bytes) -> bytes:
     return content
 
 
-def of_pack(folder: Path, roots: Path | None) -> Looked:
+def of_pack(folder: Path, roots: Path | None) -> StampCheck:
     """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: nobody is asked for.
 
     Errors: `UsageError` for certificates that cannot be read, or where they are given and rfc3161-client is not installed.
     """
     if not (folder / FILE).is_file() or not (folder / ENVELOPE).is_file():
-        return Looked([] if roots is None else [Problem("no time stamp", FILE)])
+        return StampCheck([] if roots is None else [Problem("no time stamp", FILE)])
     try:
         return look((folder / FILE).read_bytes(), (folder / ENVELOPE).read_bytes(), roots)
     except ModuleNotFoundError as error:
         if roots is not None:
             raise UsageError(_missing_package_text("--timestamp-root")) from error
-        return Looked([], "with a time stamp that was not looked at", [_missing_package_text("its time stamp")])
+        return StampCheck([], "with a time stamp that was not looked at", [_missing_package_text("its time stamp")])
 
 
-def look(content: bytes, envelope: bytes, roots: Path | None) -> Looked:
+def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
     """Look at a response of an authority: it must be about this envelope. Errors: `UsageError`, `ModuleNotFoundError`."""
     from rfc3161_client import VerificationError, VerifierBuilder, decode_timestamp_response
 
@@ -75,19 +75,19 @@ def look(content: bytes, envelope: bytes, roots: Path | None) -> Looked:
         told = response.tst_info
         imprint, time = told.message_imprint, told.gen_time
     except (ValueError, IndexError, TypeError, AttributeError):
-        return Looked([Problem("time stamp not readable", FILE)])
+        return StampCheck([Problem("time stamp not readable", FILE)])
     hashed = _HASHES.get(imprint.hash_algorithm.dotted_string)
     if hashed is None or hashed(envelope).digest() != imprint.message:
-        return Looked([Problem("time stamp of another statement", FILE)])
+        return StampCheck([Problem("time stamp of another statement", FILE)])
     shown = f"{time:%Y-%m-%dT%H:%M:%SZ}"
     if roots is None:
-        return Looked([], f"with a time stamp of {shown} (only --timestamp-root tells whose)")
+        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root tells whose)")
     builder = VerifierBuilder(roots=_certificates(roots))
     try:
         builder.build().verify(response, imprint.message)
     except (VerificationError, ValueError) as error:
-        return Looked([Problem("time stamp of nobody who is trusted", f"{FILE}: {error}")])
-    return Looked([], f"there since {shown}, as an authority that is trusted says")
+        return StampCheck([Problem("time stamp of nobody who is trusted", f"{FILE}: {error}")])
+    return StampCheck([], f"there since {shown}, as an authority that is trusted says")
 
 
 def _in_order(content: bytes) -> bytes:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 PUBLIC_KEY: Final = "public-key.pem"
 
 
-class _Checked(NamedTuple):
+class _PackSource(NamedTuple):
     """A result with its check, rules, evidence and incident sheets (path in the pack -> content)."""
 
     result: Result
@@ -114,7 +114,7 @@ def _content(request: PackRequest) -> Content:
         )
     check_request = located(check_request, result.drives.to_pylist(), request.traces, request.map)
     rules, evidence = again.rules_of(result, check_request), again.finding_evidence(result, check_request)
-    checked_result = _Checked(
+    checked_result = _PackSource(
         result, check_request, rules, evidence, sheets.of_result(request.folder, result, check_request)
     )
     return Content(
@@ -123,7 +123,7 @@ def _content(request: PackRequest) -> Content:
     )
 
 
-def _payload(work: Path, request: PackRequest, checked_result: _Checked) -> dict[str, Any]:
+def _payload(work: Path, request: PackRequest, checked_result: _PackSource) -> dict[str, Any]:
     result, check_request, rules, evidence, incidents = checked_result
     copied = [request.folder / name for name in sorted(contents.OUTPUTS) if (request.folder / name).is_file()]
     (work / RESULT).mkdir(parents=True)

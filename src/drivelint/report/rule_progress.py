@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.evaluate.limits import Held
+    from drivelint.evaluate.limits import RunningRule
     from drivelint.report.progress import Progress
 
 
@@ -32,7 +32,7 @@ class ToldLimits(RuleLimits):
         self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")
 
     @contextmanager
-    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[Held]:
+    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
         """See `RuleLimits.hold`."""
         self._begun.add(rule_id)
         n = len(self._begun)

@@ -41,7 +41,7 @@ _COMPARISONS: Final = frozenset(
 _LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
 
 
-class Checked(NamedTuple):
+class CheckedQuery(NamedTuple):
     """A query's columns, the wrong words in it, and what each parameter is compared with."""
 
     relation: Relation
@@ -49,11 +49,11 @@ class Checked(NamedTuple):
     parameters: Mapping[str, Sequence[Words]]
 
 
-def check(tree: Node, tables: Mapping[str, Relation] | None = None) -> Checked:
+def check(tree: Node, tables: Mapping[str, Relation] | None = None) -> CheckedQuery:
     """Check the tree of a SELECT. `tables`: those it reads beside the tables of `schemas/`, such as a rule's reference points."""
     walker = _Walker({**_tables(), **(tables or {})})
     relation = walker.query(tree, {}, None)
-    return Checked(relation, walker.wrong, walker.parameters)
+    return CheckedQuery(relation, walker.wrong, walker.parameters)
 
 
 def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:

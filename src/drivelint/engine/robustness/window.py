@@ -46,7 +46,7 @@ AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
 """For a rule with reference points in overtakes."""
 
 
-class Asked(Protocol):
+class FindingWithCopies(Protocol):
     """A finding that copies are judged for."""
 
     finding: dict[str, Any]
@@ -77,7 +77,7 @@ class Extent:
     at_once: bool
     """Actors are near only if they are so at the same time: else wherever the ego is in the window."""
 
-    def add(self, question: Asked) -> None:
+    def add(self, question: FindingWithCopies) -> None:
         """Let a finding's window be in it, too."""
         start, end = span(question)
         self.from_ns, self.to_ns = min(self.from_ns, start), max(self.to_ns, end)
@@ -146,7 +146,7 @@ class Window:
         return found | extent.objects | {self.ego_id}
 
 
-def windows(drives: Mapping[str, Drive], questions: Sequence[Asked], goals: Sequence[int]) -> list[Window]:
+def windows(drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies], goals: Sequence[int]) -> list[Window]:
     """Return the windows in which findings are copied next, those with the first copies first.
 
     Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on,
@@ -165,7 +165,7 @@ def windows(drives: Mapping[str, Drive], questions: Sequence[Asked], goals: Sequ
     return [found[key] for key in sorted(found, key=lambda key: key[:-2])]
 
 
-def cut(questions: Sequence[Asked]) -> None:
+def cut(questions: Sequence[FindingWithCopies]) -> None:
     """Give each finding the extent of its window, which it shares with those of the same ego that it overlaps."""
     last: dict[tuple[object, ...], Extent] = {}
     for question in sorted(questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
@@ -182,7 +182,7 @@ def _parts(numbers: range, goals: Sequence[int]) -> list[range]:
     return [range(*ends) for ends in pairwise((numbers.start, *cuts, numbers.stop))]
 
 
-def span(question: Asked) -> tuple[int, int]:
+def span(question: FindingWithCopies) -> tuple[int, int]:
     """Return from when to when a finding's window is: its worst step with what is around it, its stretch, or much more."""
     finding, ref, worst = question.finding, question.finding["t_ref_ns"], question.finding["t_worst_ns"]
     if question.size == 0:
