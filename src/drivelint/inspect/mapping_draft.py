@@ -42,7 +42,7 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
         return None
     of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
     draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
-        explanation=found,
+        column_by_field=found,
         others=[column for column in columns if column not in found.values()],
         time_unit=("time" in found and _unit(found["time"], dict(TIME_UNITS))) or "s",
         units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
