@@ -169,7 +169,7 @@ if __name__ == "__main__":
     pool._workers[0]._process.kill()
     pool._workers[0]._process.join()
     pool.submit(Task((), "/nowhere", "", JudgeSettings(rules=("ukhc.no-collision",))))
-    print([outcome.lost for outcome in pool.wait()])
+    print([outcome.loss_reason for outcome in pool.wait()])
     pool.close()
 """
 
