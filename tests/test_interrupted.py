@@ -291,7 +291,7 @@ class Watcher(Silent):
         self.told.append(n)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_the_bar_tells_what_is_read_and_what_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "FIRST_BATCH_DRIVES", 1)
     watcher = Watcher()

@@ -119,7 +119,7 @@ def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     assert (again.reused, again.n_drives) == (3, 4)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_processes_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, workers: int
@@ -252,7 +252,7 @@ def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Pa
     assert judged(few, tmp_path / "out").reused == 3
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     logs = tmp_path / "fleet" / "logs"

@@ -205,7 +205,7 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
     assert all(str(told) in note for note in said)
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())

@@ -126,7 +126,7 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
     )
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     rule = with_cases(measured(tmp_path), LOOSE)
     entry = '[[survivor]]\nrule = "pack.rule"\nmutant = "{}"\nreason = "a test"\n'

@@ -163,7 +163,7 @@ def test_an_impact_is_no_back_step(told: bool) -> None:
         assert np.nanmax(np.abs(fastest)) > 1.2
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_no_finding_comes_of_a_jump() -> None:
     """The ego jumps, or the one beside it: no rule is broken by that."""
     grid = [(kind, 10) for kind in ("back1", "back3", "side0.5", "jump20", "stay0.5", "zero")] + [

@@ -78,6 +78,7 @@ def check(spec: Spec, trace: Trace, outcome: CaseOutcome) -> str:
     return verdict
 
 
+@pytest.mark.ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("spec", SPECS, ids=lambda spec: spec.rule)
 def test_the_catalogue_and_rtamt_agree(spec: Spec) -> None:

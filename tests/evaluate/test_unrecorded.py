@@ -69,7 +69,7 @@ def test_a_mapping_that_names_the_signal_asks_for_it(names: bool) -> None:
     assert found[HORN] == ("not_applicable", "unrecorded_mode_horn")
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_a_signal_that_the_log_has_is_judged_and_one_of_the_map_stays_unknown() -> None:
     assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][0] in {"pass", "not_applicable"}
     assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][1] != "unrecorded_mode_horn"

@@ -36,6 +36,7 @@ def tree(file: Path) -> lxml.html.HtmlElement:
     return lxml.html.fromstring(file.read_text(encoding="utf-8"))
 
 
+@pytest.mark.ci
 def test_a_page_per_topic_and_the_reference(pages: Path) -> None:
     names = {*guide.TOPICS, *site.REFERENCE_PAGES, "index"}
     assert {file.name for file in pages.iterdir()} == {f"{n}.html" for n in names} | {html.STYLESHEET, *site.PICTURES}

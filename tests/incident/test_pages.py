@@ -64,7 +64,7 @@ def labels_are_legible(page: Page) -> None:
     assert all(8 <= px < 20 for _, px in shown), shown
 
 
-@pytest.mark.ci
+@pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) -> None:
     html = tmp_path / "sheet.html"

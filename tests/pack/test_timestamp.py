@@ -104,6 +104,7 @@ def stamped(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> Stamped
     return Stamped(bare, pack, authority, other)
 
 
+@pytest.mark.slow
 def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, tmp_path: Path) -> None:
     found = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.authority.root))
     assert found.problems == []

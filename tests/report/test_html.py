@@ -336,6 +336,7 @@ def test_a_result_read_back_gives_the_same_page(overtakes: Result, text: str, tm
     assert page(load_result(tmp_path)) == text
 
 
+@pytest.mark.ci
 def test_the_command_writes_the_page_into_the_folder(overtakes: Result, text: str, tmp_path: Path) -> None:
     write(overtakes, tmp_path)
     command = [sys.executable, "-m", "drivelint", "report", str(tmp_path), "--to", "html"]

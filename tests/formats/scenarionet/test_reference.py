@@ -251,7 +251,7 @@ def test_widths_are_those_that_waymo_tells() -> None:
     assert np.quantile(np.abs(off), 0.9) < 0.2
 
 
-@pytest.mark.ci
+@pytest.mark.slow
 def test_one_command_judges_a_folder_of_them(tmp_path: Path) -> None:
     """Verdicts that were counted when the reader was written; nobody breaks a rule surely, and no verdict is an error."""
     folder = tmp_path / "waymo"
