@@ -1,6 +1,7 @@
 -- Two measurements make a miss: one alone may be off, and its neighbours contradict it. Where sensors measured the places, a stretch of
 -- misses within which the ego, or the object, was measured once only is not decided. A contact may be over before it is seen twice, and
--- nothing contradicts a detection of which the samples beside it say that nobody was detected.
+-- the samples beside a detection in a film contradict nothing if they have no detection. In other logs a sample without a place may be one
+-- that the program does not believe.
 UPDATE _judged SET holds = NULL, code = 'one_sample'
 FROM (
     WITH miss AS (
@@ -31,8 +32,9 @@ FROM (
     ) s
     ASOF LEFT JOIN actor_state b ON b.drive_id = s.drive_id AND b.actor_id = s.actor_id AND b.t_ns < s.t_start_ns
     ASOF LEFT JOIN actor_state n ON n.drive_id = s.drive_id AND n.actor_id = s.actor_id AND n.t_ns > s.t_end_ns
+    LEFT JOIN (SELECT DISTINCT drive_id FROM quality WHERE check_id = 'assumed_motion') film ON film.drive_id = s.drive_id
     GROUP BY ALL
-    HAVING min(n_samples) < 2 AND NOT bool_or(b.x_m IS NULL AND n.x_m IS NULL AND coalesce(b.t_ns, n.t_ns) IS NOT NULL)
+    HAVING min(n_samples) < 2 AND NOT bool_or(film.drive_id IS NOT NULL AND b.x_m IS NULL AND n.x_m IS NULL AND coalesce(b.t_ns, n.t_ns) IS NOT NULL)
 ) x
 WHERE NOT _judged.holds AND _judged.rule_no = x.rule_no AND _judged.drive_id = x.drive_id AND _judged.ego_id = x.ego_id AND _judged.object_id = x.object_id
     AND _judged.profile = x.profile AND _judged.label = x.label AND _judged.t_ns BETWEEN x.t_start_ns AND x.t_end_ns

@@ -122,6 +122,8 @@ def test_nothing_contradicts_a_detection_that_nobody_was_detected_beside(
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
     given = scene([missed], measured())
     given["actor_state"]["x_m"] = [None if i in unseen else x for i, x in enumerate(given["actor_state"]["x_m"])]
+    assert brief(verdicts(rule, given)) == [UNKNOWN], "a sample without a place may be one that is not believed"
+    given["quality"] = {"check_id": "assumed_motion", "severity": "warning", "message": "a film"}
     assert brief(verdicts(rule, given)) == [expected]
 
 

@@ -40,7 +40,7 @@
 
 -- @applies
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
-    -- Who may drive over or under the ego's road is perhaps not passed.
+    -- The ego does not pass a vehicle on another level. If the level is not known, the rule may not apply.
     CASE WHEN NOT p.off_level THEN e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies
 FROM pair p
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)

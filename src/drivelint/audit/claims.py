@@ -28,7 +28,7 @@ LEASE_S: Final = 60.0
 
 
 class Claim(Enum):
-    """Whose a drive is after an attempt to claim it. `NO_WORK_LEFT`: it has its result, or this audit judges it already."""
+    """Which audit has a drive after an attempt to claim it. `NO_WORK_LEFT`: the drive has its result, or this audit already judges it."""
 
     THIS_AUDIT = "this audit"
     ANOTHER_AUDIT = "another audit"
