@@ -11,9 +11,10 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 TOPICS: Final = (
-    "traces", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain", "differences", "incident",
-    "evidence-pack", "viewer", "pictures", "columns", "python", "ci", "ready-made", "second-run", "watching", "fleets", "fleet-results",
-    "fleet-costs", "writing-a-rule", "scenes", "rule-durations", "rule-reference", "adding-a-format", "architecture",
+    "traces", "damaged-logs", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain",
+    "differences", "incident", "evidence-pack", "viewer", "pictures", "columns", "python", "ci", "ready-made", "second-run", "watching",
+    "fleets", "fleet-machines", "fleet-results", "fleet-costs", "writing-a-rule", "scenes", "rule-durations", "rule-reference",
+    "adding-a-format", "architecture",
 )  # fmt: skip
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
