@@ -32,8 +32,8 @@ Distances are metres, speeds metres per second, angles radians, and times intege
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
 
-A column that holds words has those of one vocabulary and no others. They stand with the column, or under *Words*. A rule, a case, a
-mapping and a reader's output with another word are refused.
+A column of words has only the words of one vocabulary. They are listed with the column, or under *Words*. A rule, a case, a mapping or
+a reader's output with any other word is refused.
 """
 _WORDS: Final = "drivelint docs dictionary NAME prints one of them."
 _MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.formats.probe import Probe
 
 
-formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
+formats: Final = {"commonroad": ("CommonRoad scenario", "named with --ego")}
 takes_mapping: Final = False
 _CLASSES = {
     "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",

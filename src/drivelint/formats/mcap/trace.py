@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
     "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
-    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
+    "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False
 

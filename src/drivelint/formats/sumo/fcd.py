@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.vehicle_types import VehicleType
 
 
-formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
+formats: Final = {"sumo-fcd": ("SUMO floating car data", "named with --ego")}
 takes_mapping: Final = True
 HEAD_BYTES = 65536
 _LONGEST_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
