@@ -82,7 +82,7 @@ class AuditRequest(DriveInput):
     lease_s: float = LEASE_S
     retry_errors: bool = False
     prune: bool = False
-    """Take out results of logs that are not among the sources any more."""
+    """Remove results of logs that are no longer among the sources."""
     cluster: str | None = None
     delta: str | None = None
     """Folder or prefix of Delta tables of the packed tables."""

@@ -1,4 +1,4 @@
-"""The receipts of `check`: shows again what an earlier run of the same inputs came to, and keeps what this one does.
+"""The receipts of `check`: shows the result of an earlier run with the same inputs again, and keeps that of this run.
 
 A run is kept if it can be told by its inputs alone, and wrote nothing but stdout and the files of a result: not one that keeps its
 database or packs evidence, that was interrupted, of which a drive was not judged or a rule erred, or whose logs are its own outputs.

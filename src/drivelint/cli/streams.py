@@ -15,17 +15,17 @@ READER_LEFT: Final = 141
 
 
 class ReaderLeftError(Exception):
-    """Nobody reads stdout any more. No OSError: libraries make exit code 1 of these."""
+    """No program reads stdout any more. Not an OSError, because libraries turn that into exit code 1."""
 
 
 class StdoutError(DriveLintError):
-    """The system does not take what is written to stdout."""
+    """The system refuses a write to stdout."""
 
     exit_code = ExitCode.TEMPFAIL
 
 
 class _Stdout(io.TextIOWrapper):
-    """Stdout with our errors."""
+    """Stdout that raises our errors."""
 
     def write(self, text: str) -> int:
         try:
@@ -48,9 +48,9 @@ def _stdout_error(error: OSError) -> Exception:
 
 
 def prepare() -> None:
-    """Make both streams writable whatever the caller did: closed ones take what is written and lose it.
+    """Make both streams writable, whatever the caller did: a write to a closed stream is dropped.
 
-    A terminal of no columns, as some programs say of the one that they are, is one whose width is not known.
+    Some programs report a terminal of 0 columns; its width is then not known.
     """
     if not os.environ.get("COLUMNS", "").strip().lstrip("0"):
         os.environ.pop("COLUMNS", None)
@@ -66,7 +66,7 @@ def prepare() -> None:
 
 
 def say(line: str) -> None:
-    """Print a line on stderr if it can be; the exit code tells in any case."""
+    """Print a line on stderr if possible; the exit code is correct in any case."""
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)
 
